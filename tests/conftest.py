@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 # Before numpy, torch or Qt are loaded anywhere.
@@ -11,6 +12,8 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from kirigami_studio.foundation.processes import Workers
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -53,6 +56,15 @@ def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.
     folder = tmp_path_factory.mktemp("materials")
     monkeypatch.setenv("KIRIGAMI_STUDIO_MATERIALS", str(folder))
     return folder
+
+
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Workers]:
+    """A Dask cluster of two processes on this machine."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
+        yield Workers(scheduler=cluster.scheduler_address)
 
 
 @pytest.fixture(scope="session")

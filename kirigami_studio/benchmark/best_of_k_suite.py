@@ -16,6 +16,7 @@ import numpy as np
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.benchmark.run_store import Record, RunStore
 from kirigami_studio.benchmark.solver_suite import SolverRun, SolverSettings, check_methods, solved
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.outlines.outline import Outline
 
 SAMPLING = ("sample", "sample-fit")
@@ -79,7 +80,7 @@ def measure_best_of_k(
     most: int,
     settings: SolverSettings,
     store: RunStore,
-    processes: int = 1,
+    workers: Workers = HERE,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> BestOfKFigures:
     """Do the runs that ``store`` does not have yet, and make the curves.
@@ -95,8 +96,8 @@ def measure_best_of_k(
     settings : SolverSettings
     store : RunStore
         With ``settings.to_json()``.
-    processes : int
-        Runs at a time.
+    workers : Workers
+        Who does runs.
     report : callable
         Told (done, total) runs.
 
@@ -116,7 +117,7 @@ def measure_best_of_k(
         for method in methods
         for run in _runs(method, family, number, outlines[number], sizes)
     ]
-    store.complete(runs, partial(solved, settings=settings), processes, report)
+    store.complete(runs, partial(solved, settings=settings), workers, report)
     families = {
         family: {
             method: tuple(

@@ -16,7 +16,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PAPER, PictureFrame, draw_polygons
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
@@ -56,28 +58,39 @@ class Made:
 
 
 def make_designs(
-    requests: Sequence[Sequence[Request]], report: Callable[[int, int], None] = lambda done, total: None
+    requests: Sequence[Sequence[Request]],
+    report: Callable[[int, int], None] = lambda done, total: None,
+    workers: Workers = HERE,
 ) -> list[Made]:
     """Carry out the requests for each target, one for each grid it may have, and keep the best design.
 
     The best is the first by the order of :mod:`kirigami_studio.pipeline.rank`; on grids that rank alike, the first.
     """
-    made = []
-    for number, choices in enumerate(requests):
-        results = [best_of(request) for request in choices]
-        best = min(results, key=lambda result: Ranking.of(result.request).key(result.best)[:-1])
-        made.append(
-            Made(
-                best.request.target,
-                best.request,
-                best.best,
-                sum(result.seconds for result in results),
-                sum(result.forward_evaluations for result in results),
-                best.candidates,
-            )
-        )
-        report(number + 1, len(requests))
+    made: list[Made] = []
+    work = best_design if workers == HERE else design_alone
+    for _, one in ordered_results_of(work, iter(requests), workers):
+        made.append(one)
+        report(len(made), len(requests))
     return made
+
+
+def best_design(choices: Sequence[Request], pool: Pool | None = None) -> Made:
+    """Carry out the requests for one target, their fits in ``pool``, by default the program's own."""
+    results = [best_of(request, pool=pool) for request in choices]
+    best = min(results, key=lambda result: Ranking.of(result.request).key(result.best)[:-1])
+    return Made(
+        best.request.target,
+        best.request,
+        best.best,
+        sum(result.seconds for result in results),
+        sum(result.forward_evaluations for result in results),
+        best.candidates,
+    )
+
+
+def design_alone(choices: Sequence[Request]) -> Made:
+    """The same in this process alone: others do other targets meanwhile."""
+    return best_design(choices, Pool(1))
 
 
 def design_figures(made: Sequence[Made]) -> dict[str, object]:

@@ -32,6 +32,7 @@ from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed, sample_fields
 from kirigami_studio.generator.weights import Model, load_model, load_weights
 from kirigami_studio.lattice.deployment import deploy
@@ -289,7 +290,7 @@ def measure_generators(
     reference: FloatArray,
     store: RunStore,
     sweep: Mapping[str, Sequence[int]] | None = None,
-    processes: int = 1,
+    workers: Workers = HERE,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> GeneratorFigures:
     """Do the runs that ``store`` does not have yet, and make the table of all that were asked for.
@@ -308,8 +309,8 @@ def measure_generators(
         With ``settings.to_json()``.
     sweep : mapping of str to sequence of int, optional
         Further numbers of steps of generators by their name, measured with the first seed.
-    processes : int
-        Runs at a time.
+    workers : Workers
+        Who does runs.
     report : callable
         Told (done, total) runs.
 
@@ -325,7 +326,7 @@ def measure_generators(
         raise UsageError("benchmark.generators_alike", names=", ".join(names))
     sweep = sweep or {}
     runs = list(_runs(targets, sources, seeds, settings, sweep))
-    store.complete(runs, partial(sampled, classes=FieldClasses.of(reference)), processes, report)
+    store.complete(runs, partial(sampled, classes=FieldClasses.of(reference)), workers, report)
     families = {family: _table([run for run in runs if run.family == family], sources, store) for family in targets}
     weights = {one.name: one.digest for one in map(generator_named, sources)}
     return GeneratorFigures(settings.to_json(), tuple(seeds), weights, families)

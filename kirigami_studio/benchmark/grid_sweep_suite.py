@@ -22,6 +22,7 @@ from kirigami_studio.benchmark.run_store import Key, Record, RunStore, mean_of, 
 from kirigami_studio.benchmark.solver_suite import METHODS, SolverRun, SolverSettings, check_methods, solved
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -128,7 +129,7 @@ def measure_grid_sweep(
     methods: Sequence[str],
     settings: SolverSettings,
     store: RunStore,
-    processes: int = 1,
+    workers: Workers = HERE,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> SweepFigures:
     """Do the runs that ``store`` does not have yet, and make the sweep.
@@ -144,8 +145,8 @@ def measure_grid_sweep(
         Its grid has no meaning here.
     store : RunStore
         With ``settings.to_json()``.
-    processes : int
-        Runs at a time.
+    workers : Workers
+        Who does runs.
     report : callable
         Told (done, total) runs.
 
@@ -162,7 +163,7 @@ def measure_grid_sweep(
         for method in methods
         if size <= LARGEST_SEARCHED or method not in SOLVERS
     ]
-    store.complete(runs, partial(swept, settings=settings), processes, report)
+    store.complete(runs, partial(swept, settings=settings), workers, report)
     found = tuple(_size(size, [run for run in runs if run.size == size], methods, store) for size in sorted(set(sizes)))
     return SweepFigures(settings.to_json(), tuple(target.name for target in targets), found)
 

@@ -15,7 +15,7 @@ import numpy as np
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.files import folder_of_one_writer
-from kirigami_studio.foundation.processes import results_of
+from kirigami_studio.foundation.processes import Workers, results_of
 from kirigami_studio.outlines.outline import Outline
 
 #: What a suite tells its runs by, such as method, family, seed and target.
@@ -81,13 +81,13 @@ class RunStore:
         self.records[key] = record
 
     def complete(
-        self, runs: Sequence[Run], work: Callable[[Run], Record], processes: int, report: Callable[[int, int], None]
+        self, runs: Sequence[Run], work: Callable[[Run], Record], workers: Workers, report: Callable[[int, int], None]
     ) -> None:
-        """Do the runs that are missing, ``processes`` at a time; ``report`` is told (done, total)."""
+        """Have the runs that are missing done; ``report`` is told (done, total)."""
         waiting = [run for run in runs if run.key not in self.records]
         done = len(runs) - len(waiting)
         report(done, len(runs))
-        for run, record in results_of(work, iter(waiting), processes):
+        for run, record in results_of(work, iter(waiting), workers):
             self.add(run.key, record)
             done += 1
             report(done, len(runs))

@@ -30,6 +30,7 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -37,6 +38,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.levenberg import polish
@@ -211,7 +213,7 @@ def measure_solvers(
     seeds: Sequence[int],
     settings: SolverSettings,
     store: RunStore,
-    processes: int = 1,
+    workers: Workers = HERE,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> SolverFigures:
     """Do the runs that ``store`` does not have yet, and make the table of all that were asked for.
@@ -226,8 +228,8 @@ def measure_solvers(
     settings : SolverSettings
     store : RunStore
         With ``settings.to_json()``.
-    processes : int
-        Runs at a time.
+    workers : Workers
+        Who does runs.
     report : callable
         Told (done, total) runs.
 
@@ -238,7 +240,7 @@ def measure_solvers(
     """
     check_methods(targets, methods, METHODS)
     runs = list(_runs(targets, methods, seeds))
-    store.complete(runs, partial(solved, settings=settings), processes, report)
+    store.complete(runs, partial(solved, settings=settings), workers, report)
     families = {family: _table([run for run in runs if run.family == family], methods, store) for family in targets}
     return SolverFigures(settings.to_json(), tuple(seeds), families)
 
@@ -323,7 +325,8 @@ def _designs(run: SolverRun, settings: SolverSettings) -> tuple[list[Deployment]
     if run.method in OWN_METHODS:
         steps = settings.polish if run.method == "sample-fit" else 0
         request = Request(run.target, grid, k=run.k, seed=run.seed, variant=settings.variant, polish=steps)
-        result = best_of(as_in_paper(request))
+        # Runs are what is done side by side, and seconds are those of one process.
+        result = best_of(as_in_paper(request), pool=Pool(1))
         return [deploy(result.best.final_sheet)], result.forward_evaluations
     low, high = SPACES[settings.space]
     box = Box(low, high, grid[0] * grid[1])

@@ -19,10 +19,11 @@ import numpy.typing as npt
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
-from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto
+from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto, workers
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.outlines.starts import start_shape
@@ -185,7 +186,7 @@ def solvers(arguments: argparse.Namespace) -> int:
             tuple(dict.fromkeys(arguments.seeds)),
             settings,
             store,
-            arguments.processes,
+            workers(arguments),
             _shown_on(line, "Runs"),
         )
     return _print_in_folder(arguments, line, "solvers.json", figures)
@@ -203,7 +204,7 @@ def best_of_k(arguments: argparse.Namespace) -> int:
             arguments.k,
             settings,
             store,
-            arguments.processes,
+            workers(arguments),
             _shown_on(line, "Runs"),
         )
     return _print_in_folder(arguments, line, "best-of-k.json", figures)
@@ -223,7 +224,7 @@ def grid_sweep(arguments: argparse.Namespace) -> int:
             _methods(arguments, METHODS),
             settings,
             store,
-            arguments.processes,
+            workers(arguments),
             _shown_on(line, "Runs"),
         )
     return _print_in_folder(arguments, line, "grid-sweep.json", figures)
@@ -325,7 +326,7 @@ def generators(arguments: argparse.Namespace) -> int:
             reference,
             store,
             steps if arguments.sweep else None,
-            arguments.processes,
+            workers(arguments),
             _shown_on(line, "Runs"),
         )
     arguments.out = None if folder is None else folder / "generators.json"
@@ -431,7 +432,7 @@ def designs(arguments: argparse.Namespace) -> int:
             ]
             for outline in outlines
         ]
-        made = make_designs(requests, report)
+        made = make_designs(requests, report, Workers(scheduler=arguments.scheduler))
         if arguments.picture is not None:
             shown = made if arguments.worst is None else worst_of(made, arguments.worst)
             write_contact_sheet(shown, Path(arguments.picture), arguments.states)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings, say_verdict
-from kirigami_studio.cli.inputs import are_many_targets, for_each, read_targets
+from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, read_targets
 from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
@@ -18,8 +20,9 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
-from kirigami_studio.foundation.errors import Cancelled, FabricationError, UsageError
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
+from kirigami_studio.foundation.processes import Workers, ordered_results_of
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
 from kirigami_studio.lattice.sheet import Sheet
@@ -30,6 +33,7 @@ from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.best_as_cut import best_as_cut
 from kirigami_studio.pipeline.events import Finished, Progress, Result
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
@@ -58,55 +62,181 @@ def design(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     used: set[str] = set()
 
-    def one(name: str, target: Outline) -> None:
-        request = _on_its_grid(
-            Request(
-                target=target,
-                grid=grid,
-                phi=arguments.phi,
-                k=arguments.k,
-                seed=arguments.seed,
-                variant=arguments.variant,
-                steps=arguments.steps,
-                polish=POLISH_STEPS if arguments.polish else 0,
-                prefer=arguments.prefer,
-                trim=arguments.trim,
-                search=arguments.search,
-                budget_seconds=arguments.budget,
-                symmetry=arguments.symmetry,
-                rim=arguments.rim,
-                regular=regular,
-                width_mm=fabrication.width_mm,
-                least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
-                room_mm=room_mm(fabrication),
-                start=start,
-                second=second,
-            ),
-            fabrication,
-            arguments.least_panel_mm,
+    def job_for(target: Outline) -> Job:
+        request = Request(
+            target=target,
+            grid=grid,
+            phi=arguments.phi,
+            k=arguments.k,
+            seed=arguments.seed,
+            variant=arguments.variant,
+            steps=arguments.steps,
+            polish=POLISH_STEPS if arguments.polish else 0,
+            prefer=arguments.prefer,
+            trim=arguments.trim,
+            search=arguments.search,
+            budget_seconds=arguments.budget,
+            symmetry=arguments.symmetry,
+            rim=arguments.rim,
+            regular=regular,
+            width_mm=fabrication.width_mm,
+            least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
+            room_mm=room_mm(fabrication),
+            start=start,
+            second=second,
         )
-        result = _run(request, line)
-        if arguments.material is not None:
-            result = cuttable_first(result, fabrication, line)
-        if request.trim and all(one.trim is None for one in result.candidates):
-            budget_ended = result.budget_ended
-            raise FabricationError("design.trimming_cut_short" if budget_ended else "design.none_trimmed")
-        folder = None if arguments.out is None else Path(arguments.out)
-        if folder is not None and batch:
-            folder = folder / _folder_name(name, used)
-        files = {} if folder is None else write_files(result, fabrication, folder)
-        answer = summary(result) | {"files": files}
-        verdict = None if arguments.material is None else _verdict_on(result, fabrication)
-        if verdict is not None:
-            answer |= {"ok": verdict.ok, "verdict": verdict.to_json()}
+        material_named = arguments.material is not None
+        return Job(request, fabrication, arguments.least_panel_mm, material_named, arguments.out is not None)
+
+    def folder_for(name: str) -> Path:
+        return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
+
+    def tell(name: str, design: Design, files: dict[str, str]) -> None:
+        answer = summary(design.result) | {"files": files}
+        if design.verdict is not None:
+            answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json()}
         if batch:
             print_json({"source": name} | answer)
         elif arguments.json:
             print_json(answer)
         else:
-            _say_result(target, result, files, verdict)
+            _say_result(design.result.request.target, design.result, files, design.verdict)
 
-    return for_each(read_targets(arguments.targets, arguments.threshold), batch, one)
+    def one(name: str, target: Outline) -> None:
+        design = designed(job_for(target), line)
+        tell(name, design, write_files(design.result, fabrication, folder_for(name)) if arguments.out else {})
+
+    def one_from_cluster(name: str, design: Design) -> None:
+        tell(name, design, design.save(folder_for(name)) if design.files else {})
+
+    inputs = read_targets(arguments.targets, arguments.threshold)
+    if arguments.scheduler:
+        return for_each(_from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)), batch, one_from_cluster)
+    return for_each(inputs, batch, one)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One target to design.
+
+    Attributes
+    ----------
+    request : Request
+        Its grid may be open.
+    fabrication : FabricationSettings
+    least_panel_mm : float
+    as_cut : bool
+        Whether designs are ranked as cut in the material, and get a verdict.
+    files : bool
+        Whether the design comes with its files.
+    """
+
+    request: Request
+    fabrication: FabricationSettings
+    least_panel_mm: float
+    as_cut: bool
+    files: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Design:
+    """What came of a job.
+
+    Attributes
+    ----------
+    result : Result
+    verdict : Verdict or None
+    files : mapping of str to (str, bytes)
+        Name and content by role, of a design from elsewhere that was asked for with its files.
+    """
+
+    result: Result
+    verdict: Verdict | None
+    files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
+
+    def save(self, folder: Path) -> dict[str, str]:
+        """Write the files; returns their paths by role."""
+        for name, content in self.files.values():
+            write_atomically(folder / name, content)
+        return {role: str(folder / name) for role, (name, _) in self.files.items()}
+
+
+def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
+    """Do a job, its fits in ``pool``, by default the program's own.
+
+    Raises
+    ------
+    FabricationError
+        Designs were to be trimmed and none could be.
+    """
+    request = _on_its_grid(job.request, job.fabrication, job.least_panel_mm)
+    result = _run(request, line, pool)
+    if job.as_cut:
+        result = cuttable_first(result, job.fabrication, line)
+    if request.trim and all(one.trim is None for one in result.candidates):
+        raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
+    return Design(result, _verdict_on(result, job.fabrication) if job.as_cut else None)
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A worker's answer: a design, or the error of this one target."""
+
+    design: Design | None
+    error: KirigamiError | None
+
+    def get(self) -> Design:
+        """The design; raises the error."""
+        if self.design is None:
+            raise self.error or Cancelled("run.no_result")
+        return self.design
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What a worker is asked for: a job, or the error with which its target could not even be read."""
+
+    name: str
+    job: Job | None
+    error: KirigamiError | None
+
+
+def designed_there(asked: Asked) -> Answer:
+    """Do a job in this process alone, and read the files that it writes; a worker of a cluster does this."""
+    job = asked.job
+    if job is None:
+        return Answer(None, asked.error)
+    line = ProgressLine()
+    line.active = False
+    try:
+        design = designed(job, line, Pool(1))
+        if not job.files:
+            return Answer(design, None)
+        with TemporaryDirectory() as folder:
+            paths = write_files(design.result, job.fabrication, Path(folder))
+            files = {role: (Path(path).name, Path(path).read_bytes()) for role, path in paths.items()}
+        return Answer(replace(design, files=files), None)
+    except KirigamiError as error:
+        return Answer(None, error)
+
+
+def _from_cluster(
+    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job], workers: Workers
+) -> Iterator[Named[Design]]:
+    """Designs of all inputs, in order, as if they were read from somewhere."""
+    for asked, answer in ordered_results_of(designed_there, _asked(inputs, job_for), workers):
+        yield Named(asked.name, answer.get)
+
+
+def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job]) -> Iterator[Asked]:
+    """The jobs of all inputs.  Targets are read here: workers may not have their files."""
+    for named in inputs:
+        try:
+            yield Asked(named.name, job_for(named.read()), None)
+        except UsageError:
+            raise
+        except KirigamiError as error:
+            yield Asked(named.name, None, error)
 
 
 def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
@@ -274,8 +404,8 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
     return Document(request.target, settings, candidates, 0, fabrication, source)
 
 
-def _run(request: Request, line: ProgressLine) -> Result:
-    for event in run(request):
+def _run(request: Request, line: ProgressLine, pool: Pool | None) -> Result:
+    for event in run(request, pool=pool):
         if isinstance(event, Progress):
             line.show(event.message)
         elif isinstance(event, Finished):

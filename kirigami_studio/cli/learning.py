@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kirigami_studio.cli.console import ProgressLine, print_json, say
-from kirigami_studio.cli.option_types import parse_grid
+from kirigami_studio.cli.option_types import parse_grid, workers
 from kirigami_studio.foundation.errors import UsageError
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def dataset(arguments: argparse.Namespace) -> int:
             arguments.seed * len(SPLITS) + offset,
             grid,
             lambda done, name=name, count=count: line.show(f"{name}: {done} of {count}"),  # type: ignore[misc]
+            workers(arguments),
         )
         path = Path(arguments.out) / f"{arguments.family}-{name}.npz"
         split.save(path)
@@ -69,7 +70,7 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
     count = DRAWN_COUNT if arguments.count is None else arguments.count
     path = Path(arguments.out) / "drawn.npz"
     line = ProgressLine()
-    for done in fit_shapes(path, count, arguments.seed, grid, processes=arguments.processes):
+    for done in fit_shapes(path, count, arguments.seed, grid, workers=workers(arguments)):
         line.show(f"drawn: {done} of {count}")
     line.clear()
     fits = FittedFields.load(path)

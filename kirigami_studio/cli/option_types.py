@@ -8,6 +8,7 @@ import re
 
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT
 from kirigami_studio.foundation.errors import GridError, UsageError
+from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.foundation.words import tr
 
 
@@ -111,6 +112,11 @@ def count(text: str) -> int:
     if value < 1:
         raise argparse.ArgumentTypeError(tr("must be 1 or more, got {text}", text=text))
     return value
+
+
+def workers(arguments: argparse.Namespace) -> Workers:
+    """Who does the pieces of a command, by ``--processes`` and ``--scheduler``."""
+    return Workers(arguments.processes, arguments.scheduler)
 
 
 def copies(text: str) -> int:

@@ -167,6 +167,18 @@ RANDOM_DESIGNS = option("--count", type=count, default=200, help="number of rand
 FIGURES = (option("--out", default=None, help="also write the results to this .json file"), JSON)
 
 
+#: A cluster in the place of this machine.
+SCHEDULER = option(
+    "--scheduler",
+    default="",
+    metavar="ADDRESS",
+    help="address of a Dask scheduler, such as tcp://10.0.0.5:8786, whose workers do the work (extra 'cluster')",
+)
+#: Who does the runs of a suite.
+WORKERS = (
+    option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+    SCHEDULER,
+)
 #: Options of suites that run solvers and samples.
 SOLVING = (
     option(
@@ -178,7 +190,7 @@ SOLVING = (
     option("--evaluations", type=count, default=1000, help="most evaluations of a solver (default 1000)"),
     option("--variant", default="prior", help="generator variant of the samples (default prior)"),
     option("--polish", type=whole, default=15, help="polishing steps after a sample (default 15)"),
-    option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+    *WORKERS,
     option(
         "--out",
         default=None,
@@ -290,6 +302,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--budget", type=positive, default=None, metavar="SECONDS",
                help="stop after this time with the best so far; results then depend on the machine (default: none)"),
         *WIDTHS,
+        SCHEDULER,
         JSON,
     ), (
         "kirigami-studio design heart --out out/heart",
@@ -299,6 +312,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design heart --start circle --out out/disk-to-heart",
         "kirigami-studio design star --start circle --also hexagon --at-deg 60 --weight 0.5 --json",
         "kirigami-studio design masks.npz --k 1 --json",
+        "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
     )),
     SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (
         option("sheets", nargs="+", metavar="SHEET",
@@ -478,9 +492,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="designs in each split (default: the paper's); drawn: total number of fits (default 7000)"),
         GRID,
         SEED,
-        option("--processes", type=count, default=1, help="drawn: number of fits at the same time (default 1)"),
+        option("--processes", type=count, default=1, help="number of processes at the same time (default 1)"),
+        SCHEDULER,
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",
+        "kirigami-studio dataset structured --out data --scheduler tcp://10.0.0.5:8786",
         "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
     SubCommand("train prior", "train a generator; resumes from the checkpoint in its run folder",
         "learning:train", (
@@ -617,6 +633,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--states", action="store_true",
                help="show each design three times: flat, half way, and over its target"),
         option("--worst", type=count, default=None, help="show only this many designs, those with the lowest sIoU"),
+        SCHEDULER,
         *FIGURES,
     ), ("kirigami-studio benchmark designs --targets drawings --k 32 --picture worst.png --worst 12",
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
@@ -654,7 +671,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         samples(16), SEEDS,
         option("--sweep", action="store_true",
                help="also other numbers of steps: flows 1 to 32, diffusion 10 to 100"),
-        option("--processes", type=count, default=2, help="number of runs at the same time (default 2)"),
+        *WORKERS,
         option("--out", default=None,
                help="folder for generators.json and generators.jsonl, which has a line for each finished run; an "
                     "earlier call may have begun it"),

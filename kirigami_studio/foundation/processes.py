@@ -1,50 +1,167 @@
-"""Work that is done piece by piece, in this process or in several fresh ones."""
+"""Work that is done piece by piece: in this process, in several fresh ones, or by the workers of a Dask cluster.
+
+A cluster is optional (the extra ``cluster``).  Its workers need this package in the same version; each does one piece
+at a time, on one thread.  A worker that dies loses nothing: its piece is done again by another one.
+"""
 
 from __future__ import annotations
 
 import multiprocessing
+import threading
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from typing import TypeVar
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, TypeVar
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.threads import one_blas_thread
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+#: Seconds that a scheduler has to answer, and that it has to have a worker.
+PATIENCE = 5.0
+#: Pieces that are sent out for each worker of a cluster: one to do and one to go on with.
+AHEAD = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """Who does pieces of work.
+
+    Attributes
+    ----------
+    processes : int
+        Pieces at a time; with 1 everything is done in this process, in order.
+    scheduler : str
+        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``: its workers then do everything.  Empty for none.
+    """
+
+    processes: int = 1
+    scheduler: str = ""
+
+
+#: This process does everything.
+HERE = Workers()
+
 
 def results_of(
-    work: Callable[[Item], Result], items: Iterator[Item], processes: int = 1
+    work: Callable[[Item], Result], items: Iterator[Item], workers: Workers = HERE
 ) -> Generator[tuple[Item, Result], None, None]:
     """Do ``work`` on every item and yield both as they become ready.
 
     Parameters
     ----------
     work : callable
-        A function of a module, or a partial of one: processes have to find it.
+        A function of a module, or a partial of one: other processes have to find it.
     items : iterator
-        May be endless: it is read no further than there are processes.
-    processes : int
-        How many pieces at a time; with 1 everything is done here, in order.
+        May be endless: it is read no further than there is somebody to do it.
+    workers : Workers
 
     Yields
     ------
     item, result
         What ``work`` raises is raised here.
+
+    Raises
+    ------
+    KirigamiError
+        There is no cluster at the address, it was lost, or a piece of work has ended every worker that tried it.
     """
-    if processes == 1:
+    if workers == HERE:
         for item in items:
             yield item, work(item)
         return
-    # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+    with _opened(workers) as (submit, room):
         running: dict[Future[Result], Item] = {}
         more = True
-        while more or running:
-            while more and len(running) < processes:
-                try:
-                    item = next(items)
-                except StopIteration:
-                    more = False
-                else:
-                    running[pool.submit(work, item)] = item
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                yield running.pop(future), future.result()
+        try:
+            while more or running:
+                while more and len(running) < room():
+                    try:
+                        item = next(items)
+                    except StopIteration:
+                        more = False
+                    else:
+                        running[submit(work, item)] = item
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    yield running.pop(future), future.result()
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def ordered_results_of(
+    work: Callable[[Item], Result], items: Iterator[Item], workers: Workers = HERE
+) -> Generator[tuple[Item, Result], None, None]:
+    """The same in the order of the items: what is ready early waits."""
+    ready: dict[int, tuple[Item, Result]] = {}
+    following = 0
+    for (number, item), result in results_of(partial(_on_item, work), enumerate(items), workers):
+        ready[number] = item, result
+        while following in ready:
+            yield ready.pop(following)
+            following += 1
+
+
+def _on_item(work: Callable[[Item], Result], numbered: tuple[int, Item]) -> Result:
+    return work(numbered[1])
+
+
+#: Hand a piece of work to somebody: (work, item) -> its future result.
+Submit = Callable[..., Future[Any]]
+
+
+@contextmanager
+def _opened(workers: Workers) -> Iterator[tuple[Submit, Callable[[], int]]]:
+    """How pieces are handed out, and how many of them there is room for now."""
+    if workers.scheduler:
+        with _cluster(workers.scheduler) as cluster:
+            yield cluster
+        return
+    # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
+    with ProcessPoolExecutor(workers.processes, multiprocessing.get_context("spawn")) as pool:
+        yield pool.submit, lambda: workers.processes
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[tuple[Submit, Callable[[], int]]]:
+    """The workers of a Dask cluster."""
+    try:
+        from distributed import Client, KilledWorker
+    except ImportError as error:
+        raise KirigamiError("cluster.package_missing") from error
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise KirigamiError("cluster.no_answer", address=address, seconds=PATIENCE) from error
+
+    def room() -> int:
+        try:
+            return AHEAD * max(1, len(client.nthreads()))
+        except OSError as error:
+            raise KirigamiError("cluster.lost", address=address) from error
+
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise KirigamiError("cluster.no_workers", address=address) from error
+        try:
+            # Equal pieces are different pieces.
+            yield partial(client.get_executor(pure=False).submit, _alone), room
+        except KilledWorker as error:
+            raise KirigamiError("cluster.work_ends_workers", address=address) from error
+        except CancelledError as error:
+            raise KirigamiError("cluster.lost", address=address) from error
+
+
+_ALONE = threading.Lock()
+
+
+def _alone(work: Callable[[Item], Result], item: Item) -> Result:
+    """Do a piece of work while no other thread of this process does one: limits of threads are the process's."""
+    with _ALONE, one_blas_thread():
+        return work(item)

@@ -17,9 +17,11 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import torch
 from numpy.random import Generator
 from scipy.ndimage import binary_fill_holes, label
@@ -30,6 +32,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.paper import MASK_SIZE
+from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -105,7 +108,12 @@ def content_hash(ratios: FloatArray, masks: BoolArray) -> str:
 
 
 def generate_split(
-    family: str, count: int, seed: int, grid: tuple[int, int] = (10, 10), report: Callable[[int], None] = lambda _: None
+    family: str,
+    count: int,
+    seed: int,
+    grid: tuple[int, int] = (10, 10),
+    report: Callable[[int], None] = lambda _: None,
+    workers: Workers = HERE,
 ) -> Split:
     """Draw fields until ``count`` of them are feasible.
 
@@ -119,6 +127,8 @@ def generate_split(
     grid : (rows, columns)
     report : callable
         Told the number of designs kept so far.
+    workers : Workers
+        Who looks at candidates; the content does not depend on it.
 
     Raises
     ------
@@ -130,28 +140,70 @@ def generate_split(
     discarded: Counter[str] = Counter()
     ratios: list[FloatArray] = []
     masks: list[BoolArray] = []
-    lattice = BatchedLattice(*grid, dtype=torch.float64)
-    for fields in _batches(family, grid, seed):
-        outlines = zero_outline(lattice, torch.tensor(fields)).numpy()
-        for z, outline in zip(fields, outlines, strict=True):
-            try:
-                deployment = deploy(RatioField.from_log10(z))
-                mask = rasterise(outline, MASK_SIZE)
-            except KirigamiError:
-                discarded["no layout"] += 1
+    work = partial(looked_at, most=count)
+    for _, batch in ordered_results_of(work, _batches(family, grid, seed), workers):
+        kept_here = 0
+        for fault in batch.faults:
+            if fault is not None:
+                discarded[fault] += 1
                 continue
-            reason = fault_of(deployment, mask)
-            if reason is not None:
-                discarded[reason] += 1
-                continue
-            ratios.append(deployment.field.ratio)
-            masks.append(mask)
+            ratios.append(batch.ratios[kept_here])
+            masks.append(np.unpackbits(batch.packed[kept_here], axis=-1).astype(np.bool_))
+            kept_here += 1
             if len(ratios) == count:
                 kept, shown = np.stack(ratios), np.stack(masks)
                 about = {"family": family, "seed": seed, "grid": list(grid), "phi": 0.0, "discarded": dict(discarded)}
                 return Split(kept, shown, {**about, "sha256": content_hash(kept, shown)})
         report(len(ratios))
     raise KirigamiError("training.fields_ended")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LookedAt:
+    """Candidates of a batch, in order, and those of them that are designs.
+
+    Attributes
+    ----------
+    faults : tuple of str or None
+        Why a candidate is discarded; None for a design.
+    ratios : (N, m, n) float64
+        Of the designs.
+    packed : (N, 128, 16) uint8
+        Their masks, eight pixels a byte.
+    """
+
+    faults: tuple[str | None, ...]
+    ratios: FloatArray
+    packed: npt.NDArray[np.uint8]
+
+
+def looked_at(fields: FloatArray, most: int) -> LookedAt:
+    """Decode, render and check candidates z (B, m, n), until ``most`` of them are designs."""
+    lattice = _lattice(fields.shape[1], fields.shape[2])
+    outlines = zero_outline(lattice, torch.tensor(fields)).numpy()
+    faults: list[str | None] = []
+    ratios: list[FloatArray] = []
+    masks: list[BoolArray] = []
+    for z, outline in zip(fields, outlines, strict=True):
+        try:
+            deployment = deploy(RatioField.from_log10(z))
+            mask = rasterise(outline, MASK_SIZE)
+        except KirigamiError:
+            faults.append("no layout")
+            continue
+        faults.append(fault_of(deployment, mask))
+        if faults[-1] is None:
+            ratios.append(deployment.field.ratio)
+            masks.append(mask)
+            if len(ratios) == most:
+                break
+    shown = np.array(masks, dtype=np.bool_).reshape(-1, MASK_SIZE, MASK_SIZE)
+    return LookedAt(tuple(faults), np.array(ratios).reshape(-1, *fields.shape[1:]), np.packbits(shown, axis=-1))
+
+
+@cache
+def _lattice(rows: int, columns: int) -> BatchedLattice:
+    return BatchedLattice(rows, columns, dtype=torch.float64)
 
 
 def verify(split: Split, seed: int = 0) -> float:

@@ -33,7 +33,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.foundation.processes import results_of
+from kirigami_studio.foundation.processes import HERE, Workers, results_of
 from kirigami_studio.generator.conditioning import normalised, square_pose
 from kirigami_studio.generator.sampler import BATCH, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
@@ -130,7 +130,7 @@ def fit_shapes(
     count: int,
     seed: int,
     grid: tuple[int, int] = (10, 10),
-    processes: int = 1,
+    workers: Workers = HERE,
     block_size: int = BLOCK,
 ) -> Iterator[int]:
     """Add blocks to the archive at ``path`` until it holds ``count`` fits; yields how many it holds after each.
@@ -142,8 +142,8 @@ def fit_shapes(
     seed : int
         Of the drawn shapes.
     grid : (rows, columns)
-    processes : int
-        Blocks at a time.
+    workers : Workers
+        Who does blocks.
     block_size : int
         Shapes of a block.
 
@@ -160,7 +160,7 @@ def fit_shapes(
         raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
     done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
     work = partial(fitted_block, seed=seed, grid=grid, size=block_size)
-    blocks = results_of(work, (number for number in count_from(0) if number not in done), processes)
+    blocks = results_of(work, (number for number in count_from(0) if number not in done), workers)
     while len(fits.z) < count:
         number, new = next(blocks)
         fits = _joined(fits, new, number)

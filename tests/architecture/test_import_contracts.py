@@ -31,6 +31,7 @@ ONE_WAY = "Data flows one way; packages on one line do not import each other"
 TORCH = "Only generator, baselines, training, benchmark and lattice.batched import torch"
 BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
+DASK = "Only foundation.processes imports Dask"
 WINDOW = "Layers of the window"
 COMPARED = "Only training, benchmark and cli know what the program is compared with"
 JUDGED = "What others are judged by knows nothing of the window"
@@ -80,6 +81,7 @@ FAULTS = (
     Fault("cli", "import PySide6", "Only the window imports Qt", "PySide6"),
     Fault("fabricate", "import ezdxf", EZDXF, "ezdxf"),
     Fault("outlines", "import ezdxf.math", EZDXF, "ezdxf"),
+    Fault("benchmark", "import distributed", DASK, "distributed"),
     Fault("foundation", "import scipy", "The foundation needs NumPy at most", "scipy"),
 )
 

@@ -1,4 +1,4 @@
-"""Sentences of ``training``, ``benchmark`` and ``problem``, by the code of the problem."""
+"""Sentences of ``training``, ``benchmark``, ``problem`` and of clusters, by the code of the problem."""
 
 from __future__ import annotations
 
@@ -110,6 +110,23 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Timings need at least one variant and two targets, got {variants} and {targets}."
     ),
     "benchmark.spread_of_one": mark("A spread needs at least 2 samples of each target, got {k}."),
+    # clusters
+    "cluster.package_missing": mark(
+        "A cluster needs the package distributed. Install it with pip install 'kirigami-studio[cluster]', or leave out "
+        "--scheduler."
+    ),
+    "cluster.no_answer": mark(
+        "Nobody answers at {address} within {seconds:g} seconds. Start 'dask scheduler', or correct the address."
+    ),
+    "cluster.no_workers": mark(
+        "The scheduler at {address} has no workers. Start some with 'dask worker {address} --nthreads 1'."
+    ),
+    "cluster.lost": mark(
+        "The scheduler at {address} went away. Finished runs are kept: start it again, and repeat this call."
+    ),
+    "cluster.work_ends_workers": mark(
+        "One piece of work ended several workers of {address}, one after the other. They may be short of memory."
+    ),
     # problem
     "problem.unknown_split": mark("There is no split called '{split:.40}'. Choose one of {choices}."),
     "problem.unknown_baseline": mark(

@@ -7,7 +7,7 @@ from itertools import count
 
 import pytest
 
-from kirigami_studio.foundation.processes import results_of
+from kirigami_studio.foundation.processes import Workers, results_of
 
 
 def square(number: int) -> tuple[int, int]:
@@ -32,8 +32,8 @@ def test_that_an_endless_row_is_read_only_as_far_as_wanted() -> None:
 
 @pytest.mark.slow
 def test_that_processes_give_the_same_results() -> None:
-    found = dict(results_of(square, iter(range(5)), 2))
+    found = dict(results_of(square, iter(range(5)), Workers(2)))
     assert {number: result[0] for number, result in found.items()} == {number: number**2 for number in range(5)}
     assert os.getpid() not in {result[1] for result in found.values()}
     with pytest.raises(ArithmeticError, match="no 0"):
-        list(results_of(fail, iter([0]), 2))
+        list(results_of(fail, iter([0]), Workers(2)))

@@ -11,7 +11,8 @@ import shapely
 import torch
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.processes import UsageError, Workers
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.outlines.editing import resampled
@@ -65,8 +66,8 @@ def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> Non
 
 
 def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
-    def run(path: Path, count: int, processes: int = 1) -> FittedFields:
-        list(fit_shapes(path, count, 5, GRID, processes=processes, block_size=2))
+    def run(path: Path, count: int) -> FittedFields:
+        list(fit_shapes(path, count, 5, GRID, block_size=2))
         return FittedFields.load(path)
 
     first = run(tmp_path / "parts.npz", 1)
@@ -83,7 +84,7 @@ def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_that_two_processes_make_the_fits_of_one(tmp_path: Path) -> None:
     path = tmp_path / "two.npz"
-    list(fit_shapes(path, 3, 5, GRID, processes=2, block_size=1))
+    list(fit_shapes(path, 3, 5, GRID, Workers(2), block_size=1))
     fits = FittedFields.load(path)
     assert len(fits.about["blocks"]) >= 2  # type: ignore[arg-type]
     alone = [fitted_block(block, 5, GRID, 1) for block in fits.about["blocks"]]  # type: ignore[attr-defined]
