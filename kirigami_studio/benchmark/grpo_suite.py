@@ -28,6 +28,7 @@ from kirigami_studio.benchmark.generator_table import (
 from kirigami_studio.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.velocity import backbone_of
 from kirigami_studio.generator.weights import digest_of, load_weights, variants_about
 from kirigami_studio.lattice.deployment import deploy
@@ -260,7 +261,7 @@ def measure_grpo(
     runs: Sequence[AlignedRun],
     seeds: Sequence[int],
     store: RunStore,
-    processes: int = 1,
+    workers: Workers = HERE,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> GrpoFigures:
     """Judge every snapshot of every run, as far as ``store`` does not have it, and make the tables.
@@ -275,8 +276,8 @@ def measure_grpo(
         Sampling seeds.
     store : RunStore
         With :func:`suite_settings`.
-    processes : int
-        Samples at a time.
+    workers : Workers
+        Who does samples.
     report : callable
         Told (done, total) samples.
 
@@ -303,7 +304,7 @@ def measure_grpo(
         for digest in reversed(sources)
         for family, outlines in targets.items()
     }
-    store.complete([run for some in samples.values() for run in some], judged, processes, report)
+    store.complete([run for some in samples.values() for run in some], judged, workers, report)
     training: dict[str, dict[str, dict[str, object]]] = {}
     for run in runs:
         training.setdefault(run.start, {})[run.reward] = run.settings

@@ -395,7 +395,7 @@ def grpo(arguments: argparse.Namespace) -> int:
             runs,
             tuple(dict.fromkeys(arguments.seeds)),
             store,
-            arguments.processes,
+            workers(arguments),
             _shown_on(line, "Samples"),
         )
     return _print_in_folder(arguments, line, "grpo.json", figures)

@@ -691,7 +691,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                "benchmarks:grpo", (
         option("runs", nargs="+", metavar="RUN", help="folders of 'train grpo --keep-at 0 ...'"),
         *targets_of_a_suite(20), EXACT, SEEDS,
-        option("--processes", type=count, default=2, help="number of samples at the same time (default 2)"),
+        *WORKERS,
         option("--out", default=None,
                help="folder for grpo.json and grpo.jsonl, which has a line for each finished sample; an earlier call "
                     "may have begun it"),
