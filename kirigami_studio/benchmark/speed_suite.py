@@ -177,7 +177,7 @@ def run_timings(
 def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
     first: float | None = None
     began = time.perf_counter()
-    request = with_grid(request)
+    request = with_grid(request, pool)
     chosen = time.perf_counter() - began
     for event in run(request, pool=pool):
         passed = time.perf_counter() - began

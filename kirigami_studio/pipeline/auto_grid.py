@@ -11,19 +11,17 @@ none of these will do.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 import shapely
 
-from kirigami_studio.evaluate.evenness import evenness
-from kirigami_studio.evaluate.siou import exact_iou
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.sentences import sentence
-from kirigami_studio.foundation.threads import one_blas_thread
-from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
@@ -33,7 +31,8 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import first_angles, fit_by_stages
+from kirigami_studio.pipeline.tasks import TrialTask
+from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
@@ -60,6 +59,8 @@ TELLING = 0.8
 #: worth less, gain nothing.  Sheets of other starts do without, for the sake of time.
 FINER_BETWEEN, FINER_GAIN = (0.95, 0.975), 0.005
 FINER_LIMIT, FINER_PANELS = 24, 312
+#: Poses of each grid that are tried, and the steps of each fit.
+TRIED_POSES = 2
 TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
@@ -83,6 +84,10 @@ CONSTANT, PANELS, LENGTH, BENDS, LIMBS, ARMS, PROPORTIONS = -5.2, -0.54, 1.16, 0
 USUAL_PANELS = 140.0
 #: Sheets of this power of the shape's proportions match best.
 BEST_PROPORTIONS = 0.66
+
+#: Choices that are remembered by what they depend on, oldest first, and how many of them.
+_CHOSEN: dict[Hashable, GridChoice] = {}
+REMEMBERED = 64
 
 #: Codes of the reason where the coarsest grid that matches is taken, by the symmetry that its parities are for.
 COARSEST_CODES: dict[Symmetry | None, str] = {
@@ -260,13 +265,27 @@ def predicted_for(request: Request) -> GridChoice:
     )
 
 
-def chosen_for(request: Request) -> GridChoice:
+class Trials(Protocol):
+    """Whoever carries out the short fits that decide between grids."""
+
+    def __call__(self, request: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:
+        """What each of them made, in their order."""
+        ...
+
+
+def one_by_one(request: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:
+    """Carry out trials in this process."""
+    return [found for task in tasks if (found := task.carry_out(request, lambda: False).candidate) is not None]
+
+
+def chosen_for(request: Request, trials: Trials = one_by_one) -> GridChoice:
     """The grid that a run takes, whether or not the request has it: the predicted one, or the best that was tried.
 
-    Trying takes about a second, and is done for hard shapes with a mirror axis alone.
+    Trying takes about a second in one process, and is done for hard shapes with a mirror axis alone.  What was chosen
+    is remembered.
     """
     wishes = request.wishes
-    return _tried(
+    key = (
         request.target,
         request.phi,
         request.symmetry,
@@ -275,25 +294,24 @@ def chosen_for(request: Request) -> GridChoice:
         wishes.free_rim,
         request.start,
     )
+    choice = _CHOSEN.get(key)
+    if choice is None:
+        choice = _tried(request, trials)
+        while len(_CHOSEN) >= REMEMBERED:
+            _CHOSEN.pop(next(iter(_CHOSEN)), None)
+        _CHOSEN[key] = choice
+    return choice
 
 
-@lru_cache(maxsize=64)
-def _tried(
-    target: Outline,
-    phi: float,
-    symmetry: str,
-    width_mm: float,
-    least_feature_mm: float,
-    free_rim: bool,
-    start: StartShape,
-) -> GridChoice:
-    choice = choose_grid(target, symmetry, width_mm, least_feature_mm, FINEST, start)
+def _tried(request: Request, trials: Trials) -> GridChoice:
+    target, start, symmetry = request.target, request.start, request.symmetry
+    choice = predicted_for(request)
     hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
     if not hard or not choice.poses or choice.poses[0].angle is None:
         return choice
     poses = _poses(target, symmetry, start)
-    figures = ShapeFigures.of(target)
-    smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
+    figures, least_feature = ShapeFigures.of(target), request.least_feature_mm
+    smallest = SMALLEST_SHARE * request.width_mm / least_feature if least_feature > 0.0 else math.inf
     most_missing = TRIED_MISSING * (1.0 - choice.predicted_match)
     near = [
         one
@@ -307,13 +325,13 @@ def _tried(
             picked.append(one)
     if len(picked) < 2:
         return choice
-    worth = {one: _trial(target, one.grid, phi, symmetry, free_rim, start) for one in picked}
+    worth = _worth(request, picked, trials)
     best, code = max(worth, key=worth.__getitem__), "grid.best_tried"
     if worth[best] < TELLING:
         return choice
     least, most = FINER_BETWEEN
     if start.is_plain and least <= worth[best] < most:
-        finer = {one: _trial(target, one.grid, phi, symmetry, free_rim, start) for one in _finer(near, best)}
+        finer = _worth(request, _finer(near, best), trials)
         worth |= finer
         finest = max(finer, key=finer.__getitem__, default=best)
         if worth[finest] >= worth[best] + FINER_GAIN:
@@ -322,6 +340,20 @@ def _tried(
     kept = shared_symmetries(target, best.grid, symmetry, start)
     fields = {"rows": rows, "columns": columns, "count": len(worth), "percent": 100.0 * best.match}
     return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
+
+
+def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dict[_Candidate, float]:
+    """What short symmetric fits on each grid reach: the best exact IoU, less the price of uneven panels."""
+    tasks, owners = [], []
+    for one in grids:
+        for angle, kept in first_angles(request.target, one.grid, 1, request.symmetry, request.start)[:TRIED_POSES]:
+            tasks.append(TrialTask(one.grid, angle, kept, TRIAL))
+            owners.append(one)
+    worth: dict[_Candidate, float] = {}
+    for owner, found in zip(owners, trials(request, tasks), strict=True):
+        reached = found.score.iou_exact - EVENNESS * found.score.evenness.area_cv
+        worth[owner] = max(reached, worth.get(owner, reached))
+    return worth
 
 
 def _finer(candidates: list[_Candidate], best: _Candidate) -> list[_Candidate]:
@@ -352,20 +384,6 @@ def _ends_of_axis(candidate: _Candidate) -> tuple[int, int]:
     if candidate.pose is not None and candidate.pose.symmetry is Symmetry.TOP_BOTTOM:
         rows, columns = columns, rows
     return (0, 0) if rows % 2 == 0 else (1, columns % 4)
-
-
-def _trial(
-    target: Outline, grid: tuple[int, int], phi: float, symmetry: str, free_rim: bool, start: StartShape
-) -> float:
-    """What short symmetric fits on a grid reach: the best exact IoU, less the price of uneven panels."""
-    worth = []
-    for angle, kept in first_angles(target, grid, 1, symmetry, start)[:2]:
-        with one_blas_thread():
-            fit = fit_by_stages(target, grid, phi, angle, TRIAL, free_rim, kept, start)
-        deployment = deploy(fit.sheet)
-        iou = exact_iou(fit.pose.apply(deployment.outline(phi)), target)
-        worth.append(iou - EVENNESS * evenness(deployment).area_cv)
-    return max(worth)
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,7 +153,8 @@ class Pool:
     def answers(
         self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
     ) -> Generator[tuple[int, Answer] | None]:
-        """Hand out tasks (number, task) in order and yield answers as they come, None every ``wait`` seconds between.
+        """Hand out tasks (number, task) in order and yield answers as they come: None once the first are given, and
+        every ``wait`` seconds without an answer.
 
         Ends early when no worker is left, or at once when the pool already serves another run: the caller does what it
         got no answer for.  Leaving the iterator stops the workers within one step.
@@ -185,12 +186,16 @@ class Pool:
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
     ) -> Iterator[tuple[int, Answer] | None]:
         self.start()
+        begun = False
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
             for worker in self.workers:
                 if waiting and not self._winding_down and worker.ready and worker.assignment is None:
                     number, task = waiting.popleft()
                     worker.assignment = Assignment(batch, number, request, task)
                     worker.send(worker.assignment)  # a dead one is noticed by its listener
+            if not begun:
+                begun = True
+                yield None
             try:
                 worker, report = self._reports.get(timeout=wait)
             except Empty:

@@ -20,7 +20,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_from_uniform, fit_shape
+from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import CONVERGED, Stage
@@ -127,6 +127,26 @@ class GuidedTask:
             target = fit_target(request, self.symmetry)
             fit = fit_from_uniform(target, grid, request.phi, self.angle, self.way, wishes, self.symmetry, stopped)
         (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
+        return Answer(found, fit.evaluations + 1)
+
+
+@dataclass(frozen=True, slots=True)
+class TrialTask:
+    """A short fit from the uniform sheet of a grid that may be chosen; the request need not have a grid."""
+
+    grid: tuple[int, int]
+    angle: float
+    symmetry: Symmetry | None
+    stages: tuple[Stage, ...]
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+        """Fit by the stages, without a guide."""
+        free, start = request.wishes.free_rim, request.start
+        with one_blas_thread():
+            fit = fit_by_stages(
+                request.target, self.grid, request.phi, self.angle, self.stages, free, self.symmetry, start
+            )
+        (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
         return Answer(found, fit.evaluations + 1)
 
 

@@ -93,13 +93,12 @@ def generating(
     """
     importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
-    from kirigami_studio.pipeline.auto_grid import chosen_for
-    from kirigami_studio.pipeline.run import run
+    from kirigami_studio.pipeline.run import grid_choice, run
     from kirigami_studio.project.as_cut import jam_angles
 
     yield ModelFound(digest_of(request.variant))
     if request.grid is None and request.near is None:
-        choice = chosen_for(request)
+        choice = grid_choice(request)
         yield GridChosen(choice.grid, choice.reason)
     for event in run(request, cancel):
         match event:

@@ -30,6 +30,11 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import with_grid
 
 
+@pytest.fixture(autouse=True)
+def nothing_remembered(monkeypatch) -> None:
+    monkeypatch.setattr(auto_grid, "_CHOSEN", {})
+
+
 @pytest.mark.parametrize("name", names())
 def test_that_the_grid_has_what_the_shape_asks_for(name: str) -> None:
     choice = choose_grid(load(name))
@@ -173,14 +178,12 @@ def test_that_a_hard_shape_with_an_axis_takes_the_grid_that_short_fits_rank_firs
     star = load("star")
     tried: list[tuple[int, int]] = []
 
-    def trial(target, grid, phi, symmetry, free_rim, start) -> float:
-        tried.append(grid)
-        return 0.9 if grid == max(tried) else 0.5 + 0.001 * len(tried)
+    def worth(request, grids, trials) -> dict:
+        tried.extend(one.grid for one in grids)
+        return {one: 0.9 if one.grid == max(tried) else 0.5 + 0.001 * place for place, one in enumerate(grids)}
 
-    monkeypatch.setattr(auto_grid, "_trial", trial)
-    auto_grid._tried.cache_clear()
+    monkeypatch.setattr(auto_grid, "_worth", worth)
     choice = chosen_for(Request(star, None))
-    auto_grid._tried.cache_clear()
     assert 2 <= len(tried) <= auto_grid.MOST_TRIED
     assert choice.grid == max(tried) and choice.code == "grid.best_tried"
     assert str(len(tried)) in choice.reason
@@ -189,8 +192,7 @@ def test_that_a_hard_shape_with_an_axis_takes_the_grid_that_short_fits_rank_firs
 
 
 def test_that_easy_shapes_and_shapes_without_an_axis_take_the_predicted_grid(monkeypatch) -> None:
-    monkeypatch.setattr(auto_grid, "_trial", lambda *given: pytest.fail("a trial"))
-    auto_grid._tried.cache_clear()
+    monkeypatch.setattr(auto_grid, "_worth", lambda *given: pytest.fail("a trial"))
     for name in ("heart", "hexagon", "letter-l"):
         request = Request(load(name), None)
         assert chosen_for(request) == predicted_for(request)
@@ -201,12 +203,11 @@ def test_that_finer_grids_are_tried_where_none_of_the_others_will_do(monkeypatch
     tried: list[tuple[int, int]] = []
     gain = auto_grid.FINER_GAIN
 
-    def trial(target, grid, phi, symmetry, free_rim, start) -> float:
-        tried.append(grid)
-        return 0.96 + (gain if max(grid) > auto_grid.FINEST else 0.0) + 1e-5 * grid[1]
+    def worth(request, grids, trials) -> dict:
+        tried.extend(one.grid for one in grids)
+        return {one: 0.96 + (gain if max(one.grid) > auto_grid.FINEST else 0.0) + 1e-5 * one.grid[1] for one in grids}
 
-    monkeypatch.setattr(auto_grid, "_trial", trial)
-    auto_grid._tried.cache_clear()
+    monkeypatch.setattr(auto_grid, "_worth", worth)
     choice = chosen_for(Request(butterfly, None))
     finer = [grid for grid in tried if max(grid) > auto_grid.FINEST]
     coarser = [grid for grid in tried if grid not in finer]
@@ -218,9 +219,8 @@ def test_that_finer_grids_are_tried_where_none_of_the_others_will_do(monkeypatch
     kinds = [(rows % 2, columns % 4 if rows % 2 else 0) for rows, columns in finer]
     assert len(set(kinds)) == len(kinds)
     monkeypatch.setattr(auto_grid, "FINER_GAIN", 2 * gain)
-    auto_grid._tried.cache_clear()
+    auto_grid._CHOSEN.clear()
     kept = chosen_for(Request(butterfly, None))
-    auto_grid._tried.cache_clear()
     assert kept.code == "grid.best_tried" and kept.grid in coarser, "a finer grid has to be worth its cuts"
 
 
@@ -229,16 +229,16 @@ def test_that_no_finer_grid_is_tried_where_one_would_not_help_or_is_not_needed(
     worth: float, start: str, monkeypatch
 ) -> None:
     tried: list[tuple[int, int]] = []
-    monkeypatch.setattr(auto_grid, "_trial", lambda target, grid, *given: tried.append(grid) or worth)
-    auto_grid._tried.cache_clear()
+    monkeypatch.setattr(
+        auto_grid, "_worth", lambda request, grids, trials: {one: tried.append(one.grid) or worth for one in grids}
+    )
     chosen_for(Request(load("butterfly"), None, start=start_shape(start)))
-    auto_grid._tried.cache_clear()
     assert tried and max(max(grid) for grid in tried) <= auto_grid.FINEST
 
 
 def test_that_the_predicted_grid_is_taken_where_all_short_fits_are_lost(monkeypatch) -> None:
-    monkeypatch.setattr(auto_grid, "_trial", lambda target, grid, *given: 0.3 + 0.01 * grid[0])
-    auto_grid._tried.cache_clear()
+    monkeypatch.setattr(
+        auto_grid, "_worth", lambda request, grids, trials: {one: 0.3 + 0.01 * one.grid[0] for one in grids}
+    )
     request = Request(load("bone"), None)
     assert chosen_for(request) == predicted_for(request)
-    auto_grid._tried.cache_clear()

@@ -16,10 +16,10 @@ from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.pipeline import worker
+from kirigami_studio.pipeline import auto_grid, worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import Watch, answers, gains
+from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
 from kirigami_studio.pipeline.tasks import Answer, PolishTask, Task, scored
 from kirigami_studio.pipeline.worker import Ready
 
@@ -205,3 +205,17 @@ def test_that_a_worker_ends_with_its_input_and_loads_neither_torch_nor_qt() -> N
     probe = "import kirigami_studio.pipeline.worker, sys; print(sorted({'torch', 'PySide6'} & set(sys.modules)))"
     loaded = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, timeout=60, check=True)
     assert loaded.stdout.strip() == "[]"
+
+
+def test_that_workers_choose_the_grid_that_one_process_chooses_and_that_it_is_remembered(pool, monkeypatch) -> None:
+    wait_until_ready(pool)
+    request = Request(load("star"), None)
+    monkeypatch.setattr(auto_grid, "_CHOSEN", {})
+    alone = auto_grid.chosen_for(request)
+    monkeypatch.setattr(auto_grid, "_CHOSEN", {})
+    batches: list[int] = []
+    by_workers = pool.answers
+    monkeypatch.setattr(pool, "answers", lambda *given: batches.append(len(given[1])) or by_workers(*given))
+    assert grid_choice(request, pool) == alone
+    assert batches == [auto_grid.TRIED_POSES * int(str(dict(alone.fields)["count"]))]
+    assert grid_choice(request, pool) == alone and len(batches) == 1
