@@ -11,10 +11,9 @@ none of these will do.
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 import shapely
@@ -265,12 +264,8 @@ def predicted_for(request: Request) -> GridChoice:
     )
 
 
-class Trials(Protocol):
-    """Whoever carries out the short fits that decide between grids."""
-
-    def __call__(self, request: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:
-        """What each of them made, in their order."""
-        ...
+#: Whoever carries out the short fits that decide between grids: what each of them made, in their order.
+Trials = Callable[[Request, Sequence[TrialTask]], list[Candidate]]
 
 
 def one_by_one(request: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:

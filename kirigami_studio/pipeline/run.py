@@ -37,6 +37,7 @@ from kirigami_studio.pipeline.tasks import (
     PolishTask,
     SearchTask,
     Task,
+    TrialTask,
     TrimTask,
     fit_target,
     scored,
@@ -172,10 +173,10 @@ def grid_choice(request: Request, pool: Pool | None = None) -> GridChoice:
     TargetError
         A symmetry is asked for that the target does not have.
     """
-    ready = pool or shared_pool()
-    ready = ready if ready.usable and ready.ready else None
+    workers = pool or shared_pool()
+    ready = workers if workers.usable and workers.ready else None
 
-    def trials(asked: Request, tasks: Sequence[Task]) -> list[Candidate]:
+    def trials(asked: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:
         made = dict(filter(None, answers(ready, asked, tasks, Watch(never, time.perf_counter()))))
         return [found for place in range(len(tasks)) if (found := made[place].candidate) is not None]
 
@@ -342,7 +343,7 @@ class _Work:
                 yield CandidateImproved(answer.candidate.index, answer.candidate)
             yield POLISHING.progress(done, total)
 
-    def guide(self) -> Iterator[Event]:
+    def guide(self) -> Generator[Event]:
         """Fit from the uniform sheet in several poses."""
         tasks = fits_from_uniform(self.request)
         for report in self._carried_out(tasks, GUIDING, 0, len(tasks)):
@@ -482,7 +483,9 @@ def answers(
     The caller looks at the cancel flag at every yield; closing this iterator stops the work within one step.
     """
     waiting = dict(enumerate(tasks))
-    by_workers = iter(()) if pool is None or watch.stopped() else _by_workers(pool, request, waiting, watch)
+    by_workers: Iterator[tuple[int, Answer] | None] = iter(())
+    if pool is not None and not watch.stopped():
+        by_workers = _by_workers(pool, request, waiting, watch)
     yield next(by_workers, None)
     for report in by_workers:
         if report is not None:
