@@ -84,6 +84,8 @@ class AlignedRun:
 
     Attributes
     ----------
+    name : str
+        That of the folder.
     start : str
         What it began with: ``bundled prior``, or the network's kind and the first digits of the weights' SHA-256.
     reward : str
@@ -93,10 +95,16 @@ class AlignedRun:
         By rising number of calls; the first one is the start.
     """
 
+    name: str
     start: str
     reward: str
     settings: dict[str, object]
     snapshots: tuple[Snapshot, ...]
+
+    def controls(self, other: AlignedRun) -> bool:
+        """Whether this run is what another one would be without its reward."""
+        own, others = self.settings | {"reward": ""}, other.settings | {"reward": ""}
+        return self.reward == CONTROL != other.reward and own == others
 
     @classmethod
     def read(cls, folder: Path) -> AlignedRun:
@@ -120,7 +128,7 @@ class AlignedRun:
         digest = str(settings["start"])
         backbone = backbone_of(load_weights(Path(snapshots[0].source)).network.shape)
         start = "bundled prior" if digest == digest_of("prior") else f"{backbone} {digest[:8]}"
-        return cls(start, str(settings["reward"]), settings, tuple(snapshots))
+        return cls(folder.resolve().name, start, str(settings["reward"]), settings, tuple(snapshots))
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +182,7 @@ class SnapshotRow:
     cuttable, closes, even, good : float
         Shares of samples that can be cut, that close, that are even, and that are good first designs.
     over_start, over_control : Beside or None
-        None for the start itself, and where there is no control after as many calls.
+        None for the start itself, and where no run without a reward has the same settings and as many calls.
     paper : PaperRow or None
     """
 
@@ -210,7 +218,7 @@ class SnapshotRow:
 
 @dataclass(frozen=True, slots=True)
 class FamilyTable:
-    """Rows by start and reward, on one family of targets."""
+    """Rows by start and run, on one family of targets."""
 
     targets: int
     uniform_siou: float
@@ -219,9 +227,9 @@ class FamilyTable:
 
     def sentences(self) -> Iterator[str]:
         """The table for people."""
-        for start, rewards in self.starts.items():
-            for reward, rows in rewards.items():
-                yield f"  {start}, {reward}"
+        for start, runs in self.starts.items():
+            for name, rows in runs.items():
+                yield f"  {start}, {name}"
                 yield (
                     f"    {'calls':>6}{'sIoU %':>8}{'':17}{'exact %':>8}{'success %':>10}{'TV':>7}{'':8}{'log':>7}"
                     f"{'distance':>9}{'CV':>7}{'cuttable':>10}{'closes':>8}{'good':>7}"
@@ -231,7 +239,7 @@ class FamilyTable:
 
 @dataclass(frozen=True, slots=True)
 class GrpoFigures:
-    """The tables by family, and what their runs share; ``training`` has the settings by start and reward."""
+    """The tables by family, and what their runs share; ``training`` has the settings by start and run."""
 
     settings: dict[str, object]
     seeds: tuple[int, ...]
@@ -284,13 +292,13 @@ def measure_grpo(
     Raises
     ------
     UsageError
-        No targets, or two runs of one reward from one start.
+        No targets, or two runs of one name from one start.
     """
     if not targets or not all(targets.values()):
         raise UsageError("benchmark.no_targets")
-    names = [(run.start, run.reward) for run in runs]
+    names = [(run.start, run.name) for run in runs]
     if len(set(names)) < len(names):
-        raise UsageError("benchmark.grpo_runs_alike", names=", ".join(f"{start}: {reward}" for start, reward in names))
+        raise UsageError("benchmark.grpo_runs_alike", names=", ".join(f"{start}: {name}" for start, name in names))
     # Runs from one start share its snapshot.
     sources = {one.digest: one.source for run in reversed(runs) for one in reversed(run.snapshots)}
     samples = {
@@ -307,7 +315,7 @@ def measure_grpo(
     store.complete([run for some in samples.values() for run in some], judged, workers, report)
     training: dict[str, dict[str, dict[str, object]]] = {}
     for run in runs:
-        training.setdefault(run.start, {})[run.reward] = run.settings
+        training.setdefault(run.start, {})[run.name] = run.settings
     families = {
         family: _table(
             runs,
@@ -344,17 +352,17 @@ def _table(
 ) -> FamilyTable:
     """Rows of one family, from the records (target by target, seed by seed) of every snapshot by its digest."""
     first = next(iter(records.values()))
-    controls = {(run.start, one.name): one.digest for run in runs if run.reward == CONTROL for one in run.snapshots}
     starts: dict[str, dict[str, tuple[SnapshotRow, ...]]] = {}
     for run in runs:
         start = _Sampled.of(records[run.snapshots[0].digest], records[run.snapshots[0].digest], numbers)
+        controls = {one.name: one.digest for other in runs if other.controls(run) for one in other.snapshots}
         rows = []
         for one in run.snapshots:
             own = _Sampled.of(records[one.digest], start.records, numbers)
-            control = controls.get((run.start, one.name)) if run.reward != CONTROL and one.calls else None
+            control = controls.get(one.name) if one.calls else None
             beside = None if control is None else _Sampled.of(records[control], start.records, numbers)
             rows.append(_row(run.reward, one.calls, own, start, beside, seeds))
-        starts.setdefault(run.start, {})[run.reward] = tuple(rows)
+        starts.setdefault(run.start, {})[run.name] = tuple(rows)
     return FamilyTable(targets, mean_of(first, "uniform_siou"), mean_of(first, "uniform_iou"), starts)
 
 

@@ -170,32 +170,35 @@ def _grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]
     yield ""
     yield (
         "What `train grpo` made of a prior, one sample a target in eight steps; seeds "
-        f"{', '.join(map(str, figures['seeds']))}. *none* is the control: every design weighs the same, no reward. "
-        "Differences are in points of sIoU, paired by target and noise; TV is the paper's sum / (m n), *log* the mean "
+        f"{', '.join(map(str, figures['seeds']))}. *Control*: a run of the same settings without any "
+        "reward, in which every design weighs the same. Differences are in points of sIoU, paired by target and "
+        "noise; TV is the paper's sum / (m n), *log* the mean "
         f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
         "`kirigami-studio benchmark grpo`"
     )
     for family, table in figures["families"].items():
-        for start, rewards in table["starts"].items():
+        for start, runs in table["starts"].items():
             yield ""
             yield f"{family.capitalize()}, {table['targets']} targets, from the {start}"
             yield ""
             yield (
-                "| reward | calls | sIoU | 95 % | over start | over none | exact IoU | success | TV | TV over none | "
-                "log | distance |"
+                "| run | calls | sIoU | 95 % | over start | over control | exact IoU | success | TV | TV over control "
+                "| log | distance |"
             )
             yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
-            first = next(iter(rewards.values()))[0]
-            yield _grpo_row("start", first)
-            for reward, rows in rewards.items():
-                yield _grpo_row(reward, rows[-1])
+            yield _grpo_row("start", next(iter(runs.values()))[0])
+            for name, rows in runs.items():
+                yield _grpo_row(name, rows[-1])
+    for start, training in figures["training"].items():
+        yield ""
+        yield f"Trained from the {start}: {_trained(training)}."
     yield from _made_table(figures)
     for place, start in enumerate(next(iter(figures["families"].values()))["starts"], 1):
         for family, table in figures["families"].items():
             for title, name, factor in (("sIoU (%)", "siou", 100.0), ("TV", "tv", 1.0)):
                 curves = tuple(
-                    Curve(reward, tuple((float(row["calls"]), factor * row[name]) for row in rows))
-                    for reward, rows in table["starts"][start].items()
+                    Curve(run, tuple((float(row["calls"]), factor * row[name]) for row in rows))
+                    for run, rows in table["starts"][start].items()
                 )
                 picture = f"benchmark-grpo-{place}-{family}-{name}.svg"
                 pictures[picture] = LineChart("environment calls", title, curves).svg()
@@ -214,6 +217,19 @@ def _grpo_row(name: str, row: Figures) -> str:
     )
 
 
+def _trained(training: Mapping[str, Figures]) -> str:
+    """Settings of runs from one start: those in which they differ by run, then those that all share."""
+    names = [name for name in next(iter(training.values())) if name != "start"]
+    alike = [name for name in names if len({str(settings[name]) for settings in training.values()}) == 1]
+
+    def told(settings: Figures, chosen: Sequence[str]) -> str:
+        return ", ".join(f"{name} {settings[name]}" for name in chosen)
+
+    own = [name for name in names if name not in alike]
+    each = [f"*{run}* ({told(settings, own)})" for run, settings in training.items()]
+    return f"{'; '.join(each)}; all with {told(next(iter(training.values())), alike)}"
+
+
 def _made_table(figures: Figures) -> Iterator[str]:
     settings = figures["settings"]
     yield ""
@@ -224,11 +240,11 @@ def _made_table(figures: Figures) -> Iterator[str]:
         f"that lacks no more than {settings['may_lack']:g} of that of the start's sample from the same noise."
     )
     yield ""
-    yield "| family | start | reward | CV | cuttable | closes | even | good | good over start |"
+    yield "| family | start | run | CV | cuttable | closes | even | good | good over start |"
     yield "|---|---|---|---|---|---|---|---|---|"
     for family, table in figures["families"].items():
-        for start, rewards in table["starts"].items():
-            named = [("start", next(iter(rewards.values()))[0]), *((name, rows[-1]) for name, rows in rewards.items())]
+        for start, runs in table["starts"].items():
+            named = [("start", next(iter(runs.values()))[0]), *((name, rows[-1]) for name, rows in runs.items())]
             for name, row in named:
                 shares = " | ".join(_share(row[share]) for share in ("cuttable", "closes", "even", "good"))
                 over = _points(row["over_start"], "good", digits=1)

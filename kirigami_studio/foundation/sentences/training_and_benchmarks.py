@@ -95,7 +95,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "--keep-at 0 10000."
     ),
     "benchmark.grpo_runs_alike": mark(
-        "Two of these runs have the same start and reward: {names}. Compare them in two calls."
+        "Two of these runs have the same start and name: {names}. Compare them in two calls."
     ),
     "benchmark.no_targets": mark("This suite needs at least one target, got none."),
     "benchmark.unknown_method": mark("There is no method called '{method:.40}'. Choose among {choices}."),

@@ -102,6 +102,7 @@ def test_that_the_report_has_the_table_and_its_curves(
     report = made_from(tmp_path)
     (rewards,) = told["families"]["targets"]["starts"].values()
     assert f"| accuracy | 24 | **{100 * rewards['accuracy'][-1]['siou']:.2f}**" in report.text
+    assert "*accuracy* (reward accuracy); *none* (reward none); all with calls 24, group 3, batch 2" in report.text
     assert "(94.20)" in report.text and "## Table 3: GRPO" in report.text
     assert list(report.pictures) == ["benchmark-grpo-1-targets-siou.svg", "benchmark-grpo-1-targets-tv.svg"]
     assert all(f"]({name})" in report.text for name in report.pictures)
@@ -113,6 +114,9 @@ def test_that_runs_without_kept_weights_and_like_runs_are_refused(folders: dict[
         AlignedRun.read(tmp_path)
     assert empty.value.code == "benchmark.no_weights_kept"
     run = AlignedRun.read(folders["none"])
+    other = replace(run, settings=run.settings | {"reward": "accuracy"}, reward="accuracy")
+    assert run.controls(other) and not other.controls(run) and not run.controls(run)
+    assert not run.controls(replace(other, settings=other.settings | {"learning_rate": 1.0}))
     with pytest.raises(UsageError) as alike:
         measure_grpo(TARGETS, [run, run], (0,), RunStore(suite_settings()))
     assert alike.value.code == "benchmark.grpo_runs_alike"

@@ -72,6 +72,7 @@ def test_that_weights_are_aligned_and_written_with_their_manifest(
         (2, ["--calls", "3"], "at least 4 environment calls"),
         (2, ["--reward", "balanced", "--calls", "100"], "at least 132 environment calls"),
         (2, ["--average-decay", "1"], "below 1"),
+        (2, ["--keep-at", "20000"], "Choose fewer"),
         (2, ["--minutes", "0"], "--minutes"),
         (2, ["--device", "abacus"], "abacus"),
     ],
