@@ -57,6 +57,26 @@ def test_that_the_start_is_a_choice_of_named_outlines_and_one_undo_step(window: 
     assert controller.document.settings.start == RECTANGLE
 
 
+def test_that_a_start_that_is_not_a_rectangle_can_be_held_more_softly(window: MainWindow) -> None:
+    settings, controller = window.settings, window.controller
+    settings.more.setChecked(True)
+    weight = settings.start_weight
+    assert not weight.isEnabled() and weight.value() == 1.0
+    choose(window, "circle")
+    assert weight.isEnabled()
+    weight.setValue(0.05)
+    weight.editingFinished.emit()
+    assert controller.document.settings.start == replace(start_shape("circle"), weight=0.05)
+    assert settings.start.currentData() == "circle", "a listed start stays one at another weight"
+    choose(window, "hexagon")
+    assert controller.document.settings.start == replace(start_shape("hexagon"), weight=0.05)
+    window.commands["undo"].trigger()
+    window.commands["undo"].trigger()
+    assert controller.document.settings.start == start_shape("circle") and weight.value() == 1.0
+    window.commands["redo"].trigger()
+    assert weight.value() == 0.05
+
+
 def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: Until) -> None:
     settings, controller = heart.settings, heart.controller
     until(lambda: settings.auto.accessibleDescription() != "")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import secrets
+from dataclasses import replace
 
 from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
@@ -24,7 +25,7 @@ from kirigami_studio.gui.panels.number_field import DecimalField
 from kirigami_studio.gui.panels.second_target_row import SecondTargetRow
 from kirigami_studio.gui.panels.start_tile import OTHER_STARTS, STARTS, listed_start
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
@@ -68,12 +69,21 @@ RIMS = (
 )
 #: Value of the entry for a shape that was loaded.
 LOADED_START = "loaded"
+#: Least weight of a start that can be set here.
+LIGHTEST_START = 0.01
 START = tr("What the sheet looks like while it is flat.")
 AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows.")
 REGULAR = tr(
     "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks the designs "
     "again at once; letting it go fits them again."
 )
+START_WEIGHT = tr(
+    "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the target is matched "
+    "more closely and the start less.",
+    low=LIGHTEST_START,
+    most=HEAVIEST,
+)
+RECTANGLES_ARE_EXACT = tr("A rectangle is matched exactly at any weight.")
 #: Pixels that the rows get at least, where a small window scrolls them.
 LEAST_HEIGHT = 148
 #: Positions of the slider.
@@ -181,7 +191,7 @@ class SettingsPanel(Card):
         self.more = ToolButton(
             "moreSettings",
             "down",
-            tr("More settings: second target, seed, model, polish, preference, rim, search."),
+            tr("More settings: second target, seed, model, polish, preference, rim, start weight, search."),
             checkable=True,
         )
         self.more.setText(tr("More"))
@@ -189,6 +199,12 @@ class SettingsPanel(Card):
         self.variant = ChoiceBox("variant", tr("Generator variant"))
         self.polish = ChoiceBox("polish", tr("Polish"), [(steps, title, about) for title, steps, about in POLISH])
         self.prefer = ChoiceBox("prefer", tr("What polishing prefers"), PREFER)
+        self.start_weight = DecimalField()
+        self.start_weight.setObjectName("startWeight")
+        self.start_weight.setRange(LIGHTEST_START, HEAVIEST)
+        self.start_weight.setDecimals(2)
+        self.start_weight.setSingleStep(0.1)
+        self.start_weight.setAccessibleName(tr("Weight of the start"))
         self.search = QCheckBox(tr("Se&arch"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -246,8 +262,9 @@ class SettingsPanel(Card):
         third.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
         fourth.addLayout(captioned(tr("Pol&ish"), self.polish, self.polish), 1)
         fourth.addLayout(captioned(tr("&Prefer"), self.prefer, self.prefer), 1)
-        fifth.addLayout(captioned(tr("Rim"), self.rim, self.rim), 1)
-        fifth.addLayout(captioned("", self.search, self.search), 1)
+        fifth.addLayout(captioned(tr("Rim"), self.rim, self.rim), 2)
+        fifth.addLayout(captioned(tr("Start weight"), self.start_weight, self.start_weight), 2)
+        fifth.addLayout(captioned("", self.search, self.search), 3)
 
     def _connect(self) -> None:
         self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
@@ -275,9 +292,12 @@ class SettingsPanel(Card):
         self.prefer.activated.connect(lambda _: self.changed.emit({"prefer": self.prefer.currentData()}))
         self.search.toggled.connect(lambda on: self.changed.emit({"search": int(on)}))
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
-        for box in (self.rows, self.columns, self.angle, self.candidates, self.seed):
+        self.start_weight.valueChanged.connect(
+            lambda weight: self.changed.emit({"start": replace(self._start, weight=weight)})
+        )
+        for box in (self.rows, self.columns, self.angle, self.candidates, self.seed, self.start_weight):
             box.setKeyboardTracking(False)
-            compact(box, 48)
+            compact(box, 42 if box in (self.rows, self.columns) else 48)  # two digits, and a scroll bar beside the row
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
@@ -292,7 +312,7 @@ class SettingsPanel(Card):
             self._show_start(self._start)
             self.other_start_wanted.emit(chosen)
         elif chosen != LOADED_START:
-            self.changed.emit({"start": listed_start(chosen)})
+            self.changed.emit({"start": replace(listed_start(chosen), weight=self._start.weight)})
             self.edited.emit()
 
     def _move_regular(self) -> None:
@@ -394,7 +414,8 @@ class SettingsPanel(Card):
         """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
         self._start = start
         listed = self.start.findData(start.name)
-        is_listed = 0 <= listed < len(STARTS) and start == listed_start(start.name)
+        plain = replace(start, weight=USUAL_WEIGHT)
+        is_listed = 0 <= listed < len(STARTS) and plain == listed_start(start.name)
         with QSignalBlocker(self.start):
             loaded = self.start.findData(LOADED_START)
             if loaded >= 0:
@@ -404,6 +425,11 @@ class SettingsPanel(Card):
                 self.start.insert_choice(listed, LOADED_START, start.name, "")
             self.start.setCurrentIndex(listed)
         self.start.setToolTip(f"{START}\n{self.start.about}")
+        with QSignalBlocker(self.start_weight):
+            self.start_weight.setValue(start.weight)
+        held = start.outline is not None
+        self.start_weight.setEnabled(held)
+        self.start_weight.setToolTip(START_WEIGHT if held else RECTANGLES_ARE_EXACT)
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
