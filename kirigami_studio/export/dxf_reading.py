@@ -8,7 +8,7 @@ whatever a file holds, turns curves into chords in mm, and notes what a cutter w
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -57,14 +57,32 @@ CURVES = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE"
 RISKY_CURVES = frozenset({"ELLIPSE", "SPLINE"})
 
 
+#: Files that were read last, by their bytes, and how many are kept: one that was read back is mostly verified next.
+_READ: OrderedDict[bytes, FileContent] = OrderedDict()
+KEPT_FILES = 4
+
+
 def read_with_ezdxf(path: Path) -> FileContent:
-    """Read a DXF's header, layers and polylines.
+    """Read a DXF's header, layers and polylines; the bytes of a file that was read just before are not parsed again.
 
     Raises
     ------
     ExportError
         The file does not read, or ezdxf's audit finds an error.
     """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
+    found = _READ.get(content)
+    if found is None:
+        found = _READ[content] = _read(path)
+        while len(_READ) > KEPT_FILES:
+            _READ.popitem(last=False)
+    return found
+
+
+def _read(path: Path) -> FileContent:
     try:
         document = readfile(path)
         errors = document.audit().errors

@@ -21,6 +21,8 @@ from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 Until = Callable[[Callable[[], bool]], None]
 #: Designs of a run that a test stops after the first ones.
 MANY = 100
+#: Voids of a grid on which each design is made in milliseconds; nothing here depends on how well it matches.
+SMALL = (4, 5)
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -33,15 +35,15 @@ def test_that_a_run_has_as_many_designs_as_the_settings_say() -> None:
 def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     heart: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    heart.settings.rows.setValue(6)
-    heart.settings.columns.setValue(6)
+    heart.settings.rows.setValue(4)
+    heart.settings.columns.setValue(5)
     heart.settings.candidates.setValue(3)
     before = heart.controller.document
     qtbot.mouseClick(heart.run.generate, LEFT)
     assert heart.controller.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
     until(lambda: not heart.controller.running)
     found = heart.controller.document.candidates
-    assert found == USUAL.ranked(found) and len(found) == 3 and found[0].sheet.grid == (6, 6)
+    assert found == USUAL.ranked(found) and len(found) == 3 and found[0].sheet.grid == SMALL
     assert [entry.candidate for entry in heart.gallery.view.model_.entries] == list(found)
     assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
     assert heart.stage.view.phi == pytest.approx(0.0)
@@ -57,6 +59,7 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
 
 @pytest.mark.torch
 def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
     before = heart.controller.document
     heart.commands["generate"].trigger()
@@ -90,6 +93,7 @@ def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
 
 @pytest.mark.torch
 def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
     before = heart.controller.document
     qtbot.keyClick(heart, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
@@ -104,6 +108,7 @@ def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, q
 
 def stop_early(heart: MainWindow, until: Until, count: int = MANY) -> None:
     """Begin a run of many designs and stop it by Esc after the first few."""
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(count)
     heart.commands["generate"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
@@ -144,6 +149,7 @@ def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(hea
 
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: MainWindow, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(2)
     heart.commands["generate"].trigger()
     until(lambda: not heart.controller.running)
@@ -162,6 +168,7 @@ def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: 
 
 @pytest.mark.torch
 def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart: MainWindow, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(1)
     heart.controller.change_settings(polish=0)
     heart.commands["generate"].trigger()
@@ -177,6 +184,7 @@ def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart
 
 @pytest.mark.torch
 def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
     heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 0)
@@ -247,6 +255,7 @@ def test_that_a_changed_setting_shows_in_the_document_and_back(heart: MainWindow
 
 @pytest.mark.torch
 def test_that_polish_off_leaves_designs_as_drawn(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
+    heart.controller.change_settings(grid=SMALL)
     heart.settings.candidates.setValue(1)
     heart.settings.polish.setFocus()
     qtbot.keyClick(heart.settings.polish, Qt.Key.Key_Home)

@@ -17,6 +17,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.jobs import vertex_drag
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
 from kirigami_studio.gui.jobs.vertex_drag import DragStart, Follower
@@ -40,7 +41,9 @@ def large_document() -> Document:
     fields = [RatioField.from_log10(0.03 * draw.normal(size=(LARGE, LARGE))) for _ in range(2)]
     score = evaluate(deploy(fields[0]), target, 0.0)
     found = [Candidate(Sheet(field), score, seed=1, index=index) for index, field in enumerate(fields)]
-    return edits.set_candidates(edits.set_target(Document(), target).document, found, {}).document
+    # Straight connectors are planned soonest, and what a drag does depends on none.
+    start = edits.set_cut_options(Document(), style=ConnectorStyle.STRAIGHT).document
+    return edits.set_candidates(edits.set_target(start, target).document, found, {}).document
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -42,7 +43,9 @@ def design(motion: Deployment, target: Outline) -> Candidate:
     return Candidate(motion.sheet, evaluate(motion, target, 0.0), seed=0, index=0)
 
 
+@cache
 def verdict_on(design: Candidate, settings: FabricationSettings) -> Verdict:
+    """Judged once: tests ask for the same verdict several times."""
     try:
         return assess(design, settings).verdict
     except KirigamiError as error:
