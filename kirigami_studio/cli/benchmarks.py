@@ -7,7 +7,7 @@ import contextlib
 import io
 import json
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from importlib import import_module
@@ -268,20 +268,32 @@ def _print_in_folder(
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
 
 
+def quick_suites(folder: Path) -> Iterator[list[str]]:
+    """Every suite of the report as small as it can be, as words of ``benchmark`` that write into ``folder``."""
+    from kirigami_studio.benchmark.report.whole import AS_CUT, GENERATORS, GRID_SWEEP, SHAPES, SOLVERS
+
+    small = ["--count", "2", "--seeds", "0", "--processes", "1"]
+    fits = ["--methods", "sample,sample-fit", "--evaluations", "40", "--polish", "5"]
+    solvers, sweep = str((folder / SOLVERS).parent), str((folder / GRID_SWEEP).parent)
+    yield ["solvers", *small, "--evaluations", "40", "--polish", "5", "--out", solvers]
+    yield ["best-of-k", "--count", "2", "--processes", "1", *fits, "--k", "2", "--out", solvers]
+    yield ["grid-sweep", "--targets", "heart", "--sizes", "6", "10", "16", "--processes", "1", *fits, "--out", sweep]
+    yield ["generators", *small, "--k", "4", "--sweep", "--out", str((folder / GENERATORS).parent)]
+    shapes = ["--targets", "hexagon", "drop", "--grid", "auto", "--k", "4", "--polish", "5"]
+    yield ["designs", *shapes, "--out", str(folder / SHAPES / "quick.json")]
+    sheet = ["--targets", "hexagon", "--connectors-mm", "0.2", "--grid", "6x6", "--k", "4"]
+    yield ["as-cut", *sheet, "--out", str(folder / AS_CUT)]
+
+
 def report(arguments: argparse.Namespace) -> int:
     """The report of finished suites; with ``--quick``, tiny suites are run first."""
-    from kirigami_studio.benchmark.report import GENERATORS, SOLVERS, made_from
+    from kirigami_studio.benchmark.report.whole import made_from
     from kirigami_studio.cli.parser import build_parser
 
     folder = Path(arguments.runs)
     if arguments.quick:
-        small = ["--count", "2", "--seeds", "0", "--processes", "1"]
-        for suite, place, more in (
-            ("solvers", SOLVERS, ["--evaluations", "40", "--polish", "5"]),
-            ("generators", GENERATORS, ["--k", "4", "--sweep"]),
-        ):
-            words = ["benchmark", suite, *small, *more, "--out", str((folder / place).parent)]
-            asked = build_parser().parse_args(words)
+        for words in quick_suites(folder):
+            asked = build_parser().parse_args(["benchmark", *words])
             with contextlib.redirect_stdout(io.StringIO()):
                 asked.run(asked)
     files = [str(path) for path in made_from(folder).save(Path(arguments.out))]

@@ -717,9 +717,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("benchmark report", "write tables and plots of finished suites beside the paper's numbers",
                "benchmarks:report", (
         option("--runs", required=True, metavar="FOLDER",
-               help="folder with solvers/, generators/ and grpo/ (--out of these suites) and training/, one run in "
-                    "each folder there"),
-        option("--quick", action="store_true", help="run solvers and generators first, on two targets of each family"),
+               help="folder with solvers/ (best-of-k, too), grid-sweep/, generators/, grpo/ (--out of these suites), "
+                    "shapes/*.json (designs), as-cut.json, and training/, one run in each folder there"),
+        option("--quick", action="store_true", help="run every suite but grpo first, as small as it can be"),
         option("--out", required=True, help="Markdown file to write; pictures come beside it"),
         JSON,
     ), ("kirigami-studio benchmark report --runs runs --out report.md",

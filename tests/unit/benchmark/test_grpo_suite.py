@@ -18,7 +18,7 @@ from kirigami_studio.benchmark.grpo_suite import (
     measure_grpo,
     suite_settings,
 )
-from kirigami_studio.benchmark.report import made_from
+from kirigami_studio.benchmark.report.whole import made_from
 from kirigami_studio.benchmark.run_store import RunStore
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.weights import load_model, store_model

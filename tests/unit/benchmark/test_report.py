@@ -10,7 +10,7 @@ import pytest
 from command_line import answer
 
 from kirigami_studio.benchmark.line_chart import Curve, LineChart
-from kirigami_studio.benchmark.report import made_from
+from kirigami_studio.benchmark.report.whole import made_from
 from kirigami_studio.foundation.errors import KirigamiError
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -38,8 +38,9 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     out = runs / "report.md"
     files = answer(capsys, "benchmark", "report", "--quick", "--runs", runs, "--out", out, "--json")["files"]
     text = out.read_text()
-    assert "## Table 1: solvers" in text and "## Table 2: conditional generators" in text and "## Training" in text
-    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 5
+    sections = ("Table 1: solvers", "Best of K", "Sizes of the grid", "Table 2: conditional generators", "Training")
+    assert all(f"## {section}" in text for section in (*sections, "Shape by shape", "As cut"))
+    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 8
     solvers = json.loads((runs / "solvers" / "solvers.json").read_text())["families"]
     generators = json.loads((runs / "generators" / "generators.json").read_text())["families"]
     for family in ("structured", "sobol"):
@@ -51,6 +52,16 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
         assert generators[family]["rows"]["prior"]["success"] == 1.0
         assert f"**{100 * rows['fit']['siou']:.1f}**" in text
     assert "(93.8)" in text and "| cgan | 20 |" in text
+    curves = json.loads((runs / "solvers" / "best-of-k.json").read_text())["families"]["sobol"]
+    assert [at["k"] for at in curves["sample-fit"]] == [1, 2]
+    assert curves["sample-fit"][1]["siou"] >= curves["sample-fit"][0]["siou"] > 0.9
+    sizes = json.loads((runs / "grid-sweep" / "grid-sweep.json").read_text())["sizes"]
+    assert sizes[0]["marching"]["wrong"] == 0.0 and sizes[-1]["marching"]["wrong"] > 0.5
+    assert max(at["marching"]["local_rule_most"] for at in sizes) < 1e-9
+    shapes = json.loads((runs / "shapes" / "quick.json").read_text())["targets"]["shapes"]
+    assert min(row["iou_exact"] for row in shapes.values()) > 0.975 and all(row["symmetry"] for row in shapes.values())
+    (sheet,) = json.loads((runs / "as-cut.json").read_text())["sheets"]
+    assert sheet["passed"] and sheet["pieces"] == 1 and sheet["jam_deg"] == 0.0 and sheet["iou_as_cut"] > 0.97
     assert made_from(runs) == made_from(runs)
 
 
