@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
+from kirigami_studio.benchmark.contact_sheet import Tile, write_tiles
 from kirigami_studio.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import PAPER, PictureFrame, draw_polygons
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.pool import Pool
@@ -197,14 +196,9 @@ def _summary(
     }
 
 
-#: Size of one picture and of its lines of text, pixels.
-TILE, LINE, GAP = 260, 22, 14
-COLUMNS = 6
-#: The same for pictures of three states each.
+#: Pixels of a tile, and tiles in a row; the same for pictures of three states each.
+TILE, COLUMNS = 260, 6
 STATE_TILE, STATE_COLUMNS = 180, 12
-INK = (40, 44, 52)
-#: Colours of the palette: few are needed, and the file is a third as large.
-COLOURS = 64
 
 
 def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) -> None:
@@ -218,23 +212,10 @@ def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) 
         The place cannot be written.
     """
     side, columns = (STATE_TILE, STATE_COLUMNS) if states else (TILE, COLUMNS)
-    tiles = [tile for one in made for tile in (_state_tiles(one) if states else _tiles(one))]
-    rows = math.ceil(len(tiles) / columns)
-    width, height = side + GAP, side + 2 * LINE + GAP
-    sheet = Image.new("RGB", (columns * width + GAP, rows * height + GAP), PAPER)
-    draw = ImageDraw.Draw(sheet)
-    font = ImageFont.load_default(16)
-    for number, (picture, lines) in enumerate(tiles):
-        x, y = GAP + number % columns * width, GAP + number // columns * height
-        sheet.paste(picture, (x + (side - picture.width) // 2, y + (side - picture.height) // 2))
-        for place, text in enumerate(lines):
-            draw.text((x + side // 2, y + side + place * LINE), text, fill=INK, font=font, anchor="ma")
-    stream = BytesIO()
-    sheet.quantize(COLOURS).save(stream, format="PNG", optimize=True)
-    write_atomically(path, stream.getvalue())
+    write_tiles([tile for one in made for tile in (_state_tiles(one) if states else _tiles(one))], side, columns, path)
 
 
-def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
+def _tiles(one: Made) -> list[Tile]:
     grid = f"{one.request.chosen_grid[0]} x {one.request.chosen_grid[1]}"
     plain = replace(one.best, trim=None)
     agreement = f"IoU {plain.score.iou_exact:.3f} (uniform {plain.score.uniform_iou:.3f})"
@@ -244,7 +225,7 @@ def _tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
     return tiles
 
 
-def _state_tiles(one: Made) -> list[tuple[Image.Image, tuple[str, str]]]:
+def _state_tiles(one: Made) -> list[Tile]:
     """The flat sheet, half way, and the sheet over its target."""
     score, job = one.best.score, ExportJob.of(one.best, one.target.points)
     states = [job.posed.parts(phi) for phi in (math.pi, 0.5 * (math.pi + job.phi), job.phi)]

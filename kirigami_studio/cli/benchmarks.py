@@ -270,7 +270,7 @@ def _print_in_folder(
 
 def quick_suites(folder: Path) -> Iterator[list[str]]:
     """Every suite of the report as small as it can be, as words of ``benchmark`` that write into ``folder``."""
-    from kirigami_studio.benchmark.report.whole import AS_CUT, GENERATORS, GRID_SWEEP, SHAPES, SOLVERS
+    from kirigami_studio.benchmark.report.whole import AS_CUT, GENERATORS, GRID_SWEEP, SAMPLES, SHAPES, SOLVERS
 
     small = ["--count", "2", "--seeds", "0", "--processes", "1"]
     fits = ["--methods", "sample,sample-fit", "--evaluations", "40", "--polish", "5"]
@@ -278,7 +278,8 @@ def quick_suites(folder: Path) -> Iterator[list[str]]:
     yield ["solvers", *small, "--evaluations", "40", "--polish", "5", "--out", solvers]
     yield ["best-of-k", "--count", "2", "--processes", "1", *fits, "--k", "2", "--out", solvers]
     yield ["grid-sweep", "--targets", "heart", "--sizes", "6", "10", "16", "--processes", "1", *fits, "--out", sweep]
-    yield ["generators", *small, "--k", "4", "--sweep", "--out", str((folder / GENERATORS).parent)]
+    samples = ["--picture", str(folder / SAMPLES), "--out", str((folder / GENERATORS).parent)]
+    yield ["generators", *small, "--k", "4", "--sweep", *samples]
     shapes = ["--targets", "hexagon", "drop", "--grid", "auto", "--k", "4", "--polish", "5"]
     yield ["designs", *shapes, "--out", str(folder / SHAPES / "quick.json")]
     sheet = ["--targets", "hexagon", "--connectors-mm", "0.2", "--grid", "6x6", "--k", "4"]
@@ -341,6 +342,10 @@ def generators(arguments: argparse.Namespace) -> int:
             workers(arguments),
             _shown_on(line, "Runs"),
         )
+    if arguments.picture is not None:
+        from kirigami_studio.benchmark.contact_sheet import write_samples
+
+        write_samples(targets, list(map(generator_named, sources)), arguments.seeds[0], Path(arguments.picture))
     arguments.out = None if folder is None else folder / "generators.json"
     return _print_figures(arguments, line, asdict(figures), figures.sentences())
 

@@ -671,6 +671,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         samples(16), SEEDS,
         option("--sweep", action="store_true",
                help="also other numbers of steps: flows 1 to 32, diffusion 10 to 100"),
+        option("--picture", default=None, metavar="FILE", help="PNG of three samples of a target of each family"),
         *WORKERS,
         option("--out", default=None,
                help="folder for generators.json and generators.jsonl, which has a line for each finished run; an "

@@ -20,6 +20,7 @@ from kirigami_studio.foundation.files import write_atomically
 
 #: Where the suites wrote into the folder.
 SOLVERS, GENERATORS = Path("solvers/solvers.json"), Path("generators/generators.json")
+SAMPLES = Path("generators/benchmark-samples.png")
 GRPO, BEST_OF_K = Path("grpo/grpo.json"), Path("solvers/best-of-k.json")
 GRID_SWEEP, AS_CUT = Path("grid-sweep/grid-sweep.json"), Path("as-cut.json")
 #: Folder of training runs, each with a ``log.jsonl``, and of ``benchmark designs --json``, a file for each set.
@@ -73,6 +74,9 @@ def made_from(folder: Path) -> Report:
             figures = _read(folder / name)
             if figures is not None:
                 lines += section(figures, pictures)
+            if name == GENERATORS and (folder / SAMPLES).exists():
+                pictures[SAMPLES.name] = (folder / SAMPLES).read_bytes()
+                lines += [f"![Three samples for a target of each family]({SAMPLES.name})", ""]
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         if logs:
             lines += training_section(logs, pictures)

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 from command_line import answer
+from PIL import Image
 
 from kirigami_studio.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.benchmark.report.whole import made_from
@@ -40,7 +41,7 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     text = out.read_text()
     sections = ("Table 1: solvers", "Best of K", "Sizes of the grid", "Table 2: conditional generators", "Training")
     assert all(f"## {section}" in text for section in (*sections, "Shape by shape", "As cut"))
-    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 8
+    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 9
     solvers = json.loads((runs / "solvers" / "solvers.json").read_text())["families"]
     generators = json.loads((runs / "generators" / "generators.json").read_text())["families"]
     for family in ("structured", "sobol"):
@@ -52,6 +53,8 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
         assert generators[family]["rows"]["prior"]["success"] == 1.0
         assert f"**{100 * rows['fit']['siou']:.1f}**" in text
     assert "(93.8)" in text and "| cgan | 20 |" in text
+    with Image.open(out.parent / "benchmark-samples.png") as picture:
+        assert picture.width > 3 * 150 and picture.height > 2 * 150, "three samples for a target of each family"
     curves = json.loads((runs / "solvers" / "best-of-k.json").read_text())["families"]["sobol"]
     assert [at["k"] for at in curves["sample-fit"]] == [1, 2]
     assert curves["sample-fit"][1]["siou"] >= curves["sample-fit"][0]["siou"] > 0.9
