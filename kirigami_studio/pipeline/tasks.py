@@ -10,6 +10,7 @@ from typing import Protocol
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.evaluate.second_target import second_matches
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
@@ -140,14 +141,15 @@ class TrialTask:
     stages: tuple[Stage, ...]
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
-        """Fit by the stages, without a guide."""
+        """Fit by the stages, without a guide; the exact IoU of the answer is that in the pose of the fit."""
         free, start = request.wishes.free_rim, request.start
         with one_blas_thread():
             fit = fit_by_stages(
                 request.target, self.grid, request.phi, self.angle, self.stages, free, self.symmetry, start
             )
         (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
-        return Answer(found, fit.evaluations + 1)
+        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.target)
+        return Answer(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
