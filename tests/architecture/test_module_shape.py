@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -27,8 +28,9 @@ def modules(repository: Path) -> dict[str, str]:
     return found
 
 
+@cache
 def imported_by(text: str) -> set[str]:
-    """Dotted names that a module imports: modules, and names that may be modules."""
+    """Dotted names that a module imports: modules, and names that may be modules; each text is parsed once."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 from functools import cache, lru_cache
 
 from PySide6.QtCore import QByteArray, QRectF
@@ -37,11 +38,21 @@ def pixmap(name: str, colour: str, size: int, ratio: float = 1.0) -> QPixmap:
 
 def icon(name: str, palette: Palette, colour: str | None = None) -> QIcon:
     """Return the icon for buttons and menus: text colour when enabled, faint when disabled."""
+    return _icon(name, colour or palette.text, palette.disabled)
+
+
+@cache
+def _icon(name: str, colour: str, disabled: str) -> QIcon:
+    """One icon in all sizes: a window shows most of them several times."""
     result = QIcon()
     for size in SIZES:
-        result.addPixmap(pixmap(name, colour or palette.text, size), QIcon.Mode.Normal)
-        result.addPixmap(pixmap(name, palette.disabled, size), QIcon.Mode.Disabled)
+        result.addPixmap(pixmap(name, colour, size), QIcon.Mode.Normal)
+        result.addPixmap(pixmap(name, disabled, size), QIcon.Mode.Disabled)
     return result
+
+
+# No pixmap may outlive the application, which ends after this.
+atexit.register(_icon.cache_clear)
 
 
 @cache

@@ -11,8 +11,8 @@ import shapely
 import torch
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.processes import UsageError, Workers
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.outlines.editing import resampled
