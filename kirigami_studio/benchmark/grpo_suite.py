@@ -303,16 +303,16 @@ def measure_grpo(
     sources = {one.digest: one.source for run in reversed(runs) for one in reversed(run.snapshots)}
     samples = {
         (family, digest): [
-            SampleRun(
-                sources[digest], digest, generator_named(sources[digest]).steps, family, seed, number, SAMPLES, one
-            )
-            for number, one in enumerate(outlines)
+            SampleRun(source, digest, generator_named(source).steps, family, seed, number, SAMPLES, outline)
+            for number, outline in enumerate(outlines)
             for seed in seeds
         ]
-        for digest in reversed(sources)
+        for digest, source in reversed(sources.items())
         for family, outlines in targets.items()
     }
-    store.complete([run for some in samples.values() for run in some], judged, workers, report)
+    # Target by target, so that what is there after a while is a table of fewer targets.
+    waiting = sorted((run for some in samples.values() for run in some), key=lambda run: run.number)
+    store.complete(waiting, judged, workers, report)
     training: dict[str, dict[str, dict[str, object]]] = {}
     for run in runs:
         training.setdefault(run.start, {})[run.name] = run.settings
