@@ -143,7 +143,9 @@ def test_that_a_design_becomes_checked_files_with_the_same_bytes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     folders = [tmp_path / name for name in ("first", "second")]
-    answers = [answer(capsys, "design", "star", "--k", 3, "--out", folder, "--json") for folder in folders]
+    answers = [
+        answer(capsys, "design", "star", "--grid", "5x5", "--k", 3, "--out", folder, "--json") for folder in folders
+    ]
     assert len(answers[0]["candidates"]) == 3
     assert answers[0]["best"] == answers[0]["candidates"][0]
     assert all(candidate["polished"] for candidate in answers[0]["candidates"])

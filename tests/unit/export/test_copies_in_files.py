@@ -31,7 +31,7 @@ COPIES = 5
 
 @pytest.fixture(scope="module")
 def design(make_design: Callable[..., Deployment]) -> Deployment:
-    return make_design(3, 4, seed=1, spread=0.3)
+    return make_design(2, 3, seed=1, spread=0.3)
 
 
 def job_of(design: Deployment, profile: str = "any", **options: object) -> ExportJob:

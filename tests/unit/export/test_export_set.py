@@ -42,7 +42,7 @@ MakeDesign = Callable[..., Deployment]
 @pytest.fixture(scope="module")
 def job(make_design: MakeDesign) -> ExportJob:
     """A small design with its plan, and word of its model."""
-    design = make_design(4, 5, seed=1)
+    design = make_design(3, 4, seed=1)
     return ExportJob(design, plan=plan_cuts(design, 90.0), provenance={"model": "balanced", "model_sha256": "ab12"})
 
 
@@ -178,7 +178,7 @@ def test_that_the_record_names_application_model_and_expectations(job: ExportJob
     assert record["provenance"] == {"model": "balanced", "model_sha256": "ab12"}
     assert record["application"].startswith("kirigami-studio ")
     assert record["expected"]["cut_length_mm"] == pytest.approx(job.required_plan.cut_length_mm)
-    assert record["expected"]["paths"] == {"SLITS": 20, "EDGE_SLITS": 9, "OUTLINE": 1}
+    assert record["expected"]["paths"] == {"SLITS": 12, "EDGE_SLITS": 7, "OUTLINE": 1}
     assert str(tmp_path) not in one.decode()
 
 
