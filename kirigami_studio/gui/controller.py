@@ -88,6 +88,7 @@ class Controller(QObject):
         self.generation = Generation(session, self.hand, self)
         self.run = self.generation.run
         self.reader = TargetReader(session, self)
+        self.run.grid_chosen.connect(self.reader.read_again)
         self.regularity = Regularity(session, self)
         self.alikes = LookAlikes(session, self)
         self.fabrication = FabricationEditor(session)

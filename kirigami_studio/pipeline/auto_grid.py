@@ -279,16 +279,7 @@ def chosen_for(request: Request, trials: Trials = one_by_one) -> GridChoice:
     Trying takes about a second in one process, and is done for hard shapes with a mirror axis alone.  What was chosen
     is remembered.
     """
-    wishes = request.wishes
-    key = (
-        request.target,
-        request.phi,
-        request.symmetry,
-        request.width_mm,
-        request.least_feature_mm,
-        wishes.free_rim,
-        request.start,
-    )
+    key = _key(request)
     choice = _CHOSEN.get(key)
     if choice is None:
         choice = _tried(request, trials)
@@ -296,6 +287,17 @@ def chosen_for(request: Request, trials: Trials = one_by_one) -> GridChoice:
             _CHOSEN.pop(next(iter(_CHOSEN)), None)
         _CHOSEN[key] = choice
     return choice
+
+
+def known_for(request: Request) -> GridChoice:
+    """The grid that a run takes, as far as that is known at once: the one that was tried before, else the predicted."""
+    return _CHOSEN.get(_key(request)) or predicted_for(request)
+
+
+def _key(request: Request) -> Hashable:
+    """What a choice depends on."""
+    sheet = (request.width_mm, request.least_feature_mm, request.wishes.free_rim, request.start)
+    return request.target, request.phi, request.symmetry, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import choose_grid
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
@@ -52,6 +53,27 @@ def test_that_the_grid_is_chosen_by_the_target_until_a_number_is_given(
     assert not fixed.auto_grid and fixed.grid == grid
     heart.commands["undo"].trigger()
     assert settings.auto.isChecked()
+
+
+def test_that_a_grid_that_a_run_chose_by_trying_is_the_one_shown(
+    window: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def worth(request, grids, trials) -> dict:
+        return {one: 0.9 + 0.001 * place for place, one in enumerate(grids)}  # the least likely one is the best
+
+    monkeypatch.setattr(auto_grid, "_CHOSEN", {})
+    monkeypatch.setattr(auto_grid, "_worth", worth)
+    settings, controller = window.settings, window.controller
+    controller.targeting.open("star")
+    until(lambda: settings.auto.accessibleDescription() != "")
+    expected = (settings.rows.value(), settings.columns.value())
+    controller.change_settings(k=1, polish=0)
+    window.run.generate.click()
+    until(lambda: len(controller.document.candidates) == 1 and not controller.running)
+    grid = controller.document.candidates[0].sheet.grid
+    assert grid != expected, "trying has chosen another grid than was expected"
+    until(lambda: (settings.rows.value(), settings.columns.value()) == grid)
+    assert "short fits" in settings.auto.accessibleDescription()
 
 
 def test_that_symmetry_is_a_choice_that_tells_what_the_target_has(heart: MainWindow, until: Until) -> None:

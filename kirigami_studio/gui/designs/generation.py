@@ -361,6 +361,7 @@ class DesignRun(QObject):
 
     started = Signal(int)
     progressed = Signal(int, int, str)
+    grid_chosen = Signal()  #: where that was left to the run
     found = Signal(Entry)  #: new or improved
     completed = Signal(Result, dict)  #: with its provenance
     cancelled = Signal()
@@ -434,6 +435,7 @@ class DesignRun(QObject):
                 if self._request is not None:
                     self._request = self._request.resolved(grid)
                 self._session.set_status(reason)
+                self.grid_chosen.emit()
             case Started():
                 self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
             case Progress():

@@ -39,6 +39,11 @@ class TargetReader(QObject):
         self._pause.stop()
         self._job.stop()
 
+    def read_again(self) -> None:
+        """A run has chosen a grid by trying: that may be another one than was expected."""
+        if not self._pause.isActive():
+            self._read()
+
     def _follow(self, document: Document) -> None:
         request = next_run(document)
         asked = None

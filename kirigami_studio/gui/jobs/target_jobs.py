@@ -146,7 +146,8 @@ class TargetReading:
     symmetry : str
         How symmetric it is, in one or two sentences.
     grid : (rows, columns) or None
-        What a run would choose; None where the settings ask for a symmetry that the target is far from.
+        What a run would choose, as far as that is known without trying; None where the settings ask for a symmetry
+        that the target is far from.
     reason : str
         Why, in one sentence.
     start_refusal : str
@@ -162,11 +163,11 @@ class TargetReading:
 def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     """Measure how symmetric a request's target is, and choose a grid for it."""
     from kirigami_studio.outlines.symmetry import symmetry_of
-    from kirigami_studio.pipeline.auto_grid import predicted_for
+    from kirigami_studio.pipeline.auto_grid import known_for
 
     found = _symmetry_sentence(symmetry_of(request.target))
     try:
-        choice = predicted_for(request)
+        choice = known_for(request)
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:

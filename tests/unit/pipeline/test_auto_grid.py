@@ -23,6 +23,7 @@ from kirigami_studio.pipeline.auto_grid import (
     ShapeFigures,
     choose_grid,
     chosen_for,
+    known_for,
     predicted_for,
     predicted_match,
 )
@@ -183,7 +184,9 @@ def test_that_a_hard_shape_with_an_axis_takes_the_grid_that_short_fits_rank_firs
         return {one: 0.9 if one.grid == max(tried) else 0.5 + 0.001 * place for place, one in enumerate(grids)}
 
     monkeypatch.setattr(auto_grid, "_worth", worth)
+    assert known_for(Request(star, None)) == predicted_for(Request(star, None)), "nothing has been tried"
     choice = chosen_for(Request(star, None))
+    assert known_for(Request(star, None)) == choice
     assert 2 <= len(tried) <= auto_grid.MOST_TRIED
     assert choice.grid == max(tried) and choice.code == "grid.best_tried"
     assert str(len(tried)) in choice.reason
