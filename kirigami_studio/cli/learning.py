@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ from kirigami_studio.foundation.errors import UsageError
 if TYPE_CHECKING:
     from kirigami_studio.generator.velocity import Network, Shape
     from kirigami_studio.generator.weights import Model
+    from kirigami_studio.training.ranks import Process
     from kirigami_studio.training.train_flow import Sources
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
@@ -81,16 +84,28 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
     return 0
 
 
+def _in_group(arguments: argparse.Namespace, work: Callable[[Process], None]) -> int:
+    """Train on the device that is asked for, together with the other processes where torchrun started several."""
+    from kirigami_studio.training.learner import training_device
+    from kirigami_studio.training.ranks import process_group
+
+    with process_group(training_device(arguments.device, arguments.threads)) as process:
+        work(process)
+    return 0
+
+
 def train(arguments: argparse.Namespace) -> int:
     """Train the prior, or go on training it, and write its weights into the run folder."""
+    return _in_group(arguments, partial(_train, arguments))
+
+
+def _train(arguments: argparse.Namespace, process: Process) -> None:
     from kirigami_studio.generator.weights import store_model
-    from kirigami_studio.training.learner import training_device
     from kirigami_studio.training.train_flow import FlowSettings, train_flow, trained_network
     from kirigami_studio.training.validation import validator
 
     seconds = seconds_allowed(arguments)
     shape = _shape(arguments)
-    device = training_device(arguments.device, arguments.threads)
     sources = _sources(arguments)
     settings = FlowSettings(
         steps=arguments.steps,
@@ -111,21 +126,18 @@ def train(arguments: argparse.Namespace) -> int:
     for record in train_flow(
         settings,
         folder,
-        device,
-        validator(VALIDATION_COUNT, device),
+        process.device,
+        validator(VALIDATION_COUNT, process.device),
         sources=sources,
         seconds=seconds,
         validate_every=arguments.validate_every,
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
-    about = {"validation": record, "settings": settings.to_json()}
-    path = store_model("prior", trained_network(settings, folder, device), folder, about)
-    if arguments.json:
-        print_json({"files": [str(path)], "record": record})
-    else:
-        say(f"Weights: {path}")
-    return 0
+    if process.ranks.first:
+        about = {"validation": record, "settings": settings.to_json()}
+        path = store_model("prior", trained_network(settings, folder, process.device), folder, about)
+        _tell_weights(arguments, path, record)
 
 
 def _shape(arguments: argparse.Namespace) -> Shape:
@@ -172,13 +184,21 @@ def diffusion(arguments: argparse.Namespace) -> int:
 
 def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, int], first_moment: float = 0.9) -> int:
     """Train a baseline, or go on training it, and write its weights into the run folder."""
+    return _in_group(arguments, partial(_train_baseline, arguments, kind, network, first_moment))
+
+
+def _train_baseline(
+    arguments: argparse.Namespace,
+    kind: str,
+    network: dict[str, int],
+    first_moment: float,
+    process: Process,
+) -> None:
     from kirigami_studio.baselines.stored import store_generator
-    from kirigami_studio.training.learner import training_device
     from kirigami_studio.training.train_baseline import BaselineSettings, train_baseline, trained_baseline
     from kirigami_studio.training.validation import baseline_validator
 
     seconds = seconds_allowed(arguments)
-    device = training_device(arguments.device, arguments.threads)
     settings = BaselineSettings(
         kind,
         {**network, "latent": arguments.latent, "channels": list(_channels(arguments.channels))},
@@ -193,20 +213,17 @@ def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, int],
     for record in train_baseline(
         settings,
         folder,
-        device,
-        baseline_validator(VALIDATION_COUNT, device),
+        process.device,
+        baseline_validator(VALIDATION_COUNT, process.device),
         seconds=seconds,
         validate_every=arguments.validate_every,
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
-    about = {"validation": record, "settings": settings.to_json()}
-    path = store_generator(kind, trained_baseline(settings, folder, device), folder / f"{kind}.safetensors", about)
-    if arguments.json:
-        print_json({"files": [str(path)], "record": record})
-    else:
-        say(f"Weights: {path}")
-    return 0
+    if process.ranks.first:
+        about = {"validation": record, "settings": settings.to_json()}
+        made = trained_baseline(settings, folder, process.device)
+        _tell_weights(arguments, store_generator(kind, made, folder / f"{kind}.safetensors", about), record)
 
 
 def _sources(arguments: argparse.Namespace) -> Sources:
@@ -225,8 +242,10 @@ def grpo(arguments: argparse.Namespace) -> int:
     from kirigami_studio.generator.weights import store_model
     from kirigami_studio.training.grpo import GrpoSettings, aligned_network, train_grpo
     from kirigami_studio.training.learner import training_device
+    from kirigami_studio.training.ranks import check_alone
     from kirigami_studio.training.validation import group_figures, validator
 
+    check_alone()
     seconds = seconds_allowed(arguments)
     device = training_device(arguments.device, arguments.threads)
     start = starting_model(arguments.start)
@@ -268,17 +287,17 @@ def grpo(arguments: argparse.Namespace) -> int:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
     about = {"validation": record, "settings": settings.to_json(), "start": start.variant}
     path = store_model(f"grpo-{settings.reward}", aligned_network(folder, start), folder, about)
-    if arguments.json:
-        print_json({"files": [str(path)], "record": record})
-    else:
-        say(f"Weights: {path}")
+    _tell_weights(arguments, path, record)
     return 0
 
 
 def align(arguments: argparse.Namespace) -> int:
     """Align a prior through the sampler, or go on aligning it, and write the variants into the run folder."""
+    return _in_group(arguments, partial(_align, arguments))
+
+
+def _align(arguments: argparse.Namespace, process: Process) -> None:
     from kirigami_studio.generator.weights import store_variants
-    from kirigami_studio.training.learner import training_device
     from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
     from kirigami_studio.training.validation import preference_figures
 
@@ -286,7 +305,6 @@ def align(arguments: argparse.Namespace) -> int:
     for option, share in (("--other-sheets", arguments.other_sheets), ("--pictured", arguments.pictured)):
         if share > 1.0:
             raise UsageError("training.share_above_one", option=option, share=share)
-    device = training_device(arguments.device, arguments.threads)
     prior = starting_model(arguments.start)
     begin = None if arguments.go_on is None else starting_model(arguments.go_on, "accuracy")
     settings = AlignSettings(
@@ -309,19 +327,30 @@ def align(arguments: argparse.Namespace) -> int:
 
     record: dict[str, float] = {}
     for record in train_aligned(
-        settings, folder, device, validate, prior, begin, seconds=seconds, validate_every=arguments.validate_every
+        settings,
+        folder,
+        process.device,
+        validate,
+        prior,
+        begin,
+        seconds=seconds,
+        validate_every=arguments.validate_every,
     ):
         if not arguments.json:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
-    network = aligned_network(settings, folder, device)
-    record = record or validate(network)
-    about = {"validation": record, "settings": settings.to_json()}
-    path = store_variants("aligned", VARIANTS, network, folder, about)
+    if process.ranks.first:
+        network = aligned_network(settings, folder, process.device)
+        record = record or validate(network)
+        about = {"validation": record, "settings": settings.to_json()}
+        _tell_weights(arguments, store_variants("aligned", VARIANTS, network, folder, about), record)
+
+
+def _tell_weights(arguments: argparse.Namespace, path: Path, record: dict[str, float]) -> None:
+    """Say where weights are, and in JSON what they scored last."""
     if arguments.json:
         print_json({"files": [str(path)], "record": record})
     else:
         say(f"Weights: {path}")
-    return 0
 
 
 def seconds_allowed(arguments: argparse.Namespace) -> float:

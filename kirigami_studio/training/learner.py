@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -12,11 +13,13 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import torch
 from torch import Tensor, nn
+from torch.nn.parallel import DistributedDataParallel
 
 from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import Network, Shape, network_of
+from kirigami_studio.training.ranks import Ranks, own_gpu
 
 
 @dataclass(slots=True)
@@ -34,6 +37,8 @@ class Checkpoint:
         The run's settings, compared on resume.
     generator : tensor
         State of the noise generator.
+    others : list of tensor
+        States of those of further processes, by rank from 1.
     more : dict
         What one kind of training needs beside: plain numbers and text.
     """
@@ -45,6 +50,7 @@ class Checkpoint:
     settings: dict[str, Any]
     generator: torch.Tensor
     more: dict[str, Any] = field(default_factory=dict)
+    others: list[torch.Tensor] = field(default_factory=list)
 
     def save(self, path: Path) -> None:
         """Write beside the old checkpoint, then rename: an interrupted save loses nothing.
@@ -93,8 +99,23 @@ Learning = TypeVar("Learning", bound=nn.Module)
 Trained = TypeVar("Trained", covariant=True)
 
 
+class _Loss(nn.Module):
+    """A loss as the forward pass of a module: what DistributedDataParallel asks for.
+
+    Losses call several methods of their networks, and those of a game between two networks both of them; as one pass of
+    a module that holds all weights they are all seen.
+    """
+
+    def __init__(self, network: nn.Module) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(self, compute: Callable[[], Tensor]) -> Tensor:
+        return compute()
+
+
 class Learner(Generic[Learning]):
-    """A network in training.
+    """A network in training, by this process or by all that torchrun started.
 
     Parameters
     ----------
@@ -105,6 +126,8 @@ class Learner(Generic[Learning]):
     generator : torch.Generator
         Of the run's noise.
     device : torch.device
+    some_idle : bool
+        Whether some weights may have no part in a loss.
     """
 
     def __init__(
@@ -113,10 +136,24 @@ class Learner(Generic[Learning]):
         optimiser: torch.optim.Optimizer,
         generator: torch.Generator,
         device: torch.device,
+        some_idle: bool = False,
     ) -> None:
         self.network, self.optimiser, self.generator, self.device = network, optimiser, generator, device
+        self.some_idle = some_idle
         self.average = {name: value.detach().clone() for name, value in network.state_dict().items()}
         self.step = 0
+        self.ranks = Ranks.present()
+        self._parallel: DistributedDataParallel | None = None
+
+    def loss(self, compute: Callable[[], Tensor]) -> Tensor:
+        """The loss of this process's share of a batch, by ``compute``; :meth:`learn` then averages over all shares."""
+        if self.ranks.count == 1:
+            return compute()
+        if self._parallel is None:
+            # Weights that a loss leaves out keep no gradient, as they do in one process; looking for them takes time.
+            self._parallel = DistributedDataParallel(_Loss(self.network), find_unused_parameters=self.some_idle)
+        loss: Tensor = self._parallel(compute)
+        return loss
 
     def learn(self, loss: Tensor, decay: float, largest_gradient: float | None = None) -> None:
         """One step down ``loss``, its gradient bounded if asked for; the average keeps ``decay`` of itself."""
@@ -135,19 +172,25 @@ class Learner(Generic[Learning]):
         return network.eval()
 
     def save(self, path: Path, settings: dict[str, Any], more: dict[str, float] | None = None) -> None:
-        """Write a checkpoint, ``more`` numbers with it."""
+        """Write a checkpoint, ``more`` numbers with it; all processes have to call this, the first one writes."""
+        own, *others = self.ranks.states(self.generator)
+        if not self.ranks.first:
+            return
         Checkpoint(
             self.step,
             self.network.state_dict(),
             self.average,
             self.optimiser.state_dict(),
             settings,
-            self.generator.get_state(),
+            own,
             more or {},
+            others,
         ).save(path)
 
     def resume(self, path: Path, settings: dict[str, Any]) -> dict[str, float]:
         """Go on where a checkpoint of the same settings stopped; returns the numbers stored with it.
+
+        A process that was not there draws noise of its own from the step on.
 
         Raises
         ------
@@ -159,7 +202,11 @@ class Learner(Generic[Learning]):
         self.network.load_state_dict(state.network)
         self.average = {name: value.to(self.device) for name, value in state.average.items()}
         self.optimiser.load_state_dict(state.optimiser)
-        self.generator.set_state(state.generator)
+        states = [state.generator, *state.others]
+        if self.ranks.rank < len(states):
+            self.generator.set_state(states[self.ranks.rank])
+        else:
+            self.generator.manual_seed(self.generator.initial_seed() + 1_000_003 * state.step)
         self.step = state.step
         return state.more
 
@@ -221,6 +268,8 @@ def trained(
 ) -> Iterator[dict[str, float]]:
     """Advance a run to its last step; yields one record per validation, and writes each with a checkpoint.
 
+    Of several processes the first one validates, writes and yields.
+
     Parameters
     ----------
     run : Run
@@ -242,14 +291,16 @@ def trained(
     """
     began = time.perf_counter()
     running: dict[str, float] = {}
+    ranks = Ranks.present()
     while run.step < steps:
         for name, value in run.advance().items():
             running[name] = running.get(name, value) + RENEWED * (value - running.get(name, value))
-        out_of_time = time.perf_counter() - began > seconds
+        out_of_time = math.isfinite(seconds) and ranks.any(time.perf_counter() - began > seconds)
         if run.step % validate_every == 0 or run.step == steps or out_of_time:
             run.save()
-            record = {"step": float(run.step), "seconds": time.perf_counter() - began} | running
-            yield logged(folder, record | validate(run.averaged()))
+            record = {"step": float(run.step), "seconds": time.perf_counter() - began} | ranks.means(running)
+            if ranks.first:
+                yield logged(folder, record | validate(run.averaged()))
         if out_of_time:
             break
 
@@ -260,15 +311,18 @@ def training_device(name: str, threads: int = 1) -> torch.device:
     Raises
     ------
     UsageError
-        The device does not exist on this machine, or fewer than one thread was asked for.
+        The device does not exist on this machine, GPUs are fewer than processes, or fewer than one thread was asked
+        for.
     """
     if threads < 1:
         raise UsageError("training.no_threads", threads=threads)
     torch.set_num_threads(threads)
     if name == "auto":
-        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        return own_gpu() if torch.cuda.is_available() else torch.device("cpu")
     if name == "cuda" and not torch.cuda.is_available():
         raise UsageError("training.no_cuda")
+    if name == "cuda":
+        return own_gpu()
     try:
         return torch.device(name)
     except RuntimeError as error:

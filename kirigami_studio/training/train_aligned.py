@@ -28,6 +28,7 @@ from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, opened, trained
 from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
+from kirigami_studio.training.ranks import Ranks
 from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 
@@ -52,7 +53,7 @@ class AlignSettings:
     steps : int
         Optimiser steps.
     batch : int
-        Targets a step, one sample each.
+        Targets a step of all processes together, one sample each.
     drawn : int
         Drawn shapes among the targets, beside silhouettes of random fields.
     drawn_share : float
@@ -113,7 +114,7 @@ def train_aligned(
     seconds: float = math.inf,
     validate_every: int = 500,
 ) -> Iterator[dict[str, float]]:
-    """Align, or go on aligning, in ``folder``; yields one record per validation.
+    """Align, or go on aligning, in ``folder``; yields one record per validation, in the first process alone.
 
     Parameters
     ----------
@@ -178,8 +179,10 @@ class AlignRun:
         optimiser = torch.optim.AdamW(
             [{"params": old, "pace": 1.0}, {"params": new, "pace": NEW_PACE}], betas=(0.9, 0.99), weight_decay=0.0
         )
-        self.generator = torch.Generator(device=device).manual_seed(settings.seed)
-        self.learner = Learner(self.network, optimiser, self.generator, device)
+        ranks = Ranks.present()
+        self.seed, self.batch = ranks.seed(settings.seed), ranks.share(settings.batch)
+        self.generator = torch.Generator(device=device).manual_seed(self.seed)
+        self.learner = Learner(self.network, optimiser, self.generator, device, some_idle=True)
         self._lattices: dict[tuple[int, int], BatchedLattice] = {}
         self.source = TargetSource(
             settings.drawn,
@@ -204,32 +207,35 @@ class AlignRun:
         for group in self.learner.optimiser.param_groups:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
         grid = self._grid()
-        drawn = round(settings.drawn_share * settings.batch) if settings.drawn else 0
-        targets = self.source.targets(self._silhouettes(grid, settings.batch - drawn), drawn)
-        preference = self._preferences(settings.batch)
+        drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
+        targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn)
+        preference = self._preferences(self.batch)
         cells = settings.shape.rows * settings.shape.columns
-        noise = torch.randn((settings.batch, cells), generator=self.generator, device=self.device)
+        noise = torch.randn((self.batch, cells), generator=self.generator, device=self.device)
         noise = noise * settings.shape.z_scale
-        code = targets.code(self.network, grid, preference)
-        designs = trail(self.network, noise, code, settings.sampling_steps)
-        terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
-        z = designs[-1]
-        anchored = slice(0, None, settings.anchored_every)
-        with torch.no_grad():
-            code = targets.code(self.prior, grid, preference).picked(anchored)
-            reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
-                -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
-            )
-        anchor = (z[anchored] - reference).square().mean()
-        loss = self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
+        parts: dict[str, float] = {}
+
+        def compute() -> Tensor:
+            code = targets.code(self.network, grid, preference)
+            designs = trail(self.network, noise, code, settings.sampling_steps)
+            terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
+            z = designs[-1]
+            anchored = slice(0, None, settings.anchored_every)
+            with torch.no_grad():
+                code = targets.code(self.prior, grid, preference).picked(anchored)
+                reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
+                    -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
+                )
+            anchor = (z[anchored] - reference).square().mean()
+            parts["match"] = float(terms.match.mean().detach())
+            parts["variation"] = float(terms.variation.mean().detach())
+            parts["anchor"] = float(anchor.detach())
+            return self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
+
+        loss = self.learner.loss(compute)
         self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
         self.learner.step += 1
-        return {
-            "loss": float(loss.detach()),
-            "match": float(terms.match.mean().detach()),
-            "variation": float(terms.variation.mean().detach()),
-            "anchor": float(anchor.detach()),
-        }
+        return {"loss": float(loss.detach()), **parts}
 
     def averaged(self) -> VelocityNetwork:
         """A copy of the network with the averaged weights."""
@@ -262,7 +268,7 @@ class AlignRun:
 
     def _silhouettes(self, grid: DeployedGrid, count: int) -> Tensor:
         """What random fields of a sheet show: (B, L, 2), unit area about the centroid."""
-        rng = np.random.default_rng((self.settings.seed, 1, self.step))
+        rng = np.random.default_rng((self.seed, 1, self.step))
         fields = torch.tensor(mixed_fields(count, grid.rows, grid.columns, rng), dtype=torch.float32)
         with torch.no_grad():
             return normalised(deployed_outline(self._lattice(grid), grid, fields.to(self.device)))

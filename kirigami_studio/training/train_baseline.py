@@ -19,6 +19,7 @@ from kirigami_studio.baselines.stored import generator_of
 from kirigami_studio.training.corpus import ChunkBatches, Corpus, Disturbance
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.learner import CHECKPOINT, Learner, opened, trained
+from kirigami_studio.training.ranks import Ranks
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: Designs generated together, and how often each is visited before the next.
@@ -38,7 +39,7 @@ class BaselineSettings:
     steps : int
         Optimiser steps in all; the learning rate falls to zero along a cosine.
     batch : int
-        Designs a step (paper: 64).
+        Designs a step, of all processes together (paper: 64).
     learning_rate, weight_decay : float
     first_moment : float
         Decay of Adam's running mean of gradients; the paper's cGAN has 0.5.
@@ -77,7 +78,7 @@ def train_baseline(
     seconds: float = math.inf,
     validate_every: int = 500,
 ) -> Iterator[dict[str, float]]:
-    """Train, or go on training, in ``folder``; yields one record per validation.
+    """Train, or go on training, in ``folder``; yields one record per validation, in the first process alone.
 
     Parameters
     ----------
@@ -129,11 +130,13 @@ class BaselineRun:
             betas=(settings.first_moment, 0.999),
             weight_decay=settings.weight_decay,
         )
-        self.generator = torch.Generator(device=device).manual_seed(settings.seed)
+        ranks = Ranks.present()
+        self.seed = ranks.seed(settings.seed)
+        self.generator = torch.Generator(device=device).manual_seed(self.seed)
         self.learner = Learner(network, optimiser, self.generator, device)
         pixels = network.pixels
-        corpus = Corpus(mixed_fields, pixels.rows, pixels.columns, settings.seed, settings.chunk, device)
-        self.designs = ChunkBatches(corpus, settings.batch, PASSES)
+        corpus = Corpus(mixed_fields, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
+        self.designs = ChunkBatches(corpus, ranks.share(settings.batch), PASSES)
         self.disturbance = Disturbance(settings.vertex_noise, settings.turn_noise)
         if path.exists():
             self.learner.resume(path, settings.to_json())
@@ -149,10 +152,10 @@ class BaselineRun:
         for group in self.learner.optimiser.param_groups:
             group["lr"] = settings.learning_rate * schedule(self.step, settings.steps)
         # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
-        torch.manual_seed(1_000_003 * settings.seed + self.step)
+        torch.manual_seed(1_000_003 * self.seed + self.step)
         designs = self.designs.at(self.step)
         masks = network.pixels.masks(self.disturbance.seen(designs.polygons, self.generator))
-        loss = network.loss(designs.z, masks, self.generator)
+        loss = self.learner.loss(lambda: network.loss(designs.z, masks, self.generator))
         # Random weights must not linger in the average.
         decay = min(settings.average_decay, (2 + self.step) / (11 + self.step))
         self.learner.learn(loss, decay, LARGEST_GRADIENT)

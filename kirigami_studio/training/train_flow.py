@@ -24,6 +24,7 @@ from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.fitted_fields import FittedBatches, FittedFields, Targets
 from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss, pair_noise
 from kirigami_studio.training.learner import CHECKPOINT, Learner, grown_state, opened, trained
+from kirigami_studio.training.ranks import Ranks
 
 WARM_UP_STEPS = 200
 #: Gradients are scaled down to this norm.
@@ -39,7 +40,7 @@ class FlowSettings:
     steps : int
         Optimiser steps in all; the learning rate falls to zero along a cosine.
     batch : int
-        Targets a step.
+        Targets a step, of all processes together.
     noises : int
         Noise draws (and times t) for each target: the encoder runs once for all of them.
     learning_rate, weight_decay : float
@@ -91,10 +92,9 @@ class FlowSettings:
     def to_json(self) -> dict[str, object]:
         return asdict(self)
 
-    @property
-    def fitted_rows(self) -> int:
-        """Targets of a step that are fits of drawn shapes."""
-        return round(self.fit_share * self.batch) if self.fits else 0
+    def fitted_rows(self, batch: int) -> int:
+        """Targets of a step of ``batch`` that are fits of drawn shapes."""
+        return round(self.fit_share * batch) if self.fits else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ def train_flow(
     seconds: float = math.inf,
     validate_every: int = 2000,
 ) -> Iterator[dict[str, float]]:
-    """Train, or go on training, in ``folder``; yields one record per validation.
+    """Train, or go on training, in ``folder``; yields one record per validation, in the first process alone.
 
     Parameters
     ----------
@@ -190,13 +190,19 @@ class FlowRun:
         optimiser = torch.optim.AdamW(
             self.network.parameters(), lr=settings.learning_rate, betas=(0.9, 0.99), weight_decay=settings.weight_decay
         )
-        self.generator = torch.Generator(device=device).manual_seed(settings.seed)
-        self.learner = Learner(self.network, optimiser, self.generator, device)
+        ranks = Ranks.present()
+        self.seed, batch = ranks.seed(settings.seed), ranks.share(settings.batch)
+        self.generator = torch.Generator(device=device).manual_seed(self.seed)
+        shape = settings.shape
+        # Layers of the corrections have no part in flow matching.
+        some_idle = isinstance(shape, NetworkShape) and shape.direction
+        self.learner = Learner(self.network, optimiser, self.generator, device, some_idle)
         self.corpus = Corpus(
-            mixed_fields, settings.shape.rows, settings.shape.columns, settings.seed, settings.chunk, device
+            mixed_fields, settings.shape.rows, settings.shape.columns, self.seed, settings.chunk, device
         )
-        self.random = ChunkBatches(self.corpus, settings.batch - settings.fitted_rows, settings.passes)
-        self.fitted = FittedBatches(sources.fits, self.corpus.lattice, settings.seed) if sources.fits else None
+        self.fitted_rows = settings.fitted_rows(batch)
+        self.random = ChunkBatches(self.corpus, batch - self.fitted_rows, settings.passes)
+        self.fitted = FittedBatches(sources.fits, self.corpus.lattice, self.seed) if sources.fits else None
         if path.exists():
             self.learner.resume(path, settings.to_json())
 
@@ -210,8 +216,9 @@ class FlowRun:
         for group in self.learner.optimiser.param_groups:
             group["lr"] = self.settings.learning_rate * schedule(self.step, self.settings.steps)
         # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
-        torch.manual_seed(1_000_003 * self.settings.seed + self.step)
-        loss = self._loss([self._random_targets(), *self._fitted_targets()])
+        torch.manual_seed(1_000_003 * self.seed + self.step)
+        targets = [self._random_targets(), *self._fitted_targets()]
+        loss = self.learner.loss(lambda: self._loss(targets))
         decay = self.settings.average_decay
         if not self.settings.warm_start:
             # Random weights must not linger in the average.
@@ -230,7 +237,7 @@ class FlowRun:
     def _fitted_targets(self) -> tuple[Targets, ...]:
         if self.fitted is None:
             return ()
-        return self.fitted.targets(self.step, self.settings.fitted_rows)
+        return self.fitted.targets(self.step, self.fitted_rows)
 
     def _random_targets(self) -> Targets:
         chunk = self.random.at(self.step)

@@ -64,6 +64,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "training.folder_not_made": mark("Cannot make the run folder {folder}: {reason}. Choose another folder."),
     "training.no_threads": mark("Training needs at least 1 thread, got {threads}."),
     "training.no_cuda": mark("No CUDA device is available. Use --device cpu, or install a GPU build of torch."),
+    "training.too_few_gpus": mark(
+        "Process {number} of this machine has no GPU of its own: there are {gpus}. Start fewer, or use --device cpu."
+    ),
+    "training.batch_not_shared": mark(
+        "A batch of {batch} cannot be split evenly over {processes} processes. Choose a multiple of {processes}."
+    ),
+    "training.one_process_only": mark(
+        "This training runs in one process, and torchrun started {processes}. Start it without torchrun."
+    ),
     "training.unknown_device": mark("There is no device called '{device:.40}'. Use auto, cpu or cuda."),
     "training.fits_are_not_split": mark("Fits of drawn shapes are for training only. Leave out --split."),
     "training.channels_without_unet": mark(
