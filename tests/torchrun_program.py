@@ -87,5 +87,5 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
-    train_by_command(Path(sys.argv[1]) / "command")
+    # A second group in one process would meet the first one's addresses in the store, and wait for them for ever.
+    {"library": main, "command": train_by_command}[sys.argv[1]](Path(sys.argv[2]))

@@ -28,9 +28,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> Path:
     made = tmp_path_factory.mktemp("torchrun")
     train(made / "begun by one", 0.0)
     program = repository / "tests" / "torchrun_program.py"
-    done = subprocess.run([*TWO, str(program), str(made)], capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    (made / "printed.txt").write_text(done.stdout)
+    started = [
+        subprocess.Popen([*TWO, str(program), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for words in (("library", str(made)), ("command", str(made / "command")))
+    ]
+    for process in started:
+        printed, errors = process.communicate(timeout=300)
+        assert process.returncode == 0, errors
+    (made / "printed.txt").write_text(printed)
     return made
 
 
