@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -28,13 +31,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> Path:
     made = tmp_path_factory.mktemp("torchrun")
     train(made / "begun by one", 0.0)
     program = repository / "tests" / "torchrun_program.py"
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
     started = [
-        subprocess.Popen([*TWO, str(program), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        subprocess.Popen([*TWO, str(program), *words], **pipes)
         for words in (("library", str(made)), ("command", str(made / "command")))
     ]
-    for process in started:
-        printed, errors = process.communicate(timeout=300)
-        assert process.returncode == 0, errors
+    try:
+        for process in started:
+            printed, errors = process.communicate(timeout=300)
+            assert process.returncode == 0, errors
+    finally:
+        for process in started:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)  # the launcher's end does not end what it started
     (made / "printed.txt").write_text(printed)
     return made
 
