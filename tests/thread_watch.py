@@ -106,19 +106,26 @@ class ThreadWatch(QObject):
                 continue
 
 
-def hold_the_lock(seconds: float) -> None:
-    """Keep the interpreter's lock in the calling thread, as C code does that never lets go of it."""
-    # A single long multiplication of whole numbers is one step of the interpreter.
+def long_number(seconds: float) -> int:
+    """A whole number whose square takes about so long, and a third of that at least."""
     number = 3**60_000
-    end = time.perf_counter() + seconds
-    while (began := time.perf_counter()) < end:
+    while True:
+        began = time.perf_counter()
         _ = number * number
-        if time.perf_counter() - began < 0.5 * seconds:
-            number *= number
+        if 3.0 * (time.perf_counter() - began) >= seconds:
+            return number
+        number *= number
 
 
-def in_another_thread(seconds: float) -> threading.Thread:
+def hold_the_lock(number: int) -> None:
+    """Keep the interpreter's lock in the calling thread, as C code does that never lets go of it: a long multiplication
+    is one step of the interpreter.
+    """
+    _ = number * number
+
+
+def in_another_thread(number: int) -> threading.Thread:
     """Start :func:`hold_the_lock` beside the caller."""
-    thread = threading.Thread(target=hold_the_lock, args=(seconds,))
+    thread = threading.Thread(target=hold_the_lock, args=(number,))
     thread.start()
     return thread

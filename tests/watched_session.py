@@ -19,7 +19,7 @@ import numpy as np
 from PySide6.QtCore import QEventLoop, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
-from thread_watch import ThreadWatch, in_another_thread
+from thread_watch import ThreadWatch, in_another_thread, long_number
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -101,7 +101,8 @@ class WatchedSession:
     def block(self, seconds: float) -> None:
         """Two steps that hold the thread up for so long."""
         self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(seconds)))
-        self.step("another thread keeps the lock", lambda: in_another_thread(seconds))
+        number = long_number(seconds)
+        self.step("another thread keeps the lock", lambda: in_another_thread(number))
 
     def play(self) -> None:
         """Run every step: from the target to the files, one after the other as one works."""
