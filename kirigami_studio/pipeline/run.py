@@ -58,7 +58,7 @@ FIRST_ROUND = 5
 #: Only the better ones get the steps that are left: this share of them, and no fewer than so many.  Of 24 samples each
 #: for 12 of the drawn shapes, none that came first in the end was behind the third after five steps, and none that came
 #: second to sixth behind the tenth.
-SECOND_ROUND, SECOND_ROUND_LEAST = 0.4, 8
+SECOND_ROUND, SECOND_ROUND_LEAST = 0.5, 8
 
 #: Candidates that a search starts from: the best that differ.
 SEARCH_STARTS = 3

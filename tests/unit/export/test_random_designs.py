@@ -28,9 +28,9 @@ MATERIALS = [material for material in presets().values() if material.kerf_mm > 0
 
 
 def random_job(seed: int, make_design: MakeDesign) -> ExportJob:
-    """A design of 2 x 2 to 3 x 3 voids in some material and size."""
+    """A design of 2 x 2 to 4 x 4 voids in some material and size."""
     random = np.random.default_rng(seed)
-    rows, columns = int(random.integers(2, 4)), int(random.integers(2, 4))
+    rows, columns = int(random.integers(2, 5)), int(random.integers(2, 5))
     design = make_design(rows, columns, seed=seed, spread=float(random.uniform(0.1, 0.5)))
     material = MATERIALS[seed % len(MATERIALS)]
     return ExportJob(design, plan=plan_cuts(design, float(random.uniform(150.0, 300.0)), material=material))

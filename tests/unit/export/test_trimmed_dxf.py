@@ -107,7 +107,7 @@ def test_that_trimmed_shapes_are_sound_as_files(name: str, keep: float, tmp_path
 @pytest.mark.parametrize("seed", range(30))
 def test_that_random_trims_are_sound_as_files(seed: int, tmp_path: Path) -> None:
     random = np.random.default_rng(seed)
-    rows, columns = random.integers(3, 7, 2)
+    rows, columns = random.integers(3, 9, 2)
     deployment = deploy(RatioField.from_log10(random.uniform(-0.35, 0.35, (rows, columns))))
     target = SHAPES[sorted(SHAPES)[seed % 3]]
     phi, keep = float(random.choice([0.0, 0.0, 0.7])), float(random.choice([0.08, 0.15, 0.25]))

@@ -35,7 +35,7 @@ def test_that_every_style_leaves_the_width_asked_for_within_a_micrometre(
     style: ConnectorStyle, material: str, width: float, make_design: MakeDesign
 ) -> None:
     for seed in range(3):
-        plan = styled(make_design(4, 5, seed), style, material, width)
+        plan = styled(make_design(5, 6, seed), style, material, width)
         finished, there = connector_distances(plan), covered_hinges(plan)
         assert there.mean() > 0.9
         np.testing.assert_allclose(finished[there], plan.connector_mm, atol=1e-3)
