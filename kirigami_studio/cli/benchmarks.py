@@ -6,11 +6,14 @@ import argparse
 import contextlib
 import io
 import json
+import os
+import platform
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -288,7 +291,7 @@ def quick_suites(folder: Path) -> Iterator[list[str]]:
 
 def report(arguments: argparse.Namespace) -> int:
     """The report of finished suites; with ``--quick``, tiny suites are run first."""
-    from kirigami_studio.benchmark.report.whole import made_from
+    from kirigami_studio.benchmark.report.whole import MACHINE, made_from
     from kirigami_studio.cli.parser import build_parser
 
     folder = Path(arguments.runs)
@@ -297,12 +300,33 @@ def report(arguments: argparse.Namespace) -> int:
             asked = build_parser().parse_args(["benchmark", *words])
             with contextlib.redirect_stdout(io.StringIO()):
                 asked.run(asked)
-    files = [str(path) for path in made_from(folder).save(Path(arguments.out))]
+    made = made_from(folder)
+    if not (folder / MACHINE).exists():
+        write_atomically(folder / MACHINE, (json.dumps(_this_machine(), indent=2) + "\n").encode())
+        made = made_from(folder)
+    files = [str(path) for path in made.save(Path(arguments.out))]
     if arguments.json:
         print_json({"files": files})
     else:
         say("\n".join(files))
     return 0
+
+
+def _this_machine() -> dict[str, object]:
+    """What suites are measured on, for the report."""
+    # Linux alone names the processor there; elsewhere the platform does.
+    about = Path("/proc/cpuinfo")
+    names = [line.partition(":")[2].strip() for line in _lines(about) if line.startswith("model name")]
+    processor = names[0] if names else platform.processor() or platform.machine()
+    software = f"{platform.system()}, Python {platform.python_version()}, torch {version('torch')}"
+    return {"processor": processor, "cores": os.cpu_count() or 1, "software": software}
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
 
 
 #: Numbers of steps of a sweep: Euler steps of flows, DDIM steps of the diffusion model (paper, step sensitivity).

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,8 +12,10 @@ from typing import TYPE_CHECKING
 from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.option_types import parse_grid, workers
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.files import write_atomically
 
 if TYPE_CHECKING:
+    from kirigami_studio.baselines.conditional import ConditionalGenerator
     from kirigami_studio.generator.velocity import Network, Shape
     from kirigami_studio.generator.weights import Model
     from kirigami_studio.training.ranks import Process
@@ -136,8 +139,9 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
             say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
     if process.ranks.first:
         about = {"validation": record, "settings": settings.to_json()}
-        path = store_model("prior", trained_network(settings, folder, process.device), folder, about)
-        _tell_weights(arguments, path, record)
+        network = trained_network(settings, folder, process.device)
+        _write_about(folder, about, network)
+        _tell_weights(arguments, store_model("prior", network, folder, about), record)
 
 
 def _shape(arguments: argparse.Namespace) -> Shape:
@@ -223,6 +227,7 @@ def _train_baseline(
     if process.ranks.first:
         about = {"validation": record, "settings": settings.to_json()}
         made = trained_baseline(settings, folder, process.device)
+        _write_about(folder, about, made)
         _tell_weights(arguments, store_generator(kind, made, folder / f"{kind}.safetensors", about), record)
 
 
@@ -343,6 +348,12 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         record = record or validate(network)
         about = {"validation": record, "settings": settings.to_json()}
         _tell_weights(arguments, store_variants("aligned", VARIANTS, network, folder, about), record)
+
+
+def _write_about(folder: Path, about: Mapping[str, object], network: Network | ConditionalGenerator) -> None:
+    """Write how a network was trained, and its size, beside its log, where the benchmark report reads it."""
+    size = sum(weights.numel() for weights in network.parameters())
+    write_atomically(folder / "about.json", (json.dumps({**about, "parameters": size}, indent=2) + "\n").encode())
 
 
 def _tell_weights(arguments: argparse.Namespace, path: Path, record: dict[str, float]) -> None:

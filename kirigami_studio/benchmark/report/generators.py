@@ -138,18 +138,28 @@ def _made_table(figures: Figures) -> Iterator[str]:
     yield ""
 
 
-def training_section(logs: Mapping[str, Sequence[Mapping[str, float]]], pictures: dict[str, bytes]) -> Iterator[str]:
-    """Validation figures and losses of training runs."""
+def training_section(
+    logs: Mapping[str, Sequence[Mapping[str, float]]], about: Mapping[str, Figures], pictures: dict[str, bytes]
+) -> Iterator[str]:
+    """Budgets, validation figures and losses of training runs; ``about`` has those that told their settings."""
     yield "## Training"
     yield ""
     yield "IoU of one sample on 200 validation targets of each family, in the target's own pose, at the end of a run."
+    yield "The paper: 31250 steps of 64 designs for each of its generators, on two RTX 4090."
     yield ""
-    yield "| run | steps | structured | Sobol | drawn shapes | loss |"
-    yield "|---|---|---|---|---|---|"
+    yield "| run | weights | steps | batch | learning rate | minutes | structured | Sobol | drawn shapes | loss |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
     for name, log in logs.items():
         last = log[-1]
+        told = about.get(name, {"parameters": "", "settings": {}})
+        size = f"{told['parameters'] / 1e6:.2f} M" if told["parameters"] else ""
+        settings = told["settings"]
         matches = (share(last[f"{family}_iou"]) for family in ("structured", "sobol", "drawn"))
-        yield f"| {name} | {last['step']:.0f} | {' | '.join(matches)} | {last['loss']:.4f} |"
+        yield (
+            f"| {name} | {size} | {last['step']:.0f} | {settings.get('batch', '')} | "
+            f"{settings.get('learning_rate', '')} | {last['seconds'] / 60.0:.0f} | {' | '.join(matches)} | "
+            f"{last['loss']:.4f} |"
+        )
     for title, key, factor in (
         ("structured IoU (%)", "structured_iou", 100.0),
         ("loss / its first value", "loss", 1.0),

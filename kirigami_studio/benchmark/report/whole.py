@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from kirigami_studio.benchmark.report.beside_paper import beside_paper_section
 from kirigami_studio.benchmark.report.cells import Figures
 from kirigami_studio.benchmark.report.generators import generator_section, grpo_section, training_section
 from kirigami_studio.benchmark.report.sheets import as_cut_section, shapes_section
@@ -23,8 +24,13 @@ SOLVERS, GENERATORS = Path("solvers/solvers.json"), Path("generators/generators.
 SAMPLES = Path("generators/benchmark-samples.png")
 GRPO, BEST_OF_K = Path("grpo/grpo.json"), Path("solvers/best-of-k.json")
 GRID_SWEEP, AS_CUT = Path("grid-sweep/grid-sweep.json"), Path("as-cut.json")
-#: Folder of training runs, each with a ``log.jsonl``, and of ``benchmark designs --json``, a file for each set.
+#: What they were measured on: ``processor``, ``cores`` and ``software``.
+MACHINE = Path("machine.json")
+#: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote, a
+#: file for each set of shapes.
 TRAINING, SHAPES = Path("training"), Path("shapes")
+#: In the folder of a training run: its settings and the size of its network.
+ABOUT = "about.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +76,11 @@ def made_from(folder: Path) -> Report:
     pictures: dict[str, bytes] = {}
     lines = list(OPENING)
     try:
+        machine = _read(folder / MACHINE)
+        if machine is not None:
+            lines += [f"Measured on {machine['processor']}, {machine['cores']} cores, {machine['software']}.", ""]
+        opening = len(lines)
+        lines += beside_paper_section(*(_read(folder / name) for name in (SOLVERS, GENERATORS, GRPO)))
         for name, section in SECTIONS:
             figures = _read(folder / name)
             if figures is not None:
@@ -79,14 +90,16 @@ def made_from(folder: Path) -> Report:
                 lines += [f"![Three samples for a target of each family]({SAMPLES.name})", ""]
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         if logs:
-            lines += training_section(logs, pictures)
+            told = {name: _read(folder / TRAINING / name / ABOUT) for name in logs}
+            about = {name: found for name, found in told.items() if found is not None}
+            lines += training_section(logs, about, pictures)
         sets = {path.stem: _read(path) for path in sorted((folder / SHAPES).glob("*.json"))}
         if sets:
             lines += shapes_section({name: _only(found) for name, found in sets.items() if found is not None})
         cut = _read(folder / AS_CUT)
         if cut is not None:
             lines += as_cut_section(cut)
-        if len(lines) == len(OPENING):
+        if len(lines) == opening:
             raise KirigamiError("benchmark.nothing_to_report", path=folder)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise KirigamiError("benchmark.report_unreadable", path=folder) from error

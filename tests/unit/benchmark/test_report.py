@@ -28,6 +28,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for step, match in ((10.0, 0.6), (20.0, 0.7))
     ]
     log.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    about = {"parameters": 123_456, "settings": {"batch": 64, "learning_rate": 0.0005}}
+    (log.parent / "about.json").write_text(json.dumps(about))
     return folder
 
 
@@ -52,7 +54,18 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
         assert rows["sample-fit"]["siou"] > rows["cma-es"]["siou"]
         assert generators[family]["rows"]["prior"]["success"] == 1.0
         assert f"**{100 * rows['fit']['siou']:.1f}**" in text
-    assert "(93.8)" in text and "| cgan | 20 |" in text
+    assert "(93.8)" in text and "| cgan | 0.12 M | 20 | 64 | 0.0005 |" in text
+    assert "Measured on " in text and json.loads((runs / "machine.json").read_text())["cores"] >= 1
+    for name, row in solvers["structured"]["rows"].items():
+        if row["paper"]:
+            lead = 100.0 * (row["siou"] - row["paper"]["siou"])
+            assert (
+                f"| 1, solvers | structured | {name} | {100 * row['siou']:.1f} |" in text and f" {lead:+.1f} |" in text
+            )
+    behind = [
+        name for name, row in solvers["sobol"]["rows"].items() if row["paper"] and row["siou"] < row["paper"]["siou"]
+    ]
+    assert behind and all(name in text.partition("Why rows are behind:")[2].partition("##")[0] for name in behind)
     with Image.open(out.parent / "benchmark-samples.png") as picture:
         assert picture.width > 3 * 150 and picture.height > 2 * 150, "three samples for a target of each family"
     curves = json.loads((runs / "solvers" / "best-of-k.json").read_text())["families"]["sobol"]

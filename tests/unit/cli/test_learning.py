@@ -73,6 +73,8 @@ def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFi
     assert (entry["backbone"], entry["shape"]["channels"]) == ("unet", [8, 16])
     assert (entry["about"]["settings"]["weight_decay"], entry["about"]["settings"]["noises"]) == (0.05, 1)
     assert load_model("prior", tmp_path / "run").network.shape == UNetShape(channels=(8, 16))
+    about = json.loads((tmp_path / "run" / "about.json").read_text())
+    assert about["settings"]["coupling"] == "ot" and about["parameters"] > 1000
     assert main(words) == 0  # finished already: stored again
     assert main([*words, "--channels", "8,8"]) == 1
     assert "other settings (shape)" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,3 +67,6 @@ def test_that_the_command_writes_weights_that_can_be_loaded(
     assert record["record"]["step"] == 2.0
     stored = load_generator(Path(record["files"][0]))
     assert stored.kind == "cgan" and stored.about["settings"]["first_moment"] == 0.5
+    about = json.loads((tmp_path / "run" / "about.json").read_text())
+    assert about["settings"] == stored.about["settings"]
+    assert about["parameters"] == sum(weights.numel() for weights in stored.network.parameters())
