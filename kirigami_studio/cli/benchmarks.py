@@ -284,7 +284,14 @@ def quick_suites(folder: Path) -> Iterator[list[str]]:
     samples = ["--picture", str(folder / SAMPLES), "--out", str((folder / GENERATORS).parent)]
     yield ["generators", *small, "--k", "4", "--sweep", *samples]
     shapes = ["--targets", "hexagon", "drop", "--grid", "auto", "--k", "4", "--polish", "5"]
-    yield ["designs", *shapes, "--out", str(folder / SHAPES / "quick.json")]
+    yield [
+        "designs",
+        *shapes,
+        "--picture",
+        str(folder / SHAPES / "quick.png"),
+        "--out",
+        str(folder / SHAPES / "quick.json"),
+    ]
     sheet = ["--targets", "hexagon", "--connectors-mm", "0.2", "--grid", "6x6", "--k", "4"]
     yield ["as-cut", *sheet, "--out", str(folder / AS_CUT)]
 

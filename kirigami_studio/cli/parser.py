@@ -719,7 +719,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                "benchmarks:report", (
         option("--runs", required=True, metavar="FOLDER",
                help="folder with solvers/ (best-of-k, too), grid-sweep/, generators/, grpo/ (--out of these suites), "
-                    "shapes/*.json (designs), as-cut.json, and training/, one run in each folder there"),
+                    "shapes/*.json and *.png (designs), as-cut.json, and training/, one run in each folder there"),
         option("--quick", action="store_true", help="run every suite but grpo first, as small as it can be"),
         option("--out", required=True, help="Markdown file to write; pictures come beside it"),
         JSON,

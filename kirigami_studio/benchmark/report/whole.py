@@ -26,8 +26,8 @@ GRPO, BEST_OF_K = Path("grpo/grpo.json"), Path("solvers/best-of-k.json")
 GRID_SWEEP, AS_CUT = Path("grid-sweep/grid-sweep.json"), Path("as-cut.json")
 #: What they were measured on: ``processor``, ``cores`` and ``software``.
 MACHINE = Path("machine.json")
-#: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote, a
-#: file for each set of shapes.
+#: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote: a
+#: JSON file for each set of shapes, with its picture.
 TRAINING, SHAPES = Path("training"), Path("shapes")
 #: In the folder of a training run: its settings and the size of its network.
 ABOUT = "about.json"
@@ -96,6 +96,9 @@ def made_from(folder: Path) -> Report:
         sets = {path.stem: _read(path) for path in sorted((folder / SHAPES).glob("*.json"))}
         if sets:
             lines += shapes_section({name: _only(found) for name, found in sets.items() if found is not None})
+        for path in sorted((folder / SHAPES).glob("*.png")):
+            pictures[f"benchmark-shapes-{path.name}"] = path.read_bytes()
+            lines += [f"![First designs for {path.stem}](benchmark-shapes-{path.name})", ""]
         cut = _read(folder / AS_CUT)
         if cut is not None:
             lines += as_cut_section(cut)

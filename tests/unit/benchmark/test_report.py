@@ -43,7 +43,7 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     text = out.read_text()
     sections = ("Table 1: solvers", "Best of K", "Sizes of the grid", "Table 2: conditional generators", "Training")
     assert all(f"## {section}" in text for section in (*sections, "Shape by shape", "As cut"))
-    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 9
+    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 10
     solvers = json.loads((runs / "solvers" / "solvers.json").read_text())["families"]
     generators = json.loads((runs / "generators" / "generators.json").read_text())["families"]
     for family in ("structured", "sobol"):
