@@ -33,6 +33,23 @@ class OpenedSize:
     drawn: tuple[float, float] | None
     fitting_width_mm: float | None
 
+    @classmethod
+    def of(cls, target: Outline, flat: float, width_mm: float) -> OpenedSize:
+        """That of a flat sheet ``width_mm`` wide, which is ``flat`` wide in the frame where the target has area 1.
+
+        Raises
+        ------
+        UsageError
+            A width that is not above 0.
+        """
+        if not width_mm > 0:
+            raise UsageError("opened_size.width_not_positive", width_mm=width_mm)
+        width, height = np.ptp(target.points, axis=0).tolist()
+        unit = width_mm / flat
+        if target.size is None or target.unit != "mm":
+            return cls((unit * width, unit * height), None, None)
+        return cls((unit * width, unit * height), target.size, flat * target.size[0] / width)
+
     @property
     def agrees(self) -> bool:
         """Whether the opened sheet has the drawn size."""
@@ -56,13 +73,5 @@ def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width
     UsageError
         A width that is not above 0.
     """
-    if not width_mm > 0:
-        raise UsageError("opened_size.width_not_positive", width_mm=width_mm)
     # Panels are rigid: a cell of the flat sheet has the same length in the opened one.
-    flat = float(np.ptp(deployment.compact[:, 0])) * pose.scale
-    width, height = np.ptp(target.points, axis=0).tolist()
-    unit = width_mm / flat
-    if target.size is None or target.unit != "mm":
-        return OpenedSize((unit * width, unit * height), None, None)
-    drawn = target.size[0] / width
-    return OpenedSize((unit * width, unit * height), target.size, flat * drawn)
+    return OpenedSize.of(target, float(np.ptp(deployment.compact[:, 0])) * pose.scale, width_mm)

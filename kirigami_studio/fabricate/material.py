@@ -24,6 +24,8 @@ from kirigami_studio.foundation.resources import resource
 
 #: The preset that a new project starts with: the film of the paper's specimens.
 DEFAULT_PRESET = "film-uv"
+#: The machine of materials that are cut with scissors or a knife.
+BY_HAND = "by hand"
 #: Names the folder of a person's own materials, if it is set.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Numbers that may be 0; all others are above it.
@@ -129,6 +131,11 @@ class Material:
             raise FabricationError("material.power_above_full", key=self.key, power_percent=self.power_percent)
         if self.measured_on:
             self._check_day()
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether it is cut with scissors or a knife."""
+        return self.machine == BY_HAND
 
     def _check_day(self) -> None:
         try:

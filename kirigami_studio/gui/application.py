@@ -182,9 +182,7 @@ def run(argv: list[str]) -> int:
     window.show()
     QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
     WarmUp(window.controller.warm_up, lambda: window.controller.queue.busy, window)
-    if not window.controller.preferences.present.tour_seen:
-        window.controller.preferences.note_tour()
-        QTimer.singleShot(0, window, window.tour.start)
+    QTimer.singleShot(0, window, window.connections.first_start.begin)
     return application.exec()
 
 

@@ -44,6 +44,8 @@ class WindowState:
         What is drawn over the layout.
     dark, follows_system : bool
         The theme, and whether it is the desktop's.
+    still : bool
+        Nothing moves by itself.
     """
 
     has_target: bool
@@ -65,6 +67,7 @@ class WindowState:
     overlays: frozenset[Overlay]
     dark: bool
     follows_system: bool
+    still: bool
 
     @property
     def can_change_design(self) -> bool:

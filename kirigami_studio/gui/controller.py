@@ -91,7 +91,8 @@ class Controller(QObject):
         self.run.grid_chosen.connect(self.reader.read_again)
         self.regularity = Regularity(session, self)
         self.alikes = LookAlikes(session, self)
-        self.fabrication = FabricationEditor(session)
+        self.preferences = UserPreferences(session)
+        self.fabrication = FabricationEditor(session, self.preferences.note_choice)
         self.cutting = CutPlanner(session, self)
         self.as_cut = AsCutReader(session, self)
         self.grips = GripFinder(session, self.as_cut, self)
@@ -102,7 +103,6 @@ class Controller(QObject):
         self.second = SecondReader(session)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
-        self.preferences = UserPreferences(session)
         self._connect()
 
     def _connect(self) -> None:
@@ -163,7 +163,7 @@ class Controller(QObject):
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
-        untouched = self.document == self.preferences.new_document()
+        untouched = self.document in (Document(), self.preferences.new_document())
         self.preferences.load(path)
         if untouched:
             self.session.restart(self.preferences.new_document(), self.path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -37,6 +37,7 @@ from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+from kirigami_studio.project.sheet_size import set_opened_size
 
 if TYPE_CHECKING:
     from kirigami_studio.project.as_cut import SimulatedSheet
@@ -233,22 +234,28 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
 
 
 class FabricationEditor:
-    """Changes the numbers that the design is cut with, or says why it cannot."""
+    """Changes the numbers that the design is cut with, or says why it cannot.
 
-    def __init__(self, session: Session) -> None:
+    ``chosen`` gets the names of the fields that a person has set.
+    """
+
+    def __init__(self, session: Session, chosen: Callable[[Collection[str]], None]) -> None:
         self._session = session
+        self._chosen = chosen
 
     def change(self, **changes: Unpack[FabricationChange]) -> None:
         """Change sheet, material, widths or what files are written for."""
         self._apply(lambda document: edits.set_fabrication(document, **changes))
+        self._chosen(changes.keys())
 
-    def cut_at_drawn_size(self, width_mm: float) -> None:
+    def set_opened_size(self, longer_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to a shape whose longer side is so long."""
+        self._apply(lambda document: set_opened_size(document, longer_mm))
+        self._chosen(("opened_mm",))
+
+    def cut_at_drawn_size(self, longer_mm: float) -> None:
         """Let the flat sheet be as wide as opens to the size that the target was drawn with."""
-        self._apply(
-            lambda document: Edit(
-                tr("Cut at the drawn size"), edits.set_fabrication(document, width_mm=width_mm).document
-            )
-        )
+        self._apply(lambda document: Edit(tr("Cut at the drawn size"), set_opened_size(document, longer_mm).document))
 
     def change_options(self, **changes: Unpack[OptionsChange]) -> None:
         """Change connector style, order or tabs."""

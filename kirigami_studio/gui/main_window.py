@@ -103,6 +103,7 @@ class MainWindow(QMainWindow):
         column = QVBoxLayout(design)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
+        self.settings.body.insertWidget(0, self.fabrication.material_row)
         self.settings.body.addWidget(self.run)
         column.addWidget(self.target, 1)
         column.addWidget(self.settings)
@@ -183,6 +184,7 @@ class MainWindow(QMainWindow):
             overlays=stage.view.overlays,
             dark=self.palette_.dark,
             follows_system=self.appearance.follows_system,
+            still=controller.preferences.present.motion == "still",
         )
 
     def _heading(self) -> QLabel:

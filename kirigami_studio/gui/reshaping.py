@@ -1,4 +1,4 @@
-"""Gestures of the target's editor -> named edits of the target, and the size that the opened sheet has."""
+"""Gestures of the target's editor -> named edits of the target."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.evaluate.opened_size import OpenedSize, opened_size
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.session import Entry, Session
+from kirigami_studio.gui.session import Session
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import Placed
-from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit, without_designs
+from kirigami_studio.project.edits import Edit, as_drawn, without_designs
 
 #: What the sliders do, by their names.
 REFINEMENTS = {"simplify": tr("Simplify target"), "smooth": tr("Smooth target")}
@@ -49,7 +47,7 @@ class TargetReshaper(QObject):
         self.edited.emit(self._edit(made, change))
 
     def _edit(self, made: Placed, change: Change) -> Edit:
-        document = self._session.document
+        document = as_drawn(self._session.document, made.outline)
         same = made.outline == document.target  # of another size or elsewhere: its designs are still right
         changed = replace(document, target=made.outline) if same else without_designs(document, made.outline)
         return Edit(change.gesture, changed, change.merge_key)
@@ -119,27 +117,3 @@ class TargetReshaper(QObject):
 
 #: Factors along x and y of the reflections of the whole target.
 FLIPS = {"across": (-1.0, 1.0), "over": (1.0, -1.0)}
-
-
-class OpenedSizes(QObject):
-    """The size of the opened sheet on the stage, and the width of the flat sheet that fits the drawn target."""
-
-    known = Signal(object)  #: OpenedSize, or None without a design
-    width_wanted = Signal(float)  #: mm, of the flat sheet
-
-    def __init__(self, parent: QObject) -> None:
-        super().__init__(parent)
-        self.size: OpenedSize | None = None
-
-    def follow(self, entry: Entry | None, document: Document) -> None:
-        """There is another design, target or width now."""
-        self.size = None
-        if entry is not None and document.target is not None:
-            design = entry.design
-            self.size = opened_size(design.deployment, design.pose, document.target, document.fabrication.width_mm)
-        self.known.emit(self.size)
-
-    def link(self) -> None:
-        """Let the sheet be as wide as shows the target in its drawn size."""
-        if self.size is not None and self.size.fitting_width_mm is not None:
-            self.width_wanted.emit(self.size.fitting_width_mm)

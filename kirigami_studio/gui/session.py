@@ -28,6 +28,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
+from kirigami_studio.project.sheet_size import sized
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
 CAPACITY = 2048
@@ -233,7 +234,7 @@ class Session(QObject):
     def apply(self, edit: Edit) -> None:
         """Make an edit part of the history and show what it changed."""
         before = self.document
-        if self.history.apply(edit):
+        if self.history.apply(replace(edit, document=sized(edit.document))):
             self.set_status(tr("Done: {label}.", label=edit.label))
             self.announce(before)
 
@@ -252,7 +253,7 @@ class Session(QObject):
         """Begin with another project; nothing can be undone, and the views show all of it."""
         self.project += 1
         self.path = path
-        self.history.restart(document, saved)
+        self.history.restart(sized(document), saved)
         self.announce()
 
     # reporting to the user ------------------------------------------------------------------------------------------

@@ -251,6 +251,7 @@ def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
         "profile": settings.profile,
         "dxf_version": settings.dxf_version,
         # Not there unless chosen, so that other projects stay as they were.
+        **({} if settings.opened_mm is None else {"opened_mm": settings.opened_mm}),
         **({} if settings.paper == NO_PAPER else {"paper": settings.paper}),
         **({"markers": True} if settings.markers else {}),
         "own": None if settings.own is None else asdict(settings.own),
@@ -261,6 +262,7 @@ def _fabrication(record: Record) -> FabricationSettings:
     options = record.record("options")
     return FabricationSettings(
         width_mm=record.number("width_mm"),
+        opened_mm=record.number("opened_mm") if record.holds("opened_mm") else None,
         material=record.text("material"),
         connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
         kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,

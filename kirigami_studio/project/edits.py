@@ -60,6 +60,7 @@ class FabricationChange(TypedDict, total=False):
     """Fields of :class:`FabricationSettings` that an edit may replace."""
 
     width_mm: float
+    opened_mm: float | None
     material: str
     connector_mm: float | None
     kerf_mm: float | None
@@ -112,6 +113,7 @@ _LABELS = {
     "prefer": tr("Change the polish preference"),
     "search": tr("Change the search setting"),
     "width_mm": tr("Change the sheet width"),
+    "opened_mm": tr("Change the size of the opened shape"),
     "material": tr("Change the material"),
     "connector_mm": tr("Change the connector width"),
     "kerf_mm": tr("Change the kerf"),
@@ -130,20 +132,28 @@ _LABELS = {
 
 
 def set_target(document: Document, target: Outline) -> Edit:
-    """Take another target; the designs of the old one go."""
-    changed = without_designs(document, target)
+    """Take another target; the designs of the old one go.  A size in mm is that of the opened shape."""
+    changed = without_designs(as_drawn(document, target), target)
     return Edit(tr("Set target {name}", name=target.name), changed)
 
 
 def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
     """Reshape the target by a gesture such as "Rotate target"; the steps of one drag undo together."""
-    changed = without_designs(document, target)
+    changed = without_designs(as_drawn(document, target), target)
     return Edit(gesture, changed, merge_key=f"target:{gesture}")
 
 
 def without_designs(document: Document, target: Outline | None) -> Document:
     """The document with another target; the designs of the old one, their marks and locks go."""
     return replace(document, target=target, candidates=(), chosen=None, provenance={}, marks=(), locked=frozenset())
+
+
+def as_drawn(document: Document, target: Outline) -> Document:
+    """The document whose opened shape has the size that a target was drawn with, if that is another one in mm."""
+    before = document.target
+    if target.unit != "mm" or target.size is None or (before is not None and before.size == target.size):
+        return document
+    return replace(document, fabrication=replace(document.fabrication, opened_mm=max(target.size)))
 
 
 def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
@@ -168,12 +178,17 @@ def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
 def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) -> Edit:
     """Change how the design is cut; dragging one slider is one undo step.
 
+    A width that is given no longer follows the size of the opened shape.
+
     Raises
     ------
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    changed = replace(document, fabrication=replace(document.fabrication, **changes))
+    cut = replace(document.fabrication, **changes)
+    if "width_mm" in changes and "opened_mm" not in changes:
+        cut = replace(cut, opened_mm=None)
+    changed = replace(document, fabrication=cut)
     return Edit(_label(changes), changed, merge_key=_merge_key("fabrication", changes))
 
 

@@ -81,6 +81,8 @@ class Fix:
             return replace(edits.choose(document, document.candidates.index(self.candidate)), label=label)
         profile, version = document.fabrication.profile, document.fabrication.dxf_version
         fabrication = replace(self.settings, profile=profile, dxf_version=version)
+        if fabrication.width_mm != document.fabrication.width_mm:  # it is what the fix is about, and stays
+            fabrication = replace(fabrication, opened_mm=None)
         return Edit(label, replace(document, fabrication=fabrication))
 
     def to_json(self) -> dict[str, object]:

@@ -124,6 +124,8 @@ class FabricationSettings:
         Key of the paper that PDFs are spread over; "none" for one page as large as the sheet.
     markers : bool
         Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
+    opened_mm : float or None
+        Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
     own : Material or None
         The numbers of ``material`` where that is a person's own and no preset.  Not a choice, so it takes no part in
         comparisons.
@@ -143,6 +145,7 @@ class FabricationSettings:
     dxf_version: str = "R2010"
     paper: str = NO_PAPER
     markers: bool = False
+    opened_mm: float | None = None
     own: Material | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
@@ -155,6 +158,7 @@ class FabricationSettings:
         if not isinstance(self.markers, bool):
             raise UsageError("settings.markers_not_true_or_false", value=self.markers)
         for code, value, zero_allowed in (
+            ("settings.opened_size", self.opened_mm, False),
             ("settings.connector_width", self.connector_mm, False),
             ("settings.kerf_width", self.kerf_mm, True),
         ):

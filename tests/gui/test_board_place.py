@@ -158,29 +158,53 @@ def test_that_a_press_on_the_groove_only_shows_until_it_is_let_go(designed: Main
 # the drawn size ---------------------------------------------------------------------------------------------
 
 
-def test_that_the_sheet_is_cut_at_the_drawn_size_in_one_step(designed: MainWindow, qtbot: QtBot) -> None:
-    row = designed.fabrication.opened
-    assert not row.link.isEnabled() and "drawn" not in row.text.text()  # the library's heart has no size in mm
+def test_that_the_sheet_follows_the_drawn_size_and_comes_back_to_it_in_one_step(
+    designed: MainWindow, qtbot: QtBot
+) -> None:
+    row = designed.target.opened
+    assert row.isVisible() and not row.drawn.isVisible()  # the library's heart has no size in mm
     designed.target.set_tool(Tool.POSE)
+    assert not row.isVisible()  # the board has sizes of its own
     designed.target.refine.width_.setValue(140.0)
     designed.target.set_editing(False)
-    assert row.link.isEnabled() and "drawn 140 " in row.text.text()
-    row.text.resize(row.text.fontMetrics().horizontalAdvance(row.text.text()) - 1, row.text.height())
-    shorter = row.text.drawn_text()
-    assert shorter.startswith("Opens ") and shorter.endswith(" mm wide, drawn 140")
+    assert row.isVisible() and row.width_.value() == 140.0 and not row.drawn.isVisible()
+    followed = designed.controller.document.fabrication.width_mm
+    designed.fabrication.lengths["width_mm"].setValue(60.0)
+    assert row.drawn.isVisible() and row.width_.value() == pytest.approx(140.0 * 60.0 / followed, abs=0.05)
     entry = designed.controller.stage
     assert entry is not None
-    qtbot.mouseClick(row.link, LEFT)
-    assert undo_label(designed) == "Cut at the drawn size" and "as drawn" in row.text.text()
+    qtbot.mouseClick(row.drawn, LEFT)
+    assert undo_label(designed) == "Cut at the drawn size" and row.width_.value() == 140.0
     width = designed.controller.document.fabrication.width_mm
     design, target = entry.design, designed.controller.document.target
-    assert target is not None and not row.link.isEnabled()
+    assert target is not None and not row.drawn.isVisible() and width == pytest.approx(followed)
     # The opened sheet in mm, turned as the target lies, has the target's scale.
     sheet = design.deployment.nodes(design.phi_target) * (width / np.ptp(design.deployment.compact[:, 0]))
     posed = design.pose.apply(design.deployment.nodes(design.phi_target)) * (140.0 / np.ptp(target.points[:, 0]))
     assert math.dist(sheet[0], sheet[-1]) == pytest.approx(math.dist(posed[0], posed[-1]), rel=1e-9)
     designed.commands["undo"].trigger()
-    assert designed.controller.document.fabrication.width_mm == 100.0 and row.link.isEnabled()
+    assert designed.controller.document.fabrication.width_mm == 60.0 and row.drawn.isVisible()
+
+
+def test_that_the_opened_size_is_typed_on_either_side_and_kept_by_every_design(
+    designed: MainWindow, until: Callable[[Callable[[], bool]], None]
+) -> None:
+    row, controller = designed.target.opened, designed.controller
+    row.height_.setValue(80.0)
+    longer = controller.document.fabrication.opened_mm
+    assert longer is not None and row.height_.value() == 80.0 and row.width_.value() == pytest.approx(longer, abs=0.06)
+    widths = []
+    for candidate in controller.document.candidates:
+        controller.choose(candidate)
+        assert (row.width_.value(), row.height_.value()) == (pytest.approx(longer, abs=0.06), 80.0)
+        widths.append(controller.document.fabrication.width_mm)
+        assert designed.fabrication.lengths["width_mm"].value() == pytest.approx(widths[-1], abs=0.06)
+    assert len(set(widths)) == len(widths)  # each sheet opens by another factor
+    until(lambda: not controller.queue.busy)
+    known = dict(controller.estimates.known)
+    controller.choose(controller.document.candidates[0])
+    until(lambda: not controller.queue.busy)
+    assert controller.estimates.known == known  # the designs are cut as before
 
 
 # letters ----------------------------------------------------------------------------------------------------

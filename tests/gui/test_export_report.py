@@ -14,12 +14,13 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.verification import Finding, Verification
+from kirigami_studio.fabricate.material import DEFAULT_PRESET
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, format_findings, verdict
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
-from kirigami_studio.project import preferences
+from kirigami_studio.project import edits, preferences
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences
 
@@ -146,19 +147,43 @@ def test_that_one_file_for_each_layer_is_reported_as_its_folder(
     assert len(list((tmp_path / "cut").iterdir())) == 3
 
 
-def test_that_a_new_project_starts_with_the_machine_of_the_last_export(
+def test_that_a_new_project_starts_with_the_machine_material_and_size_of_the_last_one(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
     kept = tmp_path / "preferences.toml"
     designed.controller.use_preferences(kept)
     assert not kept.exists() and designed.controller.document.candidates
     designed.controller.fabrication.change(profile="lightburn")
+    designed.controller.fabrication.change(material="card-co2", connector_mm=None, kerf_mm=None)
+    designed.controller.fabrication.set_opened_size(140.0)
+    wanted = Preferences("lightburn", material="card-co2", opened_mm=140.0)
+    assert preferences.load(kept) == wanted
+    designed.controller.new_project()
+    fabrication = designed.controller.document.fabrication
+    assert (fabrication.profile, fabrication.material, fabrication.opened_mm) == ("lightburn", "card-co2", 140.0)
+    assert not designed.controller.history.unsaved
+    designed.controller.fabrication.change(width_mm=90.0)
+    designed.controller.new_project()
+    assert designed.controller.document.fabrication.width_mm == 90.0
+    assert designed.controller.document.fabrication.opened_mm is None
+
+
+def test_that_a_cut_file_makes_its_machine_that_of_new_projects(
+    designed: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    kept = tmp_path / "preferences.toml"
+    designed.controller.use_preferences(kept)
+    change = edits.set_fabrication(designed.controller.document, profile="lightburn")
+    designed.controller.session.apply(change)  # as in a project that was opened: nobody chose it here
     assert not kept.exists()
     export(designed, tmp_path / "cut.dxf", until)
     assert preferences.load(kept) == Preferences("lightburn", "R2010")
-    designed.controller.new_project()
-    assert designed.controller.document.fabrication.profile == "lightburn"
-    assert not designed.controller.history.unsaved
+
+
+def test_that_a_material_that_is_gone_gives_way_to_the_usual_one(window: MainWindow, tmp_path: Path) -> None:
+    preferences.save(Preferences(material="my-lost-film"), tmp_path / "preferences.toml")
+    window.controller.use_preferences(tmp_path / "preferences.toml")
+    assert window.controller.document.fabrication.material == DEFAULT_PRESET
 
 
 def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_path: Path) -> None:
@@ -168,7 +193,20 @@ def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_pat
     assert window.fabrication.options.dxf_version.currentData() == "R12"
 
 
-@pytest.mark.parametrize("content", ["profile = 3", "profile = ", 'colour = "red"'])
+@pytest.mark.parametrize(
+    "content",
+    [
+        "profile = 3",
+        "profile = ",
+        'colour = "red"',
+        "opened_mm = -3.0",
+        'size = "both"',
+        "width_mm = nan",
+        "opened_mm = " + 5000 * "9",
+        "material = " + 3000 * "[",
+    ],
+    ids=lambda text: text[:20],
+)
 def test_that_damaged_preferences_are_told_and_left_alone(window: MainWindow, tmp_path: Path, content: str) -> None:
     path = tmp_path / "preferences.toml"
     path.write_text(content, encoding="utf-8")

@@ -19,7 +19,6 @@ from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.callout import beside
 from kirigami_studio.project import preferences
-from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences
 
 Until = Callable[[Callable[[], bool]], None]
@@ -165,7 +164,7 @@ def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: Ma
     window.controller.use_preferences(kept)
     window.appearance.refresh()
     assert window.palette_ is DARK
-    assert window.controller.document == Document()
+    assert window.controller.document == Preferences().new_document()
 
 
 @pytest.mark.parametrize("entry", ['theme = "pink"', "theme = 3", 'tour_seen = "yes"', "tour_seen = 1"])

@@ -56,7 +56,7 @@ def test_that_the_gallery_keeps_whole_rows_of_cards(designed: MainWindow, width:
 def test_that_the_usual_window_shows_choices_and_sums_the_numbers_up(designed: MainWindow, qtbot: QtBot) -> None:
     resized(designed, 1440, 900)
     panel = designed.fabrication
-    shown = (panel.material, *panel.lengths.values(), panel.opened, panel.summary, panel.export)
+    shown = (panel.material, *panel.lengths.values(), designed.target.opened, panel.summary, panel.export)
     assert all(part.isVisible() for part in shown)
     assert not panel.numbers["slits"].isVisible() and not panel.options.fold.isVisible()
     assert panel.numbers["slits"].text() in panel.summary.text()

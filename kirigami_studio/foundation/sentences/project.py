@@ -71,6 +71,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The balance must be a number from 0 (the closest match) to 1 (even panels), got {value!r:.40}."
     ),
     "settings.sheet_width": mark("The sheet's width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."),
+    "settings.opened_size": mark(
+        "The size of the opened shape must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."
+    ),
     "settings.material_not_a_name": mark("The material must be the name of a preset, got {value!r:.40}."),
     "settings.profile_not_a_name": mark("The machine profile must be a name, got {value!r:.40}."),
     "settings.dxf_version_not_a_name": mark("The DXF version must be a name, got {value!r:.40}."),
@@ -135,6 +138,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "preferences.not_a_name": mark("The preference {name} must be a name, got {value!r:.40}."),
     "preferences.unknown_theme": mark("The preference theme must be one of {themes}, got {value!r:.40}."),
     "preferences.not_true_or_false": mark("The preference {name} must be true or false, got {value!r:.40}."),
+    "preferences.unknown_choice": mark("The preference {name} must be one of {choices}, got {value!r:.40}."),
+    "preferences.not_a_length": mark("A length among the preferences cannot be used: {reason:.120}"),
     "preferences.not_readable": mark(
         "Cannot read the preferences in {path}: {reason:.80}. Correct or delete the file."
     ),

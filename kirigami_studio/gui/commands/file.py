@@ -87,9 +87,9 @@ class FileCommands(QObject):
         """Write the animation in a place of the user's choice; the ideal one says so in the name that is offered."""
         self._export(".gif" if motion is Motion.AS_CUT else "-ideal.gif", motion)
 
-    def export(self, extension: str = ".dxf") -> None:
-        """Write the cut file, or another kind of file, in a place of the user's choice."""
-        self._export(extension, Motion.AS_CUT)
+    def export(self, extension: str = "") -> None:
+        """Write the cut file that suits the material, or another kind of file, in a place of the user's choice."""
+        self._export(extension or self._window.fabrication.exports.extension, Motion.AS_CUT)
 
     def _export(self, ending: str, motion: Motion) -> None:
         if self._controller.stage is None:
@@ -196,7 +196,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "export",
             menu,
-            tr("Export &DXF …"),
+            tr("Export &cut file …"),
             tr("Export a cut file in mm, or a picture"),
             files.export,
             shortcuts=("Ctrl+E",),

@@ -290,6 +290,14 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
             window.appearance.follow_system,
             checked_when=lambda now: now.follows_system,
         ),
+        Command(
+            "still",
+            tr("&View"),
+            tr("Reduce mo&tion"),
+            tr("Nothing moves by itself, such as the sample on the empty stage"),
+            window.connections.first_start.switch_motion,
+            checked_when=lambda now: now.still,
+        ),
     )
 
 

@@ -79,7 +79,8 @@ class DesignConnections(QObject):
         window.gallery.bar.set_ready(False)
         window.stage.set_trimmable(False)
         window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
-        window.stage.view.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        window.stage.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        window.stage.allow_sample(False)
         window.fabrication.show_waiting()
         window.stage.cuts.show_plan(None)
         window.messages.dismiss(Tone.HINT, Tone.DONE)
@@ -89,6 +90,7 @@ class DesignConnections(QObject):
         window = self._window
         window.run.show_idle()
         window.stage.set_trimmable(True)
+        window.stage.allow_sample(True)
         hint = tr("Designs appear here, best first, as they are generated.")
         window.gallery.view.set_hint(tr("No designs yet"), hint)
         self._show_ready(self._controller.document)
@@ -101,13 +103,13 @@ class DesignConnections(QObject):
         if running:
             return
         if document.target is not None:
-            window.stage.view.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
+            window.stage.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
         else:
             hint = tr(
                 "Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left. "
                 "File > Examples of pairs has finished designs."
             )
-            window.stage.view.set_hint("target", tr("Start with a target"), hint)
+            window.stage.set_hint("target", tr("Start with a target"), hint)
 
     def _move_balance(self, regular: float) -> None:
         """The balance of match and regularity is being moved: the cards follow, also those of a run."""

@@ -13,12 +13,12 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.two_states import match_of_start, start_of
 from kirigami_studio.gui.jobs.cut_jobs import Motion, Planned
-from kirigami_studio.gui.reshaping import OpenedSizes
 from kirigami_studio.gui.scene.rim_items import MouthFacts
 from kirigami_studio.gui.scene.void_items import VoidFacts
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.layout_view import Overlay
 from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.sheet_size import size_of
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
@@ -31,7 +31,6 @@ class StageConnections(QObject):
         super().__init__(window)
         self._window = window
         self._controller = controller
-        self._sizing = OpenedSizes(self)
         self._connect_stage()
         self._connect_cuts()
         self._connect_fabrication()
@@ -77,13 +76,15 @@ class StageConnections(QObject):
         panel.exports.all_wanted.connect(window.files.export_all)
         panel.exports.artwork_wanted.connect(window.files.export_artwork)
         panel.exports.ideal_wanted.connect(lambda: window.files.animate(Motion.IDEAL))
-        panel.opened.link_wanted.connect(self._sizing.link)
-        self._sizing.known.connect(panel.opened.show_size)
-        self._sizing.width_wanted.connect(controller.fabrication.cut_at_drawn_size)
+        size = window.target.opened
+        size.size_wanted.connect(controller.fabrication.set_opened_size)
+        size.drawn_wanted.connect(controller.fabrication.cut_at_drawn_size)
+        size.edited.connect(controller.end_drag)
 
     def _show_document(self, document: Document) -> None:
         self._window.fabrication.show_settings(document.fabrication)
-        self._sizing.follow(self._controller.stage, document)
+        follows = document.fabrication.opened_mm is not None
+        self._window.target.opened.show_size(size_of(document), follows=follows)
         self._window.stage.set_sheet_width(document.fabrication.width_mm)
 
     def _show_design(self, entry: Entry | None) -> None:
@@ -91,7 +92,6 @@ class StageConnections(QObject):
         view, document = self._window.gallery.view, self._controller.document
         rank = -1 if entry is None else view.model_.number_of(entry.candidate)
         self._window.stage.show_entry(entry, document.target, rank)
-        self._sizing.follow(entry, document)
         self._controller.curves.show(None if entry is None else entry.design, document.target)
         view.mark(None if entry is None else entry.candidate)
         self._window.facts.setText("" if entry is None else "   ·   ".join(_facts(entry)))

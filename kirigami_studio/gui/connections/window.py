@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.connections.designs import DesignConnections
+from kirigami_studio.gui.connections.first_start import FirstStart
 from kirigami_studio.gui.connections.side_by_side import SideBySide
 from kirigami_studio.gui.connections.stage import StageConnections, VoidConnections
 from kirigami_studio.gui.connections.target import SecondConnections, StartConnections, TargetConnections
@@ -35,6 +36,7 @@ class Connections(QObject):
         self.second = SecondConnections(window, controller)
         self._connect_messages()
         self.voids = VoidConnections(window, controller)
+        self.first_start = FirstStart(window, controller)
         self._show_title()
         window.status_text.setText(tr("Choose or draw a target to begin."))
 

@@ -18,6 +18,7 @@ from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.sheet_size import cut_for
 
 if TYPE_CHECKING:
     from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
@@ -170,7 +171,10 @@ class AsCutEstimates(QObject):
 
     def _begin(self) -> None:
         self._job.stop()
-        settings = one_sheet(self._session.document.fabrication)
+        document = self._session.document
+        settings = one_sheet(document.fabrication)
+        if settings.opened_mm is not None:  # every design has the width of its own that opens to this size
+            settings = replace(settings, width_mm=settings.opened_mm)
         there = {entry.candidate for entry in self._entries}
         before = self.known
         if settings != self._settings:
@@ -179,10 +183,12 @@ class AsCutEstimates(QObject):
         if before:
             self.changed.emit(dict(self.known))
         missing = tuple(
-            (entry.candidate, entry.design.deployment) for entry in self._entries if entry.candidate not in self.known
+            (entry.candidate, entry.design.deployment, one_sheet(cut_for(document, entry.candidate)))
+            for entry in self._entries
+            if entry.candidate not in self.known
         )
         if missing:
-            steps = partial(estimating, missing, settings)
+            steps = partial(estimating, missing)
             self._job.start(tr("estimating the designs as cut"), steps, JobCallbacks(self._take, self._tell))
 
     def _take(self, report: Estimated) -> None:

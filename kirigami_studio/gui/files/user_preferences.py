@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,10 @@ from kirigami_studio.gui.session import Session
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences
+
+#: Fields of the fabrication settings that new projects share with the last one.
+MACHINE_FIELDS = frozenset({"material", "profile", "dxf_version", "paper"})
+SIZE_FIELDS = frozenset({"opened_mm", "width_mm"})
 
 
 class UserPreferences:
@@ -31,15 +36,27 @@ class UserPreferences:
             self._path = path
 
     def remember(self, document: Document) -> None:
-        """A cut file of this document was written."""
+        """A cut file of this document was written, or its machine or material was chosen."""
         self._save(self.present.on_machine_of(document))
+
+    def note_choice(self, fields: Collection[str]) -> None:
+        """These fields of the fabrication settings were chosen in the present document: new projects have the same."""
+        document = self._session.document
+        if MACHINE_FIELDS.intersection(fields):
+            self.remember(document)
+        if SIZE_FIELDS.intersection(fields):
+            self._save(self.present.with_size_of(document))
 
     def choose_theme(self, theme: str) -> None:
         """The window is to look like this from now on: "system", "light" or "dark"."""
         self._save(replace(self.present, theme=theme))
 
+    def keep(self, wanted: Preferences) -> None:
+        """These hold from now on."""
+        self._save(wanted)
+
     def note_tour(self) -> None:
-        """The guided tour was offered; it comes by itself only once."""
+        """The guided tour was taken."""
         self._save(replace(self.present, tour_seen=True))
 
     def _save(self, wanted: Preferences) -> None:

@@ -131,16 +131,16 @@ def gripping(
 
 
 def estimating(
-    designs: tuple[tuple[Candidate, Deployment], ...], settings: FabricationSettings, cancel: Cancel
+    designs: tuple[tuple[Candidate, Deployment, FabricationSettings], ...], cancel: Cancel
 ) -> Iterator[Estimated]:
-    """Estimate whether designs close in a material, a few at a time."""
+    """Estimate whether designs close, each as it would be cut, a few at a time; all are of one material."""
     from kirigami_studio.project.as_cut import estimate
     from kirigami_studio.project.cutting import material_for
 
-    material = material_for(settings)
+    material = material_for(designs[0][2])
     for start in range(0, len(designs), AT_ONCE):
         found = []
-        for candidate, deployment in designs[start : start + AT_ONCE]:
+        for candidate, deployment, settings in designs[start : start + AT_ONCE]:
             try:
                 # On several threads, narrow matrices wait for each other, and the window for them.
                 with one_blas_thread():

@@ -71,19 +71,27 @@ class Pair:
 
 def reading_pairs(cancel: Cancel) -> Iterator[Pair]:
     """Read the bundled pairs one by one, in the order of their names."""
-    from kirigami_studio.lattice.deployment import deploy
-    from kirigami_studio.project import store
-
     for path in sorted(resource("pairs").glob("*.kiri")):
         if cancel():
             return
-        document = store.load(path)
-        candidate, target = document.candidate, document.target
-        if candidate is not None and target is not None:
-            design = PosedDesign(
-                deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi, candidate.trim
-            )
-            yield Pair(path, target, candidate, design)
+        yield from _finished(path)
+
+
+def reading_sample(cancel: Cancel) -> Iterator[Pair]:
+    """Read the design that is shown while there is none."""
+    yield from _finished(resource("examples", "heart.kiri"))
+
+
+def _finished(path: Path) -> Iterator[Pair]:
+    """The chosen design of a bundled project."""
+    from kirigami_studio.lattice.deployment import deploy
+    from kirigami_studio.project import store
+
+    document = store.load(path)
+    candidate, target = document.candidate, document.target
+    if candidate is not None and target is not None:
+        design = PosedDesign(deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi, candidate.trim)
+        yield Pair(path, target, candidate, design)
 
 
 def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Saved]:

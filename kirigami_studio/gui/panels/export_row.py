@@ -11,6 +11,9 @@ from kirigami_studio.gui.file_kinds import FILE_KINDS
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 
+#: What the button says, by the extension of the cut file that suits the material.
+EXPORT = {".dxf": tr("Export DXF"), ".pdf": tr("Export PDF")}
+
 
 class ExportRow(QWidget):
     """Reports which kind of file is wanted."""
@@ -22,11 +25,12 @@ class ExportRow(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.export = QPushButton(tr("Export DXF"))
+        self.extension = ".dxf"  #: of the file that the button writes
+        self.export = QPushButton(EXPORT[self.extension])
         self.export.setObjectName("primary")
         self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.export.setIconSize(QSize(18, 18))
-        self.export.clicked.connect(lambda: self.export_wanted.emit(".dxf"))
+        self.export.clicked.connect(lambda: self.export_wanted.emit(self.extension))
         self.more = QToolButton()
         self.more.setObjectName("moreExports")
         self.more.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -61,8 +65,13 @@ class ExportRow(QWidget):
         self.more.setFixedWidth(38)
         self.more.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
 
-    def show_goal(self, profile: str, version: str) -> None:
-        """Say in the tooltip what the cut file is written for."""
+    def show_goal(self, profile: str, version: str, extension: str) -> None:
+        """Offer the cut file with this extension first, and say in the tooltip what it is written for."""
+        self.extension = extension
+        self.export.setText(EXPORT[extension])
+        if extension == ".pdf":
+            self.export.setToolTip(tr("Export the cut sheet at 1:1, to print and to cut by hand (Ctrl+E)."))
+            return
         self.export.setToolTip(
             tr(
                 "Export and check the cut file in mm, DXF {version} (Ctrl+E).\nMachine: {profile}.",

@@ -1,4 +1,7 @@
-"""From design to cut file: material, widths in mm, size when opened, live numbers, export."""
+"""From design to cut file: material, widths in mm, live numbers, export.
+
+The row with the material is made here; the window puts it above the settings that designs are asked for with.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.verdict import VerdictState
@@ -30,7 +32,6 @@ from kirigami_studio.gui.look.readable import (
 )
 from kirigami_studio.gui.panels.card import (
     Card,
-    ElidedLabel,
     ScrolledWhenShort,
     ToolButton,
     captioned,
@@ -52,13 +53,16 @@ if TYPE_CHECKING:
 LENGTHS = (
     (
         "width_mm",
-        tr("&Width, mm"),
-        tr("Width in millimetres"),
+        tr("Flat &width, mm"),
+        tr("Width of the flat sheet in millimetres"),
         5.0,
         3000.0,
         5.0,
         1,
-        tr("Width of the flat sheet, mm (5 to 3000). The grid sets the height."),
+        tr(
+            "Width of the flat sheet, mm (5 to 3000). It follows the opened size, beside the target; a width typed "
+            "here stays. The grid sets the height."
+        ),
     ),
     (
         "connector_mm",
@@ -100,15 +104,15 @@ class Extent(Enum):
     """How much the panel shows; each is more than the one before."""
 
     EXPORT = "export"  #: the sheet's size in the header, what is wrong, and the export
-    CHOICES = "choices"  #: the material, the widths and the opened size too
+    CHOICES = "choices"  #: the widths too
     ALL = "all"  #: the live numbers and the options too
 
 
 #: What the button does next, in the words of its tooltip.
 NEXT = {
-    Extent.EXPORT: (Extent.CHOICES, tr("Show material and widths.")),
+    Extent.EXPORT: (Extent.CHOICES, tr("Show widths.")),
     Extent.CHOICES: (Extent.ALL, tr("Show cutting numbers and more options.")),
-    Extent.ALL: (Extent.EXPORT, tr("Hide material, widths and numbers.")),
+    Extent.ALL: (Extent.EXPORT, tr("Hide widths and numbers.")),
 }
 
 
@@ -140,6 +144,7 @@ class FabricationPanel(Card):
         self.edit_materials.clicked.connect(self.materials_wanted)
         self.reload_materials()
         self.material.activated.connect(self._take_material)
+        self.material_row = self._material_row()
         self.lengths = {row[0]: self._length(row[0], *row[2:]) for row in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
@@ -153,7 +158,6 @@ class FabricationPanel(Card):
         self.exports = ExportRow()
         self.exports.export_wanted.connect(self.export_wanted)
         self.export, self.more, self.kinds = self.exports.export, self.exports.more, self.exports.kinds
-        self.opened = OpenedRow()
         self._build_fold()
         self._lay_out()
         self.body.addWidget(self.warnings)
@@ -223,21 +227,31 @@ class FabricationPanel(Card):
         box.editingFinished.connect(self.edited)
         return box
 
+    def _material_row(self) -> QWidget:
+        """The material stands where designs are asked for: what it can bear decides how they are made."""
+        row = QWidget()
+        row.setObjectName("plain")
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.setSpacing(4)
+        caption = QLabel(tr("&Material"))
+        caption.setObjectName("muted")
+        caption.setBuddy(self.material)
+        line.addWidget(caption)
+        line.addSpacing(4)
+        line.addWidget(self.material, 1)
+        line.addWidget(self.edit_materials)
+        return row
+
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self.details)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(5)
-        material = QHBoxLayout()
-        material.setSpacing(4)
-        material.addWidget(self.material, 1)
-        material.addWidget(self.edit_materials)
-        rows.addLayout(captioned(tr("&Material"), self.material, material))
         row = QHBoxLayout()
         row.setSpacing(8)
         for field, label, *_ in LENGTHS:
             row.addLayout(captioned(label, self.lengths[field], self.lengths[field]), 1)
         rows.addLayout(row)
-        rows.addWidget(self.opened)
         self.table = QWidget()
         self.table.setObjectName("plain")
         table = QGridLayout(self.table)
@@ -300,7 +314,8 @@ class FabricationPanel(Card):
             with QSignalBlocker(self.lengths[field]):
                 self.lengths[field].setValue(value)
         self.options.show_settings(settings)
-        self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version)
+        extension = ".pdf" if material is not None and material.by_hand else ".dxf"
+        self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version, extension)
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show what the plan amounts to; None when there is no design."""
@@ -394,51 +409,6 @@ class FabricationPanel(Card):
         self.warnings.setVisible(self._extent is Extent.ALL or not self._calm)
 
 
-class OpenedRow(QWidget):
-    """Hidden until there is a design."""
-
-    link_wanted = Signal()
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("plain")
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(4)
-        self.text = ElidedLabel()
-        self.text.setAccessibleName(tr("Size of the opened sheet"))
-        self.link = ToolButton("cutAtDrawnSize", "chain", "")
-        self.link.setAccessibleName(tr("Cut at the drawn size"))
-        self.link.clicked.connect(self.link_wanted)
-        row.addWidget(self.text, 1)
-        row.addWidget(self.link)
-        self.show_size(None)
-
-    def show_size(self, size: OpenedSize | None) -> None:
-        """Show both sizes where they differ."""
-        self.setVisible(size is not None)
-        if size is None:
-            return
-        opened = _sides(size.opened)
-        if size.drawn is None:
-            self.text.setText(tr("Opens to {opened} mm", opened=opened))
-            tip = tr("The target has no size in mm. Set one on the drawing board (E) to cut at that size.")
-        elif size.agrees:
-            self.text.setText(tr("Opens to {opened} mm, as drawn", opened=opened))
-            tip = tr("The sheet opens to the target's drawn size.")
-        else:
-            self.text.setText(
-                tr("Opens to {opened}, drawn {drawn} mm", opened=opened, drawn=_sides(size.drawn)),
-                tr("Opens {opened} mm wide, drawn {drawn}", opened=_side(size.opened[0]), drawn=_side(size.drawn[0])),
-            )
-            tip = tr(
-                "Cut at the drawn size: make the flat sheet {width:.1f} mm wide so that it opens to the target's size.",
-                width=size.fitting_width_mm,
-            )
-        self.link.setToolTip(tip)
-        self.link.setEnabled(size.drawn is not None and not size.agrees)
-
-
 def format_copies(plan: CutPlan) -> str:
     """How the copies lie in the file, where it holds more than one."""
     if len(plan.copies) == 1:
@@ -494,11 +464,3 @@ def format_times(times: CutTimes) -> str:
         travel=readable_time(times.travel),
         extra=readable_time(times.extra),
     )
-
-
-def _sides(size: tuple[float, float]) -> str:
-    return f"{_side(size[0])} {TIMES} {_side(size[1])}"
-
-
-def _side(side: float) -> str:
-    return f"{side:.0f}" if side >= 100 else f"{side:.1f}"

@@ -15,6 +15,7 @@ from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButto
 from kirigami_studio.gui.panels.compare_page import ComparePage
 from kirigami_studio.gui.panels.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
+from kirigami_studio.gui.panels.empty_stage import EmptyStage
 from kirigami_studio.gui.panels.ends_line import EndsLine
 from kirigami_studio.gui.panels.plots_panel import PlotsPanel
 from kirigami_studio.gui.panels.verdict_bar import VerdictBar
@@ -70,6 +71,7 @@ class StagePanel(Card):
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
+        self._sample_allowed = True
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
@@ -149,6 +151,9 @@ class StagePanel(Card):
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
+        self.empty = EmptyStage()
+        self.empty.hide()
+        column.addWidget(self.empty, 1)
         column.addWidget(self.split, 1)
         self.voids = VoidBar()
         self.voids.hide()
@@ -163,6 +168,28 @@ class StagePanel(Card):
         self.body.addWidget(self.pages, 1)
         self.verdict = VerdictBar()
         self.body.addWidget(self.verdict)
+
+    def set_hint(self, icon: str, headline: str, hint: str) -> None:
+        """Say what to do while there is no design."""
+        self.view.set_hint(icon, headline, hint)
+        self.empty.say(headline, hint)
+
+    def allow_sample(self, allowed: bool) -> None:
+        """Whether the sample may be shown while there is no design; it must not hide one that is coming."""
+        self._sample_allowed = allowed
+        self.place_sample()
+
+    def place_sample(self) -> None:
+        """Show the sample while there is no design, if it is there and allowed."""
+        shown = self._sample_allowed and self._entry is None and self.empty.ready
+        pages: tuple[QWidget, QWidget] = (self.split, self.empty)
+        leaving, coming = pages if shown else pages[::-1]
+        focused = self.window().focusWidget()
+        held = focused is not None and (leaving is focused or leaving.isAncestorOf(focused))
+        coming.show()
+        if held:  # else Qt would hand it to the next button
+            (self.empty if shown else self.view).setFocus()
+        leaving.hide()
 
     @property
     def showing_cuts(self) -> bool:
@@ -229,6 +256,7 @@ class StagePanel(Card):
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.scene_bounds() is None
         self._entry, self._target, self._rank, self._sample = entry, target, rank, None
+        self.place_sample()
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()

@@ -121,8 +121,17 @@ class StartTile(QAbstractButton):
     @property
     def size_text(self) -> str:
         """Size of the flat sheet."""
+        return size_words(self._width_mm, self._height_mm)
+
+    @property
+    def brief_size(self) -> str:
+        """The same in whole millimetres."""
+        return size_words(round(self._width_mm), round(self._height_mm))
+
+    @property
+    def _height_mm(self) -> float:
         across, up = np.ptp(start_outline(self._start, self._grid), axis=0).tolist()
-        return size_words(self._width_mm, self._width_mm * up / across)
+        return float(self._width_mm * up / across)
 
     def open_menu(self) -> None:
         """Open the list of starts below the tile."""
@@ -197,6 +206,8 @@ class StartTile(QAbstractButton):
         for number, text in enumerate(texts):
             place = QRectF(2, self.height() - (lines - number) * LINE - 4.0, self.width() - 4, LINE)
             painter.setPen(QColor(palette.text if number == 0 else palette.muted))
+            if metrics.horizontalAdvance(text) > place.width():
+                text = self.brief_size if number else text
             elided = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(place.width()))
             painter.drawText(place, centred, elided)
         painter.end()

@@ -20,6 +20,7 @@ from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, ToolButton, muted_label
 from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
+from kirigami_studio.gui.panels.opened_size_row import OpenedSizeRow
 from kirigami_studio.gui.panels.start_tile import StartTile
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
@@ -92,6 +93,8 @@ class TargetPanel(Card):
         boards.addWidget(self.view, 1)
         self.body.addLayout(boards, 1)
         self.body.addLayout(line)
+        self.opened = OpenedSizeRow()
+        self.body.addWidget(self.opened)
         self.body.addWidget(self.start_refusal)
         self.body.addWidget(self.reach)
         self.body.addWidget(self.refine)
@@ -127,6 +130,7 @@ class TargetPanel(Card):
         for part in (self.tools, self.refine):
             part.setVisible(on)
         self.start.setVisible(not on)
+        self.opened.fold(on)
         if on != self.editing:
             self.editing = on
             self._show_reach_text()

@@ -38,6 +38,7 @@ WAYS = {
     "felt-co2": (ConnectorStyle.DOUBLE, 2.3, 380.0, (CARE, CARE, CARE)),
     "foil-uv": (ConnectorStyle.CENTRED, 1.0, 200.0, (READY, READY, READY)),
     "leather-co2": (ConnectorStyle.DOUBLE, 2.0, 380.0, (CARE, CARE, CARE)),
+    "paper-hand": (ConnectorStyle.CENTRED, 2.0, 190.0, (READY, READY, READY)),
     "pet-co2": (ConnectorStyle.CENTRED, 0.3, 100.0, (READY, READY, READY)),
     "polypropylene-co2": (ConnectorStyle.CENTRED, 2.0, 300.0, (READY, READY, READY)),
     "tpu-co2": (ConnectorStyle.CENTRED, 0.5, 100.0, (READY, READY, READY)),

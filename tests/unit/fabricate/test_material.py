@@ -14,8 +14,8 @@ from kirigami_studio.foundation.resources import resource
 
 def test_that_the_presets_are_bundled_and_none_claims_to_be_calibrated() -> None:
     assert list(presets()) == [
-        "film-uv", "acrylic-co2", "card-co2", "drag-knife", "felt-co2", "foil-uv", "leather-co2", "pet-co2",
-        "plywood-co2", "polypropylene-co2", "tpu-co2",
+        "film-uv", "acrylic-co2", "card-co2", "drag-knife", "felt-co2", "foil-uv", "leather-co2", "paper-hand",
+        "pet-co2", "plywood-co2", "polypropylene-co2", "tpu-co2",
     ]  # fmt: skip
     assert not any(material.calibrated for material in presets().values())
     assert all(material.connector_mm > material.min_ligament_mm for material in presets().values())
