@@ -101,6 +101,30 @@ def test_that_a_killed_studio_loses_nothing(
     assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
 
 
+def test_that_work_left_for_later_is_offered_again_from_the_file_menu(
+    window: MainWindow, project_file: Path, folder: Path, until: Until
+) -> None:
+    kill_a_studio(folder, project_file)
+    window.controller.filing.recovery.use(folder)
+    until(lambda: bool(asked(window)))
+    dict(asked(window)[0].actions)["Keep for later"]()
+    window.messages.drop(asked(window)[0])
+    window.commands["recover"].trigger()
+    until(lambda: bool(asked(window)))
+    window.commands["recover"].trigger()  # asked twice, shown once
+    until(lambda: not window.controller.queue.busy)
+    assert len(asked(window)) == 1
+    dict(asked(window)[0].actions)["Recover"]()
+    until(lambda: window.controller.stage is not None)
+    assert window.controller.document.fabrication.width_mm == 123.0
+
+
+def test_that_nothing_to_recover_is_said(window: MainWindow, folder: Path) -> None:
+    window.controller.filing.recovery.use(folder)
+    window.commands["recover"].trigger()
+    assert window.messages.messages[-1].sentence == "There is no unsaved work to recover."
+
+
 def test_that_two_studios_do_not_recover_each_others_work(designed: MainWindow, folder: Path, until: Until) -> None:
     designed.controller.filing.recovery.quiet_ms = 0
     designed.controller.filing.recovery.use(folder)

@@ -151,6 +151,13 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             icon="project",
         ),
         Command(
+            "recover",
+            menu,
+            tr("&Recover unsaved work …"),
+            tr("Ask again about work that an earlier session left unsaved"),
+            window.controller.filing.recovery.offer_again,
+        ),
+        Command(
             "save",
             menu,
             tr("&Save project"),

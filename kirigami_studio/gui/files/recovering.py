@@ -54,6 +54,7 @@ class Recovery(QObject):
         self._job: int | None = None
         self._warned = False
         self._offered: dict[Path, QLockFile] = {}
+        self._questions: dict[Path, Message] = {}
         self._pending: Leftover | None = None
         self._latest: QDeadlineTimer | None = None
         self._timer = QTimer(self)
@@ -163,12 +164,26 @@ class Recovery(QObject):
 
     def look_back(self) -> None:
         """Look for work that was kept by sessions which are no longer running."""
+        self._read(self._abandoned())
+
+    def offer_again(self) -> None:
+        """Ask once more about all work of earlier sessions, also what was left for later, or say that there is none."""
+        waiting = *self._offered, *self._abandoned()
+        for message in self._questions.values():
+            self._session.withdraw(message)
+        self._questions.clear()
+        self._read(waiting)
+        if not waiting:
+            self._session.post(Message(tr("There is no unsaved work to recover."), Tone.HINT))
+
+    def _abandoned(self) -> tuple[Path, ...]:
+        """Files of sessions that are no longer running, oldest first, locked from now on."""
         if self._folder is None:
-            return
+            return ()
         try:
             files = sorted(self._folder.glob(f"*{SUFFIX}"), key=lambda file: file.stat().st_mtime, reverse=True)
         except OSError:
-            return  # a folder that cannot be read holds nothing that could be offered
+            return ()  # a folder that cannot be read holds nothing that could be offered
         abandoned = []
         for file in files:
             if file != self._own and file not in self._offered and len(self._offered) < MOST_OFFERS:
@@ -176,17 +191,23 @@ class Recovery(QObject):
                 if lock.tryLock(0):
                     self._offered[file] = lock
                     abandoned.append(file)
-        if abandoned:
+        return tuple(abandoned[::-1])
+
+    def _read(self, files: tuple[Path, ...]) -> None:
+        if files:
             callbacks = JobCallbacks(self._offer, on_failed=self._session.report_failure)
-            steps = partial(reading_leftovers, tuple(abandoned[::-1]))
-            self._session.queue.start(tr("looking for unsaved work"), steps, callbacks)
+            self._session.queue.start(tr("looking for unsaved work"), partial(reading_leftovers, files), callbacks)
+
+    def _ask(self, leftover: Leftover, message: Message) -> None:
+        self._questions[leftover.file] = message
+        self._session.post(message)
 
     def _offer(self, leftover: Leftover) -> None:
         discard = (tr("Discard"), lambda: self.discard(leftover))
         later = (tr("Keep for later"), lambda: self.leave(leftover))
         if leftover.note is None:
             sentence = tr("Kirigami Studio quit unexpectedly, and its autosaved work cannot be read.")
-            self._session.post(Message(sentence, Tone.WARNING, leftover.fault, (discard, later)))
+            self._ask(leftover, Message(sentence, Tone.WARNING, leftover.fault, (discard, later)))
             return
         sentence = tr(
             "Kirigami Studio quit unexpectedly. Recover {name}, last changed {when}?",
@@ -195,7 +216,7 @@ class Recovery(QObject):
         )
         recover = (tr("Recover"), lambda: self.recover_wanted.emit(leftover))
         details = leftover.note.path or tr("Never saved.")
-        self._session.post(Message(sentence, Tone.WARNING, details, (recover, discard, later)))
+        self._ask(leftover, Message(sentence, Tone.WARNING, details, (recover, discard, later)))
 
     def recover(self, leftover: Leftover) -> None:
         """Open the kept work; its file goes once this session keeps the work itself."""
@@ -213,7 +234,8 @@ class Recovery(QObject):
         self._session.set_status(tr("Discarded the autosaved work: {name}.", name=_called(leftover)))
 
     def leave(self, leftover: Leftover) -> None:
-        """Ask again at the next start."""
+        """Ask again at the next start, or when File > Recover unsaved work is chosen."""
+        self._questions.pop(leftover.file, None)
         lock = self._offered.pop(leftover.file, None)
         if lock is not None:
             lock.unlock()
