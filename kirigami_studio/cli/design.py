@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings, say_verdict
-from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, read_targets
+from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
@@ -92,7 +92,8 @@ def design(arguments: argparse.Namespace) -> int:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
 
     def tell(name: str, design: Design, files: dict[str, str]) -> None:
-        answer = summary(design.result) | {"files": files}
+        warnings = warn(name, design.result.request.target)
+        answer = summary(design.result) | {"files": files, "warnings": warnings}
         if design.verdict is not None:
             answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json()}
         if batch:
@@ -109,7 +110,7 @@ def design(arguments: argparse.Namespace) -> int:
     def one_from_cluster(name: str, design: Design) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
-    inputs = read_targets(arguments.targets, arguments.threshold)
+    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
     if arguments.scheduler:
         return for_each(_from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)), batch, one_from_cluster)
     return for_each(inputs, batch, one)
@@ -443,8 +444,6 @@ def _folder_name(name: str, used: set[str]) -> str:
 
 def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict | None) -> None:
     score, trim, angle = result.best.score, result.best.trim, math.degrees(result.request.phi)
-    for note in target.notes:
-        say(f"{target.name}: {note}")
     if result.request.grid_chosen:
         say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(

@@ -18,9 +18,11 @@ from kirigami_studio.cli.inputs import (
     are_many_targets,
     for_each,
     is_batch,
+    part_choice,
     read_mask,
     read_sheets,
     read_targets,
+    warn,
 )
 from kirigami_studio.cli.option_types import parse_grid
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio, path_contact
@@ -171,7 +173,7 @@ def score(arguments: argparse.Namespace) -> int:
         raise UsageError("score.nothing_to_score")
     phi = target_angle(arguments.phi)
     sheets = list(read_sheets(sheet_sources))
-    targets = list(read_targets([target_source]))
+    targets = list(read_targets([target_source], choice=part_choice(arguments)))
     if 1 not in (len(sheets), len(targets)) and len(sheets) != len(targets):
         raise UsageError("score.numbers_differ", sheets=len(sheets), targets=len(targets))
     pairs = max(len(sheets), len(targets))
@@ -181,11 +183,13 @@ def score(arguments: argparse.Namespace) -> int:
 
     def one(name: str, pair: tuple[Sheet, Named[Outline]]) -> None:
         sheet, target = pair
-        result = evaluate(deploy(sheet), target.read(), phi)
+        outline = target.read()
+        result = evaluate(deploy(sheet), outline, phi)
+        answer = result.to_json() | {"warnings": warn(target.name, outline)}
         if batch:
-            print_json({"source": name, "target": target.name} | result.to_json())
+            print_json({"source": name, "target": target.name} | answer)
         elif arguments.json:
-            print_json(result.to_json())
+            print_json(answer)
         else:
             figures = tr(
                 "sIoU {siou:.4f} ({gain:+.4f} over the uniform layout), exact IoU {iou:.4f}, TV {tv:.3f}.",

@@ -6,7 +6,9 @@ get their answer.
 
 from __future__ import annotations
 
+import argparse
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -19,10 +21,13 @@ import numpy.typing as npt
 from kirigami_studio.cli.console import print_json
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, TargetError, UsageError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import LARGEST_FILE, SUFFIXES, named_sheet, read_sheet
+from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import read_target, target_files
+from kirigami_studio.outlines.parts import ALL, LARGEST
+from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target, target_files
 from kirigami_studio.outlines.read_image import outline_of_mask, read_image
 from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.project.store import SUFFIX as PROJECT
@@ -30,6 +35,9 @@ from kirigami_studio.project.store import load
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
+
+#: Problems of drawings whose lines may be meant as they are painted.
+OPEN_LINES = ("lines.open_at", "lines.not_closed")
 
 Value = TypeVar("Value")
 
@@ -91,10 +99,58 @@ def for_each(inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, V
     return 0
 
 
-def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iterator[Named[Outline]]:
+@dataclass(frozen=True, slots=True)
+class PartChoice:
+    """What options say about the parts of drawings.
+
+    Attributes
+    ----------
+    words : str
+        ``all``, ``largest``, or names, numbers and layers.
+    merging : Merging
+    """
+
+    words: str
+    merging: Merging
+
+    def outline(self, path: Path) -> Outline:
+        """The outline of the chosen parts of a file."""
+        source = read_parts(path)
+        try:
+            return merged(source, source.chosen(self.words), self.merging).outline
+        except TargetError as error:
+            raise TargetError("source.not_usable", name=path.name, reason=error) from error
+
+
+def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
+    """What the options say about parts; None where they say nothing."""
+    stroke = arguments.stroke_outline
+    if arguments.parts is None and arguments.join is None and arguments.bridge is None and stroke is None:
+        return None
+    join = Join.UNION if arguments.bridge is None else Join.BRIDGE
+    join = join if arguments.join is None else Join(arguments.join)
+    if arguments.bridge is not None and join is not Join.BRIDGE:
+        raise UsageError("option.bridge_without_join")
+    several = join is not Join.UNION or stroke is not None
+    words = arguments.parts if arguments.parts is not None else ALL if several else LARGEST
+    merging = Merging(join, arguments.bridge, stroke is not None, stroke or None)
+    return PartChoice(words, merging)
+
+
+def warn(name: str, target: Outline) -> list[str]:
+    """Say on standard error what was left out of a target or changed; returns it for the answer in JSON."""
+    for note in target.notes:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {name}: {note}\n")
+    return list(target.notes)
+
+
+def read_targets(
+    sources: Sequence[str], threshold: float | None = None, choice: PartChoice | None = None
+) -> Iterator[Named[Outline]]:
     """Yield every target that the sources name, in order.
 
-    ``threshold`` (grey level, 0..1) replaces the automatic one for images that are named singly.
+    ``threshold`` (grey level, 0..1) replaces the automatic one for images that are named singly; a ``choice`` is that
+    of parts, for drawings.
     """
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
@@ -106,11 +162,27 @@ def read_targets(sources: Sequence[str], threshold: float | None = None) -> Iter
                 yield Named(name, partial(_outline_of, mask, name))
         elif source not in names() and _is_folder(source):
             for file in target_files(path):
-                yield Named(file.stem, partial(read_target, file))
+                yield Named(file.stem, partial(_read_drawing, file, choice))
         elif threshold is not None and path.suffix.lower() in IMAGE_SUFFIXES:
             yield Named(source, partial(read_image, path, threshold))
+        elif path.suffix.lower() in PART_READERS:
+            yield Named(source, partial(_read_drawing, path, choice))
+        elif choice is not None:
+            raise UsageError("parts.not_a_drawing", source=source, kinds=", ".join(PART_READERS))
         else:
             yield Named(source, partial(read_target, source))
+
+
+def _read_drawing(path: Path, choice: PartChoice | None) -> Outline:
+    """The outline of a file: of its parts as chosen, or as it is read by itself."""
+    if choice is not None and path.suffix.lower() in PART_READERS:
+        return choice.outline(path)
+    try:
+        return read_target(path)
+    except TargetError as error:
+        if isinstance(error.__cause__, TargetError) and error.__cause__.code in OPEN_LINES:
+            raise TargetError("parts.or_as_painted", reason=error) from error
+        raise
 
 
 def read_sheets(sources: Sequence[str]) -> Iterator[Named[Sheet]]:

@@ -1,4 +1,4 @@
-"""``targets``, ``variants``, ``materials`` and ``coupon``: what there is to choose from, and materials of one's own."""
+"""``targets``, ``parts``, ``variants``, ``materials``, ``coupon``: what there is to choose from, and own materials."""
 
 from __future__ import annotations
 
@@ -21,6 +21,37 @@ def targets(arguments: argparse.Namespace) -> int:
     from kirigami_studio.outlines.silhouettes import names
 
     return _listing(arguments, "targets", names())
+
+
+def parts(arguments: argparse.Namespace) -> int:
+    """List the parts of a drawing."""
+    from kirigami_studio.outlines.read import read_parts
+
+    source = read_parts(arguments.file)
+    if arguments.json:
+        listed = [part.to_json(source.unit) for part in source.parts]
+        print_json(
+            {
+                "parts": listed,
+                "layers": [name for name in source.layers if name],
+                "unit": source.unit,
+                "largest": list(source.usual),
+                "warnings": list(source.left_out),
+            }
+        )
+        return 0
+    for note in source.left_out:
+        say(note)
+    for part in source.parts:
+        width, height = part.size
+        row = (
+            f"{part.number:4d}  {part.name:24.24}",
+            f"{part.kind.value:8}",
+            f"{part.layer:20.20}",
+            f"{part.colour:8}",
+        )
+        say(f"{'  '.join(row)}{width:10.4g} x {height:.4g} {source.unit}".rstrip())
+    return 0
 
 
 def variants(arguments: argparse.Namespace) -> int:

@@ -11,6 +11,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, copies, count, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.starts import USUAL_WEIGHT
 from kirigami_studio.pipeline.request import RIMS
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -108,6 +109,22 @@ COPIES = (
     ),
     option("--copy-gap-mm", type=positive, default=None, help="gap between copies (default: the project's, or 5)"),
 )
+
+#: Which parts of a drawing are the target.
+PARTS = (
+    option("--parts", default=None, metavar="WHICH",
+           help="parts of an SVG or DXF file: all, largest, or names, numbers, layers or colours, joined by commas "
+                "(default: what is filled or enclosed, of several pieces the largest); 'kirigami-studio parts' lists "
+                "them"),
+    option("--join", choices=[join.value for join in Join], default=None,
+           help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
+                "a tight hull (default union; all parts with the others)"),
+    option("--bridge", type=positive, default=None, metavar="WIDTH",
+           help="width of bridges in the file's unit (default 4 %% of the size); alone, as --join bridge"),
+    option("--stroke-outline", type=positive, nargs="?", const=0, default=None, metavar="WIDTH",
+           help="take lines as they are painted, with their own width; WIDTH, in the file's unit, for lines without "
+                "one (default 2 %% of the size)"),
+)  # fmt: skip
 
 #: What flat sheets look like.
 START = option(
@@ -271,6 +288,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--out", default=None, help="folder for design.kiri, cut.dxf, layout.svg, preview.png, candidates.json"),
         option("--threshold", type=number, default=None,
                help="grey level that separates an image's shape from its background, 0 to 1 (default: automatic)"),
+        *PARTS,
         option("--k", type=int, default=32, help="number of designs (default 32)"),
         option("--seed", type=int, default=0, help="random seed; the same seed gives the same result (default 0)"),
         option("--grid", default="auto",
@@ -311,6 +329,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",
         "kirigami-studio design heart --start circle --out out/disk-to-heart",
         "kirigami-studio design star --start circle --also hexagon --at-deg 60 --weight 0.5 --json",
+        "kirigami-studio design logo.svg --parts badge,star --join bridge --bridge 2 --out out/logo",
         "kirigami-studio design masks.npz --k 1 --json",
         "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
     )),
@@ -339,6 +358,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("inputs", nargs="+", metavar="SHEET... TARGET",
                help="sheets as for decode, then one target, or one for each sheet"),
         PHI,
+        *PARTS,
         JSON,
     ), ("kirigami-studio score ratios.json heart --json", "kirigami-studio score fields.npz masks.npz")),
     SubCommand("siou", "print the similarity-aligned IoU (sIoU) of two mask images", "geometry:siou", (
@@ -455,6 +475,10 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio artwork heart.kiri --picture logo.svg --on flat --place fit --scale 0.8 --out out/print",
         "kirigami-studio artwork heart.kiri --picture photo.jpg --dpi 600 --bleed-mm 2 --copies 4 --out out/print")),
     SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
+    SubCommand("parts", "list the parts of a drawing, for --parts", "library:parts", (
+        option("file", help="an SVG or DXF file"),
+        JSON,
+    ), ("kirigami-studio parts logo.svg", "kirigami-studio parts plate.dxf --json")),
     SubCommand("materials", "list the materials, or copy, change and calibrate one", "library:materials", (
         option("--copy", default=None, metavar="KEY", help="copy this material to your own"),
         option("--as", dest="key", default=None, metavar="NEW",

@@ -12,6 +12,8 @@ CURVE_VERTICES = 15
 HANDLE_SHARE = 1.0 / 3.0
 #: Vertices of a line that say in which direction it starts.
 START_VERTICES = 3
+#: Pieces of one flattened curve at most: finer than any tolerance in use asks for, and a bound on memory.
+MOST_PIECES = 1000
 
 
 def curve(start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray) -> FloatArray:
@@ -36,6 +38,32 @@ def point_on(
     s = 1.0 - t
     place: FloatArray = s**3 * start + 3 * s * s * t * (start + out) + 3 * s * t * t * (end + into) + t**3 * end
     return place
+
+
+def flattened_curve(controls: FloatArray, tolerance: float) -> FloatArray:
+    """Vertices of a quadratic or cubic curve without its start, at evenly spaced parameters.
+
+    Their number follows from the chord error ``h^2 / 8 * max|B''|``.
+
+    Parameters
+    ----------
+    controls : (3 or 4, 2) float
+    tolerance : float
+        Largest distance between the curve and its chords.
+
+    Returns
+    -------
+    vertices : (P, 2) float
+        ``MOST_PIECES`` at most.
+    """
+    degree = len(controls) - 1
+    bend = degree * (degree - 1) * float(np.max(np.linalg.norm(np.diff(controls, n=2, axis=0), axis=1)))
+    pieces = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300)))), 1, MOST_PIECES))
+    t = np.arange(1, pieces + 1)[:, None, None] / pieces
+    corners = controls[None]
+    for _ in range(degree):  # de Casteljau, all parameters at once
+        corners = corners[:, :-1] * (1 - t) + corners[:, 1:] * t
+    return corners[:, 0]
 
 
 def split(start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray, t: float) -> tuple[FloatArray, ...]:

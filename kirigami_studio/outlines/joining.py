@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
@@ -21,12 +22,74 @@ from kirigami_studio.foundation.words import tr_n
 SAME_END = 1e-6
 
 
+#: More places where lines may cross, or lie near each other, are a scribble: finding them takes minutes and gigabytes.
+MOST_CROSSINGS, MOST_NEAR = 2_000_000, 10_000_000
+MOST_VERTICES = 200_000
+#: Pieces of lines that stand for all of them when crossings are estimated.
+SAMPLED = 400
+
+
 class Gap(NamedTuple):
     """Two loose ends: their distance and the point midway, in source units."""
 
     width: float
     x: float
     y: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joined:
+    """Lines after their ends were joined.
+
+    Attributes
+    ----------
+    lines : shapely geometry
+        All of them, bridges too, cut where they meet; source units.
+    faces : list of Polygon
+        What they enclose, each face of the net.
+    open_lines : list of LineString
+        What encloses nothing.
+    bridged, wide : list of Gap
+        Gaps that were closed, and those that were too wide.
+    size : float, source units
+        The longer side of all lines.
+    """
+
+    lines: BaseGeometry
+    faces: list[Polygon]
+    open_lines: list[LineString]
+    bridged: list[Gap]
+    wide: list[Gap]
+    size: float
+
+
+def joined(chains: Sequence[FloatArray], widest_gap: float) -> Joined:
+    """Join the ends of lines, close small gaps and find what they enclose, as :func:`join` does.
+
+    Raises
+    ------
+    TargetError
+        There are no lines.
+    """
+    chains = [chain for chain in chains if len(chain) >= 2 and np.ptp(chain, axis=0).any()]
+    if not chains:
+        raise TargetError("lines.none")
+    corners = np.concatenate(chains)
+    size = float(np.max(np.ptp(corners, axis=0)))
+    chains, loose = _meeting(chains, SAME_END * size)
+    gaps = _gaps(loose)
+    bridged = [gap for gap in gaps if gap.length <= widest_gap * size]
+    lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridged])
+    faces, cuts, dangles, invalid = shapely.polygonize_full([lines])
+    left_over = shapely.line_merge(shapely.unary_union([cuts, dangles, invalid]))
+    return Joined(
+        lines,
+        list(shapely.get_parts(faces)),
+        [line for line in shapely.get_parts(left_over) if line.length > SAME_END * size],
+        [_described(gap) for gap in bridged],
+        [_described(gap) for gap in gaps if gap.length > widest_gap * size],
+        size,
+    )
 
 
 def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tuple[BaseGeometry, tuple[str, ...]]:
@@ -54,36 +117,12 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
         The lines enclose nothing, or an open contour surrounds what they enclose; the
         problem names the widest gap that keeps it open.
     """
-    chains = [chain for chain in chains if len(chain) >= 2 and np.ptp(chain, axis=0).any()]
-    if not chains:
-        raise TargetError("lines.none")
-    corners = np.concatenate(chains)
-    size = float(np.max(np.ptp(corners, axis=0)))
-    chains, loose = _meeting(chains, SAME_END * size)
-    gaps = _gaps(loose)
-    bridged = [gap for gap in gaps if gap.length <= widest_gap * size]
-    lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridged])
-    faces, cuts, dangles, invalid = shapely.polygonize_full([lines])
-    region = shapely.unary_union(shapely.get_parts(faces))
-    left_over = shapely.line_merge(shapely.unary_union([cuts, dangles, invalid]))
-    open_lines = [line for line in shapely.get_parts(left_over) if line.length > SAME_END * size]
-    wide = [_described(gap) for gap in gaps if gap.length > widest_gap * size]
-    if region.is_empty or _surrounds(open_lines, region):
-        raise _open_contour(wide, widest_gap * size, unit)
-    notes = []
-    if bridged:
-        widest = _described(max(bridged, key=lambda gap: gap.length))
-        notes.append(
-            tr_n(
-                "A gap was closed: {width} near ({x:.4g}, {y:.4g}).",
-                "{count} gaps were closed, the widest {width} near ({x:.4g}, {y:.4g}).",
-                len(bridged),
-                width=_length(widest.width, unit),
-                x=widest.x,
-                y=widest.y,
-            )
-        )
-    if inner := sum(len(face.interiors) for face in shapely.get_parts(faces)):
+    net = joined(chains, widest_gap)
+    region = shapely.unary_union(net.faces)
+    if region.is_empty or _surrounds(net.open_lines, region):
+        raise _open_contour(net.wide, widest_gap * net.size, unit)
+    notes = closed_gaps(net, unit)
+    if inner := sum(len(face.interiors) for face in net.faces):
         notes.append(
             tr_n(
                 "{count} contour inside the outer one was left out.",
@@ -91,15 +130,62 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
                 inner,
             )
         )
-    if open_lines:
+    if net.open_lines:
         notes.append(
             tr_n(
                 "{count} open line that encloses nothing was left out.",
                 "{count} open lines that enclose nothing were left out.",
-                len(open_lines),
+                len(net.open_lines),
             )
         )
     return region, tuple(notes)
+
+
+def closed_gaps(net: Joined, unit: str) -> list[str]:
+    """A sentence on the gaps that were closed, if there are any."""
+    if not net.bridged:
+        return []
+    widest = max(net.bridged)
+    return [
+        tr_n(
+            "A gap was closed: {width} near ({x:.4g}, {y:.4g}).",
+            "{count} gaps were closed, the widest {width} near ({x:.4g}, {y:.4g}).",
+            len(net.bridged),
+            width=_length(widest.width, unit),
+            x=widest.x,
+            y=widest.y,
+        )
+    ]
+
+
+def refuse_scribbles(chains: Sequence[FloatArray]) -> None:
+    """Refuse lines that are so many, or cross each other so often, that nothing could be made of them.
+
+    Raises
+    ------
+    TargetError
+        They are, by a sample of their pieces.
+    """
+    if (vertices := sum(len(chain) for chain in chains)) > MOST_VERTICES:
+        raise TargetError("drawing.too_many_vertices", vertices=vertices, limit=MOST_VERTICES)
+    starts = [chain[:-1] for chain in chains if len(chain) > 1]
+    if sum(len(start) for start in starts) < SAMPLED:
+        return
+    ends = np.concatenate([chain[1:] for chain in chains if len(chain) > 1])
+    begins = np.concatenate(starts)
+    low, high = np.minimum(begins, ends), np.maximum(begins, ends)
+    picked = np.linspace(0, len(low) - 1, SAMPLED).astype(int)
+    met = near = 0
+    for index in picked.tolist():
+        meets = np.all((low <= high[index]) & (high >= low[index]), axis=1)
+        one, other = begins[index], ends[index]
+        along, off, far = other - one, begins[meets] - one, ends[meets] - one
+        sides = (along[0] * off[:, 1] - along[1] * off[:, 0]) * (along[0] * far[:, 1] - along[1] * far[:, 0])
+        near += int(np.sum(meets))
+        met += int(np.sum(sides < 0))
+    pairs = len(low) / (2 * SAMPLED)
+    if met * pairs > MOST_CROSSINGS or near * pairs > MOST_NEAR:
+        raise TargetError("contour.too_many_crossings", limit=MOST_CROSSINGS)
 
 
 def _meeting(chains: Sequence[FloatArray], tolerance: float) -> tuple[list[FloatArray], FloatArray]:

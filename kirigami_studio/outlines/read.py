@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 
 #: Keys under which an object may hold its vertices, the first present one counts.
@@ -49,6 +50,26 @@ def read_target(source: str | Path) -> Outline:
     if exists:
         raise TargetError("target.unknown_kind", name=path.name, kinds=kinds)
     return silhouettes.load(str(source))
+
+
+def read_parts(source: str | Path) -> SourceParts:
+    """Return everything that a file holds, part by part.
+
+    Parameters
+    ----------
+    source : str or Path
+        A file with one of the extensions in ``PART_READERS`` (any case).
+
+    Raises
+    ------
+    TargetError
+        Of another kind, missing, damaged or empty.
+    """
+    path = Path(source).expanduser()
+    reader = PART_READERS.get(path.suffix.lower())
+    if reader is None:
+        raise TargetError("parts.not_a_drawing", source=str(source), kinds=", ".join(PART_READERS))
+    return reader(path)
 
 
 def target_files(folder: Path) -> list[Path]:
@@ -144,3 +165,19 @@ READERS: Mapping[str, Callable[[Path], Outline]] = MappingProxyType(
         ".json": read_json,
     }
 )
+
+
+def _svg_parts(path: Path) -> SourceParts:
+    from kirigami_studio.outlines.read_svg import svg_parts
+
+    return svg_parts(path)
+
+
+def _dxf_parts(path: Path) -> SourceParts:
+    from kirigami_studio.outlines.read_dxf import dxf_parts
+
+    return dxf_parts(path)
+
+
+#: Readers of files that can hold several parts.
+PART_READERS: Mapping[str, Callable[[Path], SourceParts]] = MappingProxyType({".svg": _svg_parts, ".dxf": _dxf_parts})

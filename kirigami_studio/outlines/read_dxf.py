@@ -1,30 +1,37 @@
-"""DXF drawings -> Outline: the largest closed contour in model space."""
+"""DXF drawings -> Outline: the largest closed contour in model space; or -> their parts."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
-from ezdxf import recover, units
+from ezdxf import colors, recover, units
 from ezdxf.document import Drawing
 from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.insert import Insert
+from ezdxf.entities.layer import Layer
 from ezdxf.enums import InsertUnits
-from ezdxf.filemanagement import readfile
+from ezdxf.filemanagement import dxf_stream_info, read, readfile
 from ezdxf.lldxf.const import DXFError
-from ezdxf.path import make_path
+from ezdxf.path import Command, make_path
+from ezdxf.path import Path as Curve
+from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.contour import thinned
-from kirigami_studio.outlines.joining import join
+from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import Part, PartKind, Pen, SourceParts, numbered, parts_of_lines
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.source_file import decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 
 #: Entities that are lines of a contour; everything else in a drawing is text, measures and decoration.
 CURVES = frozenset({"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "CIRCLE", "ELLIPSE", "HELIX"})
@@ -40,6 +47,38 @@ FLATNESS = 1.0 / 4000.0
 #: Blocks nest and repeat; a drawing that unfolds to more entities than this is no outline.
 MOST_ENTITIES = 100_000
 DEEPEST_BLOCK = 16
+MOST_MEGABYTES = 50
+#: Share of the time for the text of a file; its entities take as long again.
+TEXT_TIME = 0.5
+BINARY = b"AutoCAD Binary DXF"
+#: Such files are decoded at one go, which cannot be timed.
+MOST_BINARY_MEGABYTES = 4
+#: Attributes with the width of a line in drawing units.
+WIDTHS = {"LWPOLYLINE": "const_width", "POLYLINE": "default_start_width"}
+#: Line widths on paper are in hundredths of a millimetre; these mean the layer's, and ordinary.
+BY_LAYER, MICRONS = -1, 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One visible entity: (P, 2) vertices in drawing units, and where it belongs."""
+
+    chain: FloatArray
+    layer: str
+    colour: str
+    width: float  #: drawing units, 0 where it has none
+    thickness_mm: float  #: of the line on paper, 0 where it has none
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """The lines of a file, what was changed, and millimetres to a unit (1 without a unit)."""
+
+    lines: list[Line]
+    notes: tuple[str, ...]
+    to_mm: float
+    unit: str
+    facts: dict[str, str]
 
 
 def read_dxf(path: str | Path) -> Outline:
@@ -59,68 +98,201 @@ def read_dxf(path: str | Path) -> Outline:
         Not a DXF file, damaged beyond repair, no lines, or an open contour (with the gap and its place).
     """
     path = Path(path)
-    content = read_bytes(path, most_megabytes=50)
     with decoding(path, "source.dxf_damaged"):
-        drawing, notes = _opened(path, content)
-        curves, texts = _visible(drawing)
-        if not curves:
-            raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
-        # A file that does not state its unit is given metres by ezdxf; here it stays without unit.
-        has_unit = b"$INSUNITS" in content and drawing.units != InsertUnits.Unitless
-        to_mm = units.conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if has_unit else 1.0
-        unit = "mm" if has_unit else ""
-        region, joints = join([chain * to_mm for chain in _flattened(curves)], WIDEST_GAP, unit)
+        found = _read(path)
+        region, joints = join([line.chain * found.to_mm for line in found.lines], WIDEST_GAP, found.unit)
         ring, dropped = largest_piece(region)
-        return Outline.from_points(thinned(ring), name=path.stem, notes=(*notes, *joints, *dropped), unit=unit)
+        notes = (*found.notes, *joints, *dropped)
+        return Outline.from_points(thinned(ring), name=path.stem, notes=notes, unit=found.unit)
 
 
-def _opened(path: Path, content: bytes) -> tuple[Drawing, tuple[str, ...]]:
+def dxf_parts(path: str | Path) -> SourceParts:
+    """All parts of a DXF file: what the lines of each layer enclose or draw.
+
+    Raises
+    ------
+    TargetError
+        As :func:`read_dxf`, but for open contours.
+    """
+    path = Path(path)
+    with decoding(path, "source.dxf_damaged"):
+        found = _read(path)
+        lines_of: dict[str, list[Line]] = {}
+        for line in found.lines:
+            lines_of.setdefault(line.layer, []).append(line)
+        parts: list[Part] = []
+        gaps: list[str] = []
+        for layer, lines in lines_of.items():
+            net = joined([line.chain * found.to_mm for line in lines], WIDEST_GAP)
+            gaps += closed_gaps(net, found.unit)
+            thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
+            pen = Pen(max(line.width * found.to_mm for line in lines) or thickness)
+            colours = {line.colour for line in lines}
+            like = Part(0, "", layer, colours.pop() if len(colours) == 1 else "", PartKind.STROKED, Polygon(), (), pen)
+            parts += parts_of_lines(net, like)
+        kept, too_many = numbered(parts, max(max(part.size) for part in parts))
+        left_out = (*found.notes, *gaps, *too_many)
+        return SourceParts(path.stem, kept, left_out, found.unit, MappingProxyType(found.facts))
+
+
+def _read(path: Path) -> Read:
+    """Everything visible in model space, flattened.
+
+    Raises
+    ------
+    TargetError
+        No DXF file, one that takes too much to read, or no lines.
+    """
+    content, budget = read_bytes(path, MOST_MEGABYTES), TimeBudget()
+    drawing, notes = _opened(path, content, budget)
+    curves, texts, hidden = _visible(drawing, budget)
+    if not curves:
+        raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
+    if texts:
+        notes += (tr("Text was left out. Convert it to lines if it belongs to the shape."),)
+    if hidden:
+        notes += (tr("Hidden layers were left out: {names}.", names=", ".join(sorted(hidden))),)
+    # A file that does not state its unit is given metres by ezdxf; here it stays without unit.
+    has_unit = b"$INSUNITS" in content and drawing.units != InsertUnits.Unitless
+    to_mm = units.conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if has_unit else 1.0
+    lines, unread = _flattened(curves, drawing, budget)
+    refuse_scribbles([line.chain for line in lines])
+    if unread:
+        notes += (
+            tr_n(
+                "{count} damaged line was left out. Check the shape.",
+                "{count} damaged lines were left out. Check the shape.",
+                unread,
+            ),
+        )
+    facts = {str(name): str(text) for name, text in drawing.header.custom_vars.properties}
+    return Read(lines, notes, to_mm, "mm" if has_unit else "", facts)
+
+
+class _TimedBytes(io.BytesIO):
+    """The bytes of a file, for as long as there is time."""
+
+    def __init__(self, content: bytes, budget: TimeBudget, share: float = 1.0) -> None:
+        super().__init__(content)
+        self._budget, self._share = budget, share
+
+    def readline(self, size: int | None = -1, /) -> bytes:
+        self._budget.check(self._share)
+        return super().readline(size)
+
+    def read1(self, size: int | None = -1, /) -> bytes:
+        self._budget.check(self._share)
+        return super().read1(size)
+
+
+def _opened(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing, tuple[str, ...]]:
     """Read strictly, then with ezdxf's recover mode."""
     try:
-        return readfile(path), ()
+        if content.startswith(BINARY):
+            if len(content) > MOST_BINARY_MEGABYTES * 1_000_000:
+                megabytes = len(content) / 1_000_000
+                raise TargetError("source.too_large", path=path, megabytes=megabytes, limit=MOST_BINARY_MEGABYTES)
+            return readfile(path), ()
+        encoding = dxf_stream_info(io.StringIO(content[:100_000].decode("utf-8", errors="ignore"))).encoding
+        raw = _TimedBytes(content, budget, TEXT_TIME)
+        return read(io.TextIOWrapper(raw, encoding=encoding, errors="surrogateescape")), ()
     except (DXFError, OSError, ValueError, LookupError, TypeError, AttributeError):
-        drawing, _ = recover.read(io.BytesIO(content))
+        drawing, _ = recover.read(_TimedBytes(content, budget))
         return drawing, (tr("The file was damaged and was repaired while reading. Check the shape."),)
 
 
-def _visible(drawing: Drawing) -> tuple[list[DXFGraphic], int]:
-    """Curves on visible layers of model space, blocks unfolded, and the number of texts."""
-    hidden = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
+def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], int, set[str]]:
+    """Curves on visible layers of model space, blocks unfolded; the number of texts; hidden layers with curves."""
+    off = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
     curves: list[DXFGraphic] = []
+    hidden: set[str] = set()
     texts = 0
-    for count, entity in enumerate(_unfolded(drawing.modelspace(), 0)):
+    for count, entity in enumerate(_unfolded(drawing.modelspace(), 0, budget)):
         if count >= MOST_ENTITIES:
             raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
-        if not isinstance(entity, DXFGraphic) or entity.dxf.layer.lower() in hidden or entity.dxf.invisible:
+        if not isinstance(entity, DXFGraphic) or entity.dxf.invisible:
+            continue
+        if entity.dxf.layer.lower() in off:
+            hidden |= {entity.dxf.layer} if entity.dxftype() in CURVES else set()
             continue
         texts += entity.dxftype() in TEXTS
         if entity.dxftype() in CURVES:
             curves.append(entity)
-    return curves, texts
+    return curves, texts, hidden
 
 
-def _unfolded(entities: Iterable[DXFEntity], depth: int) -> Iterator[DXFEntity]:
+def _unfolded(entities: Iterable[DXFEntity], depth: int, budget: TimeBudget) -> Iterator[DXFEntity]:
     if depth > DEEPEST_BLOCK:
         raise TargetError("dxf.blocks_too_deep", limit=DEEPEST_BLOCK)
     for entity in entities:
+        budget.check()
         if not isinstance(entity, Insert):
             yield entity
             continue
         if entity.mcount > MOST_ENTITIES:
             raise TargetError("dxf.block_repeated", times=entity.mcount)
         for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
-            yield from _unfolded(single.virtual_entities(), depth + 1)
+            yield from _unfolded(single.virtual_entities(), depth + 1, budget)
 
 
-def _flattened(curves: Iterable[DXFGraphic]) -> list[FloatArray]:
-    """Curves as chains of (P, 2) vertices, drawing units; z is dropped."""
-    paths = [path for path in map(make_path, curves) if len(path) > 0]
-    if not paths:
+def _flattened(curves: Iterable[DXFGraphic], drawing: Drawing, budget: TimeBudget) -> tuple[list[Line], int]:
+    """Curves as lines, drawing units; z is dropped.  And the number of those that could not be read."""
+    found: list[tuple[DXFGraphic, Curve]] = []
+    damaged: list[Exception] = []
+    for entity in curves:
+        budget.check()
+        try:
+            curve = make_path(entity)
+        except (DXFError, ValueError, TypeError, ArithmeticError, LookupError) as error:
+            damaged.append(error)
+        else:
+            found += [(entity, curve)] if len(curve) > 0 else []
+    if not found:
+        if damaged:
+            raise damaged[0]
         raise TargetError("dxf.no_length")
-    corners = np.array([(corner.x, corner.y) for path in paths for corner in path.control_vertices()])
-    if not np.isfinite(corners).all():
+    corners = [np.array([(corner.x, corner.y) for corner in curve.control_vertices()]) for _, curve in found]
+    everything = np.concatenate(corners)
+    if not np.isfinite(everything).all():
         raise TargetError("drawing.not_finite")
-    distance = float(np.max(np.ptp(corners, axis=0))) * FLATNESS
+    distance = float(np.max(np.ptp(everything, axis=0))) * FLATNESS
     if distance == 0.0:
         raise TargetError("dxf.one_point")
-    return [np.array([(vertex.x, vertex.y) for vertex in path.flattening(distance, segments=4)]) for path in paths]
+    layers = {layer.dxf.name.lower(): layer for layer in drawing.layers}
+    lines = []
+    for entity, curve in found:
+        budget.check()
+        lines.append(_line(entity, _vertices(curve, distance), layers.get(entity.dxf.layer.lower())))
+    return lines, len(damaged)
+
+
+def _vertices(curve: Curve, distance: float) -> FloatArray:
+    """Vertices (P, 2) of a curve whose chords are at most ``distance`` away from it."""
+    start = np.array([[curve.start.x, curve.start.y]])
+    vertices = [start]
+    for command in curve.commands():
+        points = [
+            *(getattr(command, name) for name in ("ctrl", "ctrl1", "ctrl2") if hasattr(command, name)),
+            command.end,
+        ]
+        controls = np.vstack([start, [(point.x, point.y) for point in points]])
+        start = controls[-1:]
+        is_straight = command.type in (Command.LINE_TO, Command.MOVE_TO)
+        vertices.append(start if is_straight else flattened_curve(controls, distance))
+    return np.concatenate(vertices)
+
+
+def _line(entity: DXFGraphic, chain: FloatArray, layer: Layer | None) -> Line:
+    """An entity with the colour and width that are its own, or its layer's."""
+    number = entity.dxf.get("color", colors.BYLAYER)
+    true = entity.dxf.get("true_color") if entity.dxf.hasattr("true_color") else None
+    weight = entity.dxf.get("lineweight", BY_LAYER)
+    if layer is not None and true is None and number == colors.BYLAYER:
+        number = abs(layer.dxf.get("color", colors.BLACK))
+        true = layer.dxf.get("true_color") if layer.dxf.hasattr("true_color") else None
+    if layer is not None and weight == BY_LAYER:
+        weight = layer.dxf.get("lineweight", BY_LAYER)
+    red, green, blue = colors.int2rgb(true) if true is not None else colors.aci2rgb(number if 0 < number < 256 else 7)
+    named = WIDTHS.get(entity.dxftype())
+    width = max(float(entity.dxf.get(named, 0.0)), 0.0) if named else 0.0
+    return Line(chain, entity.dxf.layer, f"#{red:02x}{green:02x}{blue:02x}", width, max(weight, 0) * MICRONS)

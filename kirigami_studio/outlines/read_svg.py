@@ -1,10 +1,10 @@
-"""SVG drawings -> Outline: outer boundary of everything filled, or of the closed strokes."""
+"""SVG drawings -> Outline: outer boundary of everything filled, or of the closed strokes; or -> their parts."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +17,23 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.contour import thinned
-from kirigami_studio.outlines.joining import join
+from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import (
+    Cap,
+    Corner,
+    Part,
+    PartKind,
+    Pen,
+    SourceParts,
+    numbered,
+    parts_of_lines,
+    parts_of_region,
+)
 from kirigami_studio.outlines.pieces import enclosed, largest_piece
-from kirigami_studio.outlines.source_file import decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 from kirigami_studio.outlines.svg_safety import checked_svg
 
 #: The library's calls carry no types; its values are checked here instead.
@@ -36,8 +48,9 @@ WIDEST_GAP = 0.02
 #: Deviation of flattened curves from the true ones, share of the shape's size.
 FLATNESS = 1.0 / 4000.0
 
-#: Pieces of one curve segment at most: finer than any tolerance in use asks for, and a bound on memory.
-MOST_PIECES = 1000
+#: Names of SVG for the ends and corners of strokes, and ours.
+CAPS: Mapping[str, Cap] = {"butt": "flat", "round": "round", "square": "square"}
+JOINS: Mapping[str, Corner] = {"miter": "mitre", "round": "round", "bevel": "bevel"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +61,19 @@ class Drawn:
     is_filled: bool
     is_white: bool
     is_even_odd: bool
+    name: str
+    layer: str
+    colour: str
+    pen: Pen | None  #: None without a stroke
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """A drawing with lengths in ``unit``, what was left out, and hidden layers among that."""
+
+    drawn: list[Drawn]
+    left_out: tuple[str, ...]
+    unit: str
 
 
 def read_svg(path: str | Path) -> Outline:
@@ -67,15 +93,94 @@ def read_svg(path: str | Path) -> Outline:
         Not SVG, larger than 20 MB, with entity declarations, nothing drawn, text only, or open strokes.
     """
     path = Path(path)
-    content = read_bytes(path)
     with decoding(path, "source.svg_damaged"):
-        checked, width_mm, notes = checked_svg(content)
-        svg = svgelements.SVG.parse(io.BytesIO(checked), reify=True, ppi=PIXELS_PER_INCH)
-        scale, unit = (width_mm / svg.width, "mm") if width_mm and svg.width else (1.0, "px")
-        ring, found = _ring(list(_drawn(svg.elements(), scale)), _left_out(svg), unit)
+        read = _read(path)
+        ring, found = _ring(read.drawn, read.left_out, read.unit)
         # Turned upright last, so that places in sentences are those that a drawing program shows.
-        down = Outline.from_points(thinned(ring), name=path.stem, notes=(*notes, *found), unit=unit)
-        return Outline((down.points * (1.0, -1.0))[::-1], down.name, down.notes, down.size, unit)
+        down = Outline.from_points(thinned(ring), name=path.stem, notes=found, unit=read.unit)
+        return Outline((down.points * (1.0, -1.0))[::-1], down.name, down.notes, down.size, read.unit)
+
+
+def svg_parts(path: str | Path) -> SourceParts:
+    """All parts of an SVG file: every connected filled region, and what strokes enclose or draw, by layer and colour.
+
+    Raises
+    ------
+    TargetError
+        As :func:`read_svg`, but for open strokes.
+    """
+    path = Path(path)
+    with decoding(path, "source.svg_damaged"):
+        read = _read(path)
+        filled, notes = _without_paper([shape for shape in read.drawn if shape.is_filled])
+        strokes = [shape for shape in read.drawn if not shape.is_filled]
+        if not filled and not strokes:
+            raise _nothing_drawn(read.left_out)
+        parts: list[Part] = []
+        for shape in filled:
+            lines = shape.chains if shape.pen is not None else ()
+            like = Part(0, shape.name, shape.layer, shape.colour, PartKind.FILLED, Polygon(), lines, shape.pen or Pen())
+            parts += parts_of_region(_region(shape), like)
+        lines_of: dict[tuple[str, str], list[Drawn]] = {}
+        for shape in strokes:
+            lines_of.setdefault((shape.layer, shape.colour), []).append(shape)
+        gaps: list[str] = []
+        for (layer, colour), shapes in lines_of.items():
+            net = joined([chain for shape in shapes for chain in shape.chains], WIDEST_GAP)
+            gaps += closed_gaps(net, read.unit)
+            # Lines that meet are one part: it is painted with the broadest of their pens.
+            pen = max((shape.pen or Pen() for shape in shapes), key=lambda pen: pen.width)
+            name = shapes[0].name if len(shapes) == 1 else ""
+            parts += parts_of_lines(net, Part(0, name, layer, colour, PartKind.STROKED, Polygon(), (), pen))
+        if not parts:
+            raise TargetError("drawing.no_area")
+        size = max(max(part.size) for part in parts)
+        kept, too_many = numbered([_upright(part) for part in parts], size)
+        return SourceParts(path.stem, kept, (*read.left_out, *notes, *gaps, *too_many), read.unit)
+
+
+def _upright(part: Part) -> Part:
+    """The part with y up."""
+    region = shapely.transform(part.region, lambda points: points * (1.0, -1.0))
+    return replace(part, region=region, lines=tuple(line * (1.0, -1.0) for line in part.lines))
+
+
+def _read(path: Path) -> Read:
+    """Everything visible in a file, y down.
+
+    Raises
+    ------
+    TargetError
+        No SVG, or one that takes too much to read.
+    """
+    content, budget = read_bytes(path), TimeBudget()
+    checked, width_mm, notes = checked_svg(content)
+    svg = svgelements.SVG.parse(io.BytesIO(checked), reify=True, ppi=PIXELS_PER_INCH)
+    budget.check()
+    scale, unit = (width_mm / svg.width, "mm") if width_mm and svg.width else (1.0, "px")
+    drawn = list(_drawn(_walk(svg, ""), scale, budget))
+    refuse_scribbles([chain for shape in drawn for chain in shape.chains])
+    return Read(drawn, (*notes, *_left_out(svg)), unit)
+
+
+def _walk(group: Any, layer: str) -> Iterator[tuple[Any, str]]:
+    """Shapes in the order in which they are painted, each with its layer."""
+    for element in group:
+        if not isinstance(element, list) or isinstance(
+            element, svgelements.Shape
+        ):  # groups, uses and the drawing itself are lists of their children
+            yield element, layer
+        else:
+            yield from _walk(element, _layer_of(element, layer))
+
+
+def _layer_of(group: Any, outer: str) -> str:
+    """The layer of what is in a group: a layer of a drawing program, or the outermost group with a name."""
+    own = group.values.get("attributes") or {}
+    label = next((str(text) for key, text in own.items() if key.endswith("}label")), "")
+    name = label or str(own.get("id") or "")
+    is_layer = any(key.endswith("}groupmode") and text == "layer" for key, text in own.items())
+    return name if name and (is_layer or not outer) else outer
 
 
 def _ring(drawn: list[Drawn], left_out: tuple[str, ...], unit: str) -> tuple[FloatArray, tuple[str, ...]]:
@@ -92,9 +197,7 @@ def _ring(drawn: list[Drawn], left_out: tuple[str, ...], unit: str) -> tuple[Flo
             return rings[0], notes
         region = shapely.unary_union([_region(shape) for shape in filled])
     elif not strokes:
-        if left_out:
-            raise TargetError("svg.no_shape_but_others", left_out=" ".join(left_out))
-        raise TargetError("svg.no_shape")
+        raise _nothing_drawn(left_out)
     elif len(strokes) == 1 and np.array_equal(strokes[0][0], strokes[0][-1]):
         return strokes[0], notes
     else:
@@ -102,6 +205,12 @@ def _ring(drawn: list[Drawn], left_out: tuple[str, ...], unit: str) -> tuple[Flo
         notes = (*notes, *joints)
     ring, dropped = largest_piece(region)
     return ring, (*notes, *dropped)
+
+
+def _nothing_drawn(left_out: tuple[str, ...]) -> TargetError:
+    if left_out:
+        return TargetError("svg.no_shape_but_others", left_out=" ".join(left_out))
+    return TargetError("svg.no_shape")
 
 
 def _region(shape: Drawn) -> BaseGeometry:
@@ -137,89 +246,111 @@ def _without_paper(filled: list[Drawn]) -> tuple[list[Drawn], tuple[str, ...]]:
     return filled, ()
 
 
-def _drawn(elements: Iterable[Any], scale: float) -> Iterator[Drawn]:
+def _drawn(elements: Iterable[tuple[Any, str]], scale: float, budget: TimeBudget) -> Iterator[Drawn]:
     """Visible shapes, flattened, pixels times ``scale``."""
-    shapes = [element for element in elements if isinstance(element, svgelements.Shape) and _is_visible(element)]
-    # Reified here: a turned ellipse or rectangle keeps its transform until it is a path.
-    paths = [svgelements.Path(shape).reify() for shape in shapes]
-    for shape, path in zip(shapes, paths, strict=True):
-        box = path.bbox()
-        if box is None:
+    for shape, layer in elements:
+        budget.check()
+        if not isinstance(shape, svgelements.Shape) or not _is_visible(shape):
             continue
-        left, top, right, bottom = (float(side) for side in box)
-        if not np.isfinite([right - left, bottom - top]).all():
-            raise TargetError("drawing.not_finite")
-        tolerance = max(right - left, bottom - top) * FLATNESS
-        chains = tuple(chain * scale for chain in flattened(path, tolerance) if len(chain) > 1)
+        # Reified here: a turned ellipse or rectangle keeps its transform until it is a path.
+        path = svgelements.Path(shape).reify()
+        chains = tuple(chain * scale for chain in flattened(path) if len(chain) > 1)
         is_filled = _is_painted(shape, "fill") and not isinstance(shape, svgelements.SimpleLine)
-        if chains and (is_filled or _is_painted(shape, "stroke")):
+        is_stroked = _is_painted(shape, "stroke")
+        if chains and (is_filled or is_stroked):
             is_even_odd = str(shape.values.get("fill-rule", "")).strip() == "evenodd"
-            yield Drawn(chains, is_filled, _is_white(shape), is_even_odd)
+            pen = _pen(shape, scale) if is_stroked else None
+            colour = _colour(shape.fill if is_filled else shape.stroke)
+            yield Drawn(chains, is_filled, _is_white(shape), is_even_odd, _name(shape), layer, colour, pen)
 
 
-def flattened(path: Any, tolerance: float) -> list[FloatArray]:
+def _name(shape: Any) -> str:
+    own = shape.values.get("attributes") or {}
+    label = next((str(text) for key, text in own.items() if key.endswith("}label")), "")
+    return (label or str(own.get("id") or ""))[:60]
+
+
+def _colour(colour: Any) -> str:
+    if colour is None or colour.value is None:
+        return ""
+    return f"#{colour.red:02x}{colour.green:02x}{colour.blue:02x}"
+
+
+def _pen(shape: Any, scale: float) -> Pen:
+    """How a shape is stroked."""
+    width, values = shape.stroke_width, shape.values
+    width = float(width) * scale if isinstance(width, int | float) and np.isfinite(width) and width > 0 else scale
+    cap = CAPS.get(str(values.get("stroke-linecap", "butt")).strip(), "flat")
+    join = JOINS.get(str(values.get("stroke-linejoin", "miter")).strip(), "mitre")
+    return Pen(width, cap, join, _number(values.get("stroke-miterlimit"), 4.0))
+
+
+def flattened(path: Any, tolerance: float | None = None) -> list[FloatArray]:
     """Return the subpaths of an ``svgelements.Path`` as chains of vertices.
 
     Parameters
     ----------
     path : svgelements.Path
         With its transform applied.
-    tolerance : float
-        Largest distance between a curve and its chords, path units.
+    tolerance : float, optional
+        Largest distance between a curve and its chords, path units; by default ``FLATNESS`` of the path's size.
 
     Returns
     -------
     chains : list of (P, 2) float
         A closed subpath ends on its first vertex; an open one does not.
+
+    Raises
+    ------
+    TargetError
+        A coordinate is not finite.
     """
-    chains: list[FloatArray] = []
-    current: list[tuple[float, float]] = []
+    chains: list[list[FloatArray]] = []  # each a start, and the controls of every segment behind it
+    current: list[FloatArray] = []
     for segment in path:
         if isinstance(segment, svgelements.Move):
-            _finish(current, chains)
-            current = [_pair(segment.end)] if segment.end is not None else []
+            chains.append(current)
+            current = [_points(segment.end)] if segment.end is not None else []
         elif isinstance(segment, svgelements.Close):
-            start = current[0] if current else None
-            _finish([*current, *current[:1]], chains)
-            current = [start] if start is not None else []  # After Z the next segment starts at the subpath's start.
+            start = current[:1]
+            chains.append([*current, *start])
+            current = start  # After Z the next segment starts at the subpath's start.
         elif segment.end is not None and (current or segment.start is not None):
-            current = current or [_pair(segment.start)]
-            current.extend(_vertices(segment, tolerance))
-    _finish(current, chains)
-    return chains
+            current = current or [_points(segment.start)]
+            current.extend(_controls(segment))
+    chains = [chain for chain in (*chains, current) if len(chain) > 1]
+    if not chains:
+        return []
+    corners = np.concatenate([controls for chain in chains for controls in chain])
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = float(np.max(np.ptp(corners, axis=0)))
+    if not np.isfinite(size):
+        raise TargetError("drawing.not_finite")
+    error = FLATNESS * size if tolerance is None else tolerance
+    return [_chain(chain, error) for chain in chains]
 
 
-def _finish(vertices: list[tuple[float, float]], chains: list[FloatArray]) -> None:
-    if len(vertices) > 1:
-        chains.append(np.array(vertices, dtype=np.float64))
+def _chain(controls: list[FloatArray], tolerance: float) -> FloatArray:
+    vertices = controls[:1]
+    for one in controls[1:]:
+        vertices.append(one if len(one) == 1 else flattened_curve(np.vstack([vertices[-1][-1:], one]), tolerance))
+    return np.concatenate(vertices)
 
 
-def _pair(point: Any) -> tuple[float, float]:
-    return float(point.x), float(point.y)
+def _points(*points: Any) -> FloatArray:
+    return np.array([(float(point.x), float(point.y)) for point in points])
 
 
-def _vertices(segment: Any, tolerance: float) -> list[tuple[float, float]]:
-    """Vertices of one segment without its start."""
+def _controls(segment: Any) -> list[FloatArray]:
+    """Controls of one segment without its start; several where it is an arc."""
     if isinstance(segment, svgelements.QuadraticBezier):
-        return _bezier([segment.start, segment.control, segment.end], tolerance)
+        return [_points(segment.control, segment.end)]
     if isinstance(segment, svgelements.CubicBezier):
-        return _bezier([segment.start, segment.control1, segment.control2, segment.end], tolerance)
+        return [_points(segment.control1, segment.control2, segment.end)]
     if isinstance(segment, svgelements.Arc) and segment.rx and segment.ry:
-        cubics = segment.as_cubic_curves(max(1, int(np.ceil(abs(segment.sweep) / (np.pi / 8)))))
-        return [vertex for cubic in cubics for vertex in _vertices(cubic, tolerance)]
-    return [_pair(segment.end)]
-
-
-def _bezier(controls: list[Any], tolerance: float) -> list[tuple[float, float]]:
-    """Evenly spaced parameters; their number follows from the chord error ``h^2 / 8 * max|B''|``."""
-    corners = np.array([_pair(point) for point in controls])
-    degree = len(corners) - 1
-    bend = degree * (degree - 1) * float(np.max(np.linalg.norm(np.diff(corners, n=2, axis=0), axis=1)))
-    pieces = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300)))), 1, MOST_PIECES))
-    t = np.arange(1, pieces + 1)[:, None] / pieces
-    for _ in range(degree):  # de Casteljau, all parameters at once
-        corners = corners[..., :-1, :] * (1 - t)[..., None] + corners[..., 1:, :] * t[..., None]
-    return [(float(x), float(y)) for x, y in corners[:, 0]]
+        pieces = int(np.clip(np.ceil(abs(segment.sweep) / (np.pi / 8)), 1, 64))
+        return [controls for cubic in segment.as_cubic_curves(pieces) for controls in _controls(cubic)]
+    return [_points(segment.end)]
 
 
 def _is_visible(element: Any) -> bool:
@@ -235,11 +366,14 @@ def _is_painted(element: Any, paint: str) -> bool:
 
 
 def _opacity(values: dict[str, Any], prefix: str = "") -> float:
-    stated = str(values.get(f"{prefix}opacity", "1")).strip()
+    return _number(values.get(f"{prefix}opacity"), 1.0)
+
+
+def _number(stated: Any, otherwise: float) -> float:
     try:
-        return float(stated.removesuffix("%"))
+        return float(str(stated).strip().removesuffix("%"))
     except ValueError:
-        return 1.0
+        return otherwise
 
 
 def _is_white(element: Any) -> bool:

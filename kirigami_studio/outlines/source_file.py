@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +11,31 @@ from pathlib import Path
 from kirigami_studio.foundation.errors import TargetError
 
 MEGABYTE = 1_000_000
+
+#: Seconds of processor time that one source may take to be read, and seconds by the clock.
+MOST_SECONDS, MOST_WAITING = 3.5, 8.0
+
+
+class TimeBudget:
+    """What is left of the time that reading may take: a drawing can be small and unfold without end.
+
+    Counted in the processor time of the thread first, so that a busy machine refuses no ordinary file.
+    """
+
+    def __init__(self) -> None:
+        self._begun = time.thread_time(), time.monotonic()
+
+    def check(self, share: float = 1.0) -> None:
+        """Refuse to go on when more than a share of the time is used.
+
+        Raises
+        ------
+        TargetError
+            It is.
+        """
+        used, waited = time.thread_time() - self._begun[0], time.monotonic() - self._begun[1]
+        if used > share * MOST_SECONDS or waited > share * MOST_WAITING:
+            raise TargetError("source.too_slow", seconds=MOST_SECONDS)
 
 
 def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:

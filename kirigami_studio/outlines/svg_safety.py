@@ -11,7 +11,12 @@ from kirigami_studio.foundation.units import MM_PER_INCH
 from kirigami_studio.foundation.words import tr
 
 #: ``use`` elements repeat others; a drawing that unfolds to more elements than this is no outline.
-MOST_ELEMENTS = 100_000
+MOST_ELEMENTS = 20_000
+#: Numbers of all paths together, and digits of one: decoders take a long time for more.
+MOST_NUMBERS = 300_000
+MOST_DIGITS = 64
+DIGITS = re.compile(rb"\d{%d}" % (MOST_DIGITS + 1))
+NUMBER = re.compile(r"\d+(?:\.\d*)?|\.\d+")
 
 #: Parts that paint nothing by themselves; svgelements would draw the shapes inside some of them.
 UNPAINTED = frozenset({"mask", "marker", "pattern", "clipPath", "foreignObject", "script", "metadata", "filter"})
@@ -41,6 +46,8 @@ def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
     # Without the zero bytes UTF-16 text is searched as well.
     if b"<!entity" in content.replace(b"\0", b"").lower():
         raise TargetError("svg.entities")
+    if DIGITS.search(content.replace(b"\0", b"")):
+        raise TargetError("svg.number_too_long", limit=MOST_DIGITS)
     try:
         root = ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
@@ -71,27 +78,32 @@ def _refuse_bombs(root: Element) -> None:
     Raises
     ------
     TargetError
-        More than ``MOST_ELEMENTS``, or an element that contains itself.
+        More than ``MOST_ELEMENTS`` or ``MOST_NUMBERS``, or an element that contains itself.
     """
     named = {name: element for element in root.iter() if (name := element.get("id"))}
-    counted: dict[Element, int] = {}
+    counted: dict[Element, tuple[int, int]] = {}
     inside: set[Element] = set()
 
-    def count(element: Element) -> int:
+    def count(element: Element) -> tuple[int, int]:
+        """Elements and numbers."""
         if element in counted:
             return counted[element]
         if element in inside:
             raise TargetError("svg.inside_itself", tag=_tag(element))
         inside.add(element)
-        total = 1 + sum(count(child) for child in element)
+        below = [count(child) for child in element]
         if _tag(element) == "use" and (target := named.get(_reference(element))) is not None:
-            total += count(target)
+            below.append(count(target))
+        own = sum(1 for _ in NUMBER.finditer(element.get("d", "") or element.get("points", "")))
         inside.discard(element)
-        counted[element] = total
-        return total
+        counted[element] = 1 + sum(one for one, _ in below), own + sum(other for _, other in below)
+        return counted[element]
 
-    if (total := count(root)) > MOST_ELEMENTS:
-        raise TargetError("svg.too_many_elements", elements=total, limit=MOST_ELEMENTS)
+    elements, numbers = count(root)
+    if elements > MOST_ELEMENTS:
+        raise TargetError("svg.too_many_elements", elements=elements, limit=MOST_ELEMENTS)
+    if numbers > MOST_NUMBERS:
+        raise TargetError("svg.too_many_numbers", limit=MOST_NUMBERS)
 
 
 def _drop_unpainted(root: Element) -> None:

@@ -26,6 +26,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "source.not_readable": mark("Cannot read {path}: {reason}."),
     "source.empty": mark("{name} is empty. Save it again from the program that made it."),
     "source.too_large": mark("{path} has {megabytes:.1f} MB, more than {limit} MB. Save a simpler version of it."),
+    "source.too_slow": mark(
+        "The drawing takes longer than {seconds:.1f} s to read. Export only the outline, as a simpler drawing."
+    ),
     "source.not_usable": mark("{name}: {reason}"),
     # JSON
     "source.json_damaged": mark("{name} is damaged or not a JSON outline ({reason:.100}). Save it again."),
@@ -72,6 +75,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "svg.no_shape": mark("The drawing has no visible shape. Draw one filled shape."),
     "svg.no_shape_but_others": mark("The drawing has no visible shape. {left_out} Draw one filled shape."),
+    "svg.number_too_long": mark("The drawing has a number of more than {limit} digits. Save it as plain SVG."),
+    "svg.too_many_numbers": mark(
+        "The paths of the drawing have more than {limit} numbers. Simplify them, or export only the outline."
+    ),
     # DXF
     "source.dxf_damaged": mark(
         "{name} is damaged or not a DXF drawing ({reason:.100}). Open it in the program that made it and save it again."
@@ -85,9 +92,32 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "dxf.block_repeated": mark("A block is repeated {times} times. Export only the outline."),
     "dxf.no_length": mark("The lines of the drawing have no length. Draw one closed contour."),
     "dxf.one_point": mark("All lines of the drawing are in one point. Draw one closed contour."),
+    # Parts of a drawing
+    "parts.unknown": mark(
+        "The file has no part and no layer called '{name:.60}'. It has {names:.300}. 'kirigami-studio parts FILE' "
+        "lists them."
+    ),
+    "parts.none_chosen": mark("No part is chosen. Choose at least one."),
+    "parts.no_area": mark(
+        "The chosen parts enclose no area. Choose a closed one, or take strokes as they are painted, with a width."
+    ),
+    "parts.stroke_width": mark("A stroke must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
+    "parts.bridge_width": mark("A bridge must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
+    "parts.too_many_pieces": mark(
+        "The chosen parts are {pieces} pieces, and at most {limit} can be bridged. Choose fewer, or a hull."
+    ),
+    "parts.not_a_drawing": mark(
+        "'{source:.80}' has no parts to choose from. Options about parts are for files: {kinds}."
+    ),
+    "parts.or_as_painted": mark("{reason} Or take the lines as painted: --stroke-outline."),
+    "option.bridge_without_join": mark("--bridge is the width of bridges: use it with --join bridge, or alone."),
+    "parts.tightness": mark("The tightness of a hull must be between 0 and 1, got {value!r:.40}."),
     # Drawings and loose lines
     "drawing.no_area": mark("The drawing encloses no area. Draw one closed shape."),
     "drawing.not_finite": mark("The drawing has coordinates that are not finite numbers. Draw those lines again."),
+    "drawing.too_many_vertices": mark(
+        "The lines of the drawing have {vertices} points, more than {limit}. Simplify them, or export only the outline."
+    ),
     "drawing.joined_in_a_point": mark(
         "Two large pieces of the drawing meet only in the point near ({x:.4g}, {y:.4g}). Move the lines apart there or "
         "make the joint wider."

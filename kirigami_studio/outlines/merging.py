@@ -1,0 +1,220 @@
+"""Chosen parts of a source -> one outline: united, bridged, or their hull; lines by what they enclose or as painted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import shapely
+from scipy.sparse.csgraph import minimum_spanning_tree
+from shapely.geometry import LineString, MultiLineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.outlines.contour import thinned
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import Part, SourceParts
+from kirigami_studio.outlines.pieces import enclosed, largest_piece
+
+#: Widths of bridges and of strokes, shares of the size of the chosen parts: the usual one, the least and the most.
+USUAL_BRIDGE, USUAL_STROKE = 0.04, 0.02
+LEAST_WIDTH, MOST_WIDTH = 1e-4, 1.0
+#: Each pair of pieces has a distance to be measured.
+MOST_PIECES = 200
+#: How closely a tight hull follows the parts, from 0, the convex hull, to 1.
+USUAL_TIGHTNESS = 0.7
+#: Distance of the points that a tight hull is made of, share of the size.
+HULL_STEP = 0.01
+#: Names of parts that a sentence lists.
+NAMED = 6
+#: Vertices of a quarter circle at the ends and corners of strokes.
+QUARTER = 16
+#: Deviation of simplified parts, share of the size: hulls and bridges need no more.
+FLATNESS = 1.0 / 8000.0
+
+
+class Join(Enum):
+    """What makes one outline of several parts."""
+
+    UNION = "union"  #: parts that overlap or touch; of several pieces the largest
+    BRIDGE = "bridge"  #: pieces are held together by bridges between their nearest places
+    HULL = "hull"  #: the convex hull
+    TIGHT = "tight"  #: a hull that follows the parts into hollows
+
+
+@dataclass(frozen=True, slots=True)
+class Merging:
+    """How parts become one outline.
+
+    Attributes
+    ----------
+    join : Join
+    bridge : float or None, source units
+        Width of bridges; None for the usual share of the size.
+    as_painted : bool
+        Lines count with their width, as painted; otherwise by what they enclose.
+    stroke : float or None, source units
+        Width of lines that have none of their own; None for the usual share of the size.
+    tightness : float, 0..1
+    """
+
+    join: Join = Join.UNION
+    bridge: float | None = None
+    as_painted: bool = False
+    stroke: float | None = None
+    tightness: float = USUAL_TIGHTNESS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Merged:
+    """What came of it.
+
+    Attributes
+    ----------
+    outline : Outline
+    shape : Polygon, source units, y up
+        The outline in its place among the parts.
+    bridges : tuple of Polygon, source units, y up
+    """
+
+    outline: Outline
+    shape: Polygon
+    bridges: tuple[Polygon, ...] = ()
+
+
+def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merged:
+    """Make one outline of some parts of a source; its notes tell what was left out.
+
+    Parameters
+    ----------
+    source : SourceParts
+    parts : sequence of Part
+        Of the source.
+    merging : Merging
+
+    Raises
+    ------
+    TargetError
+        No parts, no area, widths that make no sense in this drawing, or too many pieces to bridge.
+    """
+    if not parts:
+        raise TargetError("parts.none_chosen")
+    boxes = np.array([part.bounds for part in parts])
+    size = float(np.max(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)))
+    notes = [*source.left_out, *_rest(source, parts)]
+    regions = [region for part in parts if not (region := _region(part, merging, size)).is_empty]
+    if not regions and merging.join not in (Join.HULL, Join.TIGHT):
+        raise TargetError("parts.no_area")
+    bridges: tuple[Polygon, ...] = ()
+    if merging.join in (Join.HULL, Join.TIGHT):
+        lines = [LineString(line) for part in parts if not part.is_closed for line in part.lines]
+        region = _hull(shapely.union_all([*regions, *lines]), merging, size)
+    else:
+        if (open_lines := sum(not part.is_closed for part in parts)) and not merging.as_painted:
+            notes.append(
+                tr_n(
+                    "{count} open line that encloses nothing was left out.",
+                    "{count} open lines that enclose nothing were left out.",
+                    open_lines,
+                )
+            )
+        region = shapely.union_all(regions)
+        if merging.join is Join.BRIDGE:
+            region, bridges = _bridged(region, merging, size)
+            if bridges:
+                notes.append(
+                    tr_n(
+                        "{count} bridge holds the parts together.",
+                        "{count} bridges hold the parts together.",
+                        len(bridges),
+                    )
+                )
+    ring, dropped = largest_piece(region)
+    name = parts[0].name if len(parts) == 1 < len(source.parts) else source.name
+    outline = Outline.from_points(thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit)
+    return Merged(outline, Polygon(ring), bridges)
+
+
+def _rest(source: SourceParts, parts: Sequence[Part]) -> list[str]:
+    """A sentence on the parts that were not chosen, if there are any."""
+    chosen = {part.number for part in parts}
+    rest = [part.name for part in source.parts if part.number not in chosen]
+    if not rest:
+        return []
+    listed = ", ".join(rest[:NAMED]) + (", …" if len(rest) > NAMED else "")
+    return [
+        tr_n("{count} part was left out: {names}.", "{count} parts were left out: {names}.", len(rest), names=listed)
+    ]
+
+
+def _region(part: Part, merging: Merging, size: float) -> BaseGeometry:
+    """The area of a part."""
+    if not merging.as_painted or not part.lines:
+        return part.region
+    width = part.pen.width or (USUAL_STROKE * size if merging.stroke is None else merging.stroke)
+    _check_width("parts.stroke_width", width, size)
+    lines = MultiLineString([LineString(line) for line in part.lines]).simplify(FLATNESS * size)
+    painted = lines.buffer(
+        0.5 * width,
+        quad_segs=QUARTER,
+        cap_style=part.pen.cap,
+        join_style=part.pen.join,
+        mitre_limit=max(part.pen.mitre_limit, 1.0),
+    )
+    # The outer edge is what is meant: what lines surround belongs to the shape.
+    return painted.union(part.region)
+
+
+def _check_width(code: str, width: float, size: float) -> None:
+    least, most = LEAST_WIDTH * size, MOST_WIDTH * size
+    if not least <= width <= most:
+        raise TargetError(code, width=width, least=least, most=most)
+
+
+def _bridged(region: BaseGeometry, merging: Merging, size: float) -> tuple[BaseGeometry, tuple[Polygon, ...]]:
+    """The region with bridges along the shortest tree that joins its pieces."""
+    pieces = [piece.simplify(FLATNESS * size) for piece in enclosed(region)]
+    if len(pieces) < 2:
+        return region, ()
+    if len(pieces) > MOST_PIECES:
+        raise TargetError("parts.too_many_pieces", pieces=len(pieces), limit=MOST_PIECES)
+    width = USUAL_BRIDGE * size if merging.bridge is None else merging.bridge
+    _check_width("parts.bridge_width", width, size)
+    shapes = np.array(pieces)
+    distances = np.maximum(shapely.distance(shapes[:, None], shapes[None, :]), 1e-9 * size)
+    np.fill_diagonal(distances, 0.0)
+    tree = minimum_spanning_tree(distances).tocoo()
+    bridges = tuple(
+        _bridge(pieces[one], pieces[other], width, size)
+        for one, other in zip(tree.row.tolist(), tree.col.tolist(), strict=True)
+    )
+    return shapely.union_all([region, *pieces, *bridges]), bridges
+
+
+def _bridge(one: BaseGeometry, other: BaseGeometry, width: float, size: float) -> Polygon:
+    """A rectangle between the nearest places of two pieces that reaches half its width into both."""
+    (x0, y0), (x1, y1) = shapely.get_coordinates(shapely.shortest_line(one, other))
+    start, end = np.array([x0, y0]), np.array([x1, y1])
+    length = float(np.linalg.norm(end - start))
+    # Pieces that touch in a point are joined across it.
+    way = (end - start) / length if length > 1e-9 * size else np.array(other.centroid.coords[0]) - start
+    way = way / max(float(np.linalg.norm(way)), 1e-300)
+    line = LineString([start - 0.5 * width * way, end + 0.5 * width * way])
+    return line.buffer(0.5 * width, cap_style="flat")
+
+
+def _hull(shape: BaseGeometry, merging: Merging, size: float) -> BaseGeometry:
+    """The convex hull, or one that goes into hollows and still covers every part."""
+    if shape.is_empty:
+        raise TargetError("parts.no_area")
+    if merging.join is Join.HULL:
+        return shape.convex_hull
+    if not 0.0 <= merging.tightness <= 1.0:
+        raise TargetError("parts.tightness", value=merging.tightness)
+    points = shapely.extract_unique_points(shapely.segmentize(shape.simplify(FLATNESS * size), HULL_STEP * size))
+    # The hull of the points may cut off a corner of a part between them.
+    tight = shapely.concave_hull(points, ratio=1.0 - merging.tightness).union(shape)
+    return tight if len(enclosed(tight)) == 1 else shape.convex_hull

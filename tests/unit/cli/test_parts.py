@@ -1,0 +1,88 @@
+"""Options on the parts of drawings, and what is told of what was left out."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from command_line import refusal
+
+from kirigami_studio.cli import main
+
+BODY = '<circle id="disc" cx="30" cy="40" r="20"/><rect id="plate" x="60" y="20" width="30" height="30"/>'
+
+
+@pytest.fixture
+def logo(tmp_path: Path) -> Path:
+    path = tmp_path / "logo.svg"
+    text = f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">{BODY}</svg>'
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def sheet(tmp_path: Path) -> Path:
+    path = tmp_path / "sheet.json"
+    path.write_text(json.dumps({"ratio": [[1.0, 1.0, 1.0]] * 3}), encoding="utf-8")
+    return path
+
+
+def scored(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[dict, str]:
+    assert main(["score", *map(str, words), "--json"]) == 0
+    captured = capsys.readouterr()
+    return json.loads(captured.out), captured.err
+
+
+def test_that_parts_lists_what_a_drawing_holds(capsys, logo) -> None:
+    assert main(["parts", str(logo), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [part["name"] for part in told["parts"]] == ["disc", "plate"]
+    assert told["parts"][1]["size"] == pytest.approx([30, 30]) and told["unit"] == "mm"
+    assert told["largest"] == [1]
+
+
+def test_that_what_was_left_out_is_told_on_standard_error_and_in_json(capsys, logo, sheet) -> None:
+    told, said = scored(capsys, sheet, logo)
+    (note,) = told["warnings"]
+    assert "1 smaller piece was left out" in note
+    assert said == f"kirigami-studio: warning: {logo}: {note}\n"
+
+
+def test_that_a_chosen_part_is_the_target(capsys, logo, sheet) -> None:
+    told, said = scored(capsys, sheet, logo, "--parts", "plate")
+    assert told["warnings"] == ["1 part was left out: disc."] and "disc" in said
+    assert told["siou"] == pytest.approx(scored(capsys, sheet, "square")[0]["siou"], abs=1e-3)
+
+
+def test_that_joined_parts_leave_nothing_out(capsys, logo, sheet) -> None:
+    told, _ = scored(capsys, sheet, logo, "--join", "bridge", "--bridge", "5")
+    assert told["warnings"] == ["1 bridge holds the parts together."]
+    assert scored(capsys, sheet, logo, "--join", "hull") == (
+        told | scored(capsys, sheet, logo, "--join", "hull")[0],
+        "",
+    )
+
+
+def test_that_open_lines_are_refused_with_the_option_that_takes_them(capsys, tmp_path, sheet) -> None:
+    path = tmp_path / "open.svg"
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><path fill="none" stroke="red" d="M0 0h50v50"/></svg>')
+    code, said = refusal(capsys, "score", sheet, path, "--json")
+    assert code == 1 and "--stroke-outline" in said
+    told, _ = scored(capsys, sheet, path, "--stroke-outline", "4")
+    assert told["feasible"]
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "says"),
+    [
+        (("logo.svg", "--parts", "nothing"), 2, "disc, plate"),
+        (("logo.svg", "--join", "hull", "--bridge", "2"), 2, "--join bridge"),
+        (("logo.svg", "--bridge", "500"), 1, "logo.svg: A bridge must be"),
+        (("heart", "--parts", "all"), 2, "has no parts"),
+    ],
+)
+def test_that_options_that_make_no_sense_are_refused(words, code, says, capsys, logo, sheet, monkeypatch) -> None:
+    monkeypatch.chdir(logo.parent)
+    found, said = refusal(capsys, "score", sheet, *words, "--json")
+    assert found == code and says in said

@@ -1,0 +1,281 @@
+"""Drawings give all their parts, and chosen parts become one outline."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapely.geometry import Point, Polygon, box
+
+from kirigami_studio.foundation.errors import KirigamiError, TargetError
+from kirigami_studio.outlines.merging import Join, Merging, merged
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import MOST_PARTS, PartKind, SourceParts
+from kirigami_studio.outlines.read import read_parts
+
+LAYER = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer"'
+LOGO = f"""
+<g {LAYER} inkscape:label="Badge"><circle id="disc" cx="30" cy="40" r="20" fill="#c03030"/>
+<path id="ring" fill-rule="evenodd" fill="#0000ff" d="M60 20h40v40h-40z M70 30h20v20h-20z"/></g>
+<g {LAYER} inkscape:label="Line"><path id="swoosh" d="M10 80L110 80" fill="none" stroke="#108040" stroke-width="5"/>
+<g style="display:none"><rect width="300" height="300"/></g></g>"""
+MM = 'width="120mm" height="100mm" viewBox="0 0 120 100"'
+
+
+@pytest.fixture
+def logo(svg) -> SourceParts:
+    return read_parts(svg(LOGO, MM))
+
+
+def test_that_parts_have_names_layers_colours_kinds_and_sizes(logo) -> None:
+    told = [(part.name, part.layer, part.colour, part.kind) for part in logo.parts]
+    assert told == [
+        ("disc", "Badge", "#c03030", PartKind.FILLED),
+        ("ring", "Badge", "#0000ff", PartKind.FILLED),
+        ("swoosh", "Line", "#108040", PartKind.STROKED),
+    ]
+    assert [part.size for part in logo.parts] == [pytest.approx(size) for size in ((40, 40), (40, 40), (100, 0))]
+    assert logo.parts[2].pen.width == pytest.approx(5.0) and logo.unit == "mm"
+    assert logo.parts[1].region.area == pytest.approx(1600 - 400)
+    assert logo.layers == ("Badge", "Line")
+
+
+def test_that_up_stays_up_in_parts(logo) -> None:
+    assert logo.parts[0].bounds[1] > logo.parts[2].bounds[3]
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        ("all", ["disc", "ring", "swoosh"]),
+        ("largest", ["disc"]),
+        ("ring", ["ring"]),
+        ("RING, line", ["ring", "swoosh"]),
+        ("1,3", ["disc", "swoosh"]),
+        ("#c03030", ["disc"]),
+        ("Badge", ["disc", "ring"]),
+    ],
+)
+def test_that_parts_are_chosen_by_name_number_layer_and_colour(words, names, logo) -> None:
+    assert [part.name for part in logo.chosen(words)] == names
+
+
+def test_that_an_unknown_name_is_refused_with_those_there_are(logo) -> None:
+    with pytest.raises(KirigamiError, match=r"no layer called 'disk'.*Badge, Line, disc, ring, swoosh"):
+        logo.chosen("disk")
+
+
+def outlined(source: SourceParts, words: str, **how: object) -> Outline:
+    return merged(source, source.chosen(words), Merging(**how)).outline
+
+
+def test_that_one_part_is_taken_with_its_size_and_the_rest_is_told(logo, iou) -> None:
+    outline = outlined(logo, "ring")
+    assert outline.size == pytest.approx((40, 40)) and outline.name == "ring"
+    assert iou(outline, Outline.from_points(np.asarray(box(0, 0, 1, 1).exterior.coords))) > 0.999
+    assert outline.notes == ("2 parts were left out: disc, swoosh.", "Holes were filled (25 % of the area).")
+
+
+def test_that_parts_that_do_not_touch_are_united_to_the_largest_and_that_is_said(logo) -> None:
+    assert any("1 smaller piece was left out" in note for note in outlined(logo, "disc,ring").notes)
+
+
+def test_that_a_bridge_of_the_width_asked_for_holds_parts_together(logo) -> None:
+    found = merged(logo, logo.chosen("disc,ring"), Merging(Join.BRIDGE, bridge=3.0))
+    (bridge,) = found.bridges
+    disc, square = Point(30, -40).buffer(20, quad_segs=64), box(60, -60, 100, -20)
+    assert bridge.intersection(box(51, -100, 59, 0)).bounds == pytest.approx((51, -41.5, 59, -38.5), abs=0.1)
+    assert found.shape.symmetric_difference(disc.union(square).union(bridge)).area < 2.0
+    assert found.outline.size == pytest.approx((90, 40), abs=0.1)
+
+
+def test_that_touching_parts_get_no_bridge(svg) -> None:
+    source = read_parts(svg('<rect width="50" height="50"/><rect x="50" width="50" height="50"/>'))
+    assert not merged(source, source.parts, Merging(Join.BRIDGE)).bridges
+
+
+def test_that_many_parts_are_bridged_by_a_tree(svg) -> None:
+    dots = "".join(f'<circle cx="{20 * (k % 5)}" cy="{20 * (k // 5)}" r="5"/>' for k in range(20))
+    source = read_parts(svg(dots))
+    found = merged(source, source.parts, Merging(Join.BRIDGE, bridge=2.0))
+    assert len(found.bridges) == 19
+    assert all(found.shape.buffer(0.01).contains(part.region) for part in source.parts)
+
+
+def test_that_a_hull_covers_all_parts_and_a_tight_one_is_smaller(logo) -> None:
+    wide = merged(logo, logo.parts, Merging(Join.HULL)).shape
+    tight = merged(logo, logo.parts, Merging(Join.TIGHT)).shape
+    parts = [part.region for part in logo.parts if part.is_closed]
+    assert all(shape.buffer(0.01).contains(part) for shape in (wide, tight) for part in parts)
+    assert tight.area < 0.95 * wide.area and wide.equals(wide.convex_hull)
+
+
+@pytest.mark.parametrize(
+    ("style", "area"),
+    [
+        ("stroke-linecap:butt", 500.0),
+        ("stroke-linecap:square", 525.0),
+        ("stroke-linecap:round", 500.0 + np.pi * 2.5**2),
+    ],
+)
+def test_that_strokes_are_taken_as_they_are_painted(style, area, svg) -> None:
+    source = read_parts(svg(f'<path d="M10 80L110 80" fill="none" stroke="red" style="stroke-width:5;{style}"/>'))
+    assert merged(source, source.parts, Merging(as_painted=True)).shape.area == pytest.approx(area, rel=2e-3)
+
+
+def test_that_strokes_scale_with_their_group(svg) -> None:
+    body = '<g transform="scale(2)"><path d="M5 40L55 40" fill="none" stroke="red" stroke-width="3"/></g>'
+    source = read_parts(svg(body, 'width="200mm" height="200mm" viewBox="0 0 200 200"'))
+    assert source.parts[0].pen.width == pytest.approx(6.0)
+
+
+def test_that_an_open_drawing_has_an_outline_as_painted_that_is_refused_otherwise(svg) -> None:
+    source = read_parts(svg('<path fill="none" stroke="red" stroke-width="6" d="M10 10h80v80h-80v-50"/>'))
+    assert source.is_ambiguous
+    with pytest.raises(TargetError, match="enclose no area"):
+        merged(source, source.parts, Merging())
+    assert merged(source, source.parts, Merging(as_painted=True)).outline.size == pytest.approx((86, 86))
+
+
+def test_that_lines_without_a_width_take_the_one_given(dxf) -> None:
+    source = read_parts(dxf(lambda space, _: space.add_line((0, 0), (100, 0))))
+    found = merged(source, source.parts, Merging(as_painted=True, stroke=10.0))
+    assert found.outline.size == pytest.approx((110, 10), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("how", "word"),
+    [
+        ({"join": Join.BRIDGE, "bridge": 1000.0}, "bridge must be"),
+        ({"join": Join.BRIDGE, "bridge": -1.0}, "bridge must be"),
+        ({"join": Join.BRIDGE, "bridge": float("nan")}, "bridge must be"),
+        ({"as_painted": True, "stroke": 0.0}, "stroke must be"),
+        ({"join": Join.TIGHT, "tightness": 2.0}, "tightness"),
+    ],
+)
+def test_that_numbers_that_make_no_sense_are_refused(how, word, dxf) -> None:
+    def draw(space, _drawing) -> None:
+        space.add_circle((0, 0), 5)
+        space.add_circle((30, 0), 5)
+
+    source = read_parts(dxf(draw))
+    with pytest.raises(TargetError, match=word):
+        merged(source, source.parts, Merging(**how))
+
+
+def test_that_layers_of_a_dxf_give_parts_in_mm_and_hidden_ones_are_told(dxf) -> None:
+    def draw(space, drawing) -> None:
+        drawing.layers.add("Plate", color=1)
+        drawing.layers.add("Guides").off()
+        space.add_lwpolyline([(0, 0), (4, 0), (4, 2), (0, 2)], close=True, dxfattribs={"layer": "Plate"})
+        space.add_circle((2, 1), 0.5, dxfattribs={"layer": "Plate"})
+        space.add_line((9, 9), (12, 9), dxfattribs={"layer": "Marks", "color": 3})
+        space.add_line((9, 8), (12, 8), dxfattribs={"layer": "Guides"})
+        space.add_text("hello")
+
+    source = read_parts(dxf(draw, units=1))
+    told = [(part.layer, part.kind.value, part.colour) for part in source.parts]
+    assert told == [("Plate", "closed", "#ff0000"), ("Plate", "closed", "#ff0000"), ("Marks", "stroked", "#00ff00")]
+    assert source.parts[0].size == pytest.approx((4 * 25.4, 2 * 25.4))
+    assert source.left_out == (
+        "Text was left out. Convert it to lines if it belongs to the shape.",
+        "Hidden layers were left out: Guides.",
+    )
+
+
+AMBIGUOUS = (
+    ('<circle r="30"/><circle cx="90" r="20"/>', True),
+    ('<circle r="30"/><circle cx="30" r="20"/>', False),
+    ('<circle r="30"/>', False),
+    ('<path d="M0 0h50v50h-50z M10 10v30h30v-30z"/>', False),
+    ('<circle r="30"/><circle cx="90" r="1"/>', False),
+    ('<path stroke="red" fill="none" d="M0 0h50v50"/>', True),
+    ('<path stroke="red" fill="none" d="M0 0h50v50h-50z"/>', False),
+    ('<rect width="200" height="100" fill="#cde"/><circle cx="60" cy="60" r="30"/>', True),
+    ('<rect width="200" height="200" fill="#fff"/><circle cx="60" cy="60" r="50"/>', False),
+    ('<circle r="3"/><path stroke="red" fill="none" d="M-50 -50h100v100h-100v-50"/>', True),
+)
+
+
+@pytest.mark.parametrize(("body", "asks"), AMBIGUOUS)
+def test_that_only_drawings_with_a_choice_are_asked_about(body, asks, svg) -> None:
+    assert read_parts(svg(body)).is_ambiguous is asks
+
+
+def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
+    source = read_parts(svg('<path id="word" d="M0 0h10v10h-10z M20 0h5v5h-5z"/>'))
+    assert [part.name for part in source.parts] == ["word (1)", "word (2)"]
+
+
+def test_that_the_smallest_of_too_many_parts_are_left_out_and_said(svg) -> None:
+    many = "".join(f'<circle cx="{9 * k}" r="{1 + k / 1000}"/>' for k in range(MOST_PARTS + 20))
+    source = read_parts(svg(many))
+    assert len(source.parts) == MOST_PARTS and min(part.size[0] for part in source.parts) > 2.0
+    assert source.left_out[-1] == "20 parts were left out: only the 500 largest are offered."
+
+
+def bomb(tmp_path: Path) -> Path:
+    """Blocks that insert the next one ten times, twelve deep."""
+    path = tmp_path / "bomb.dxf"
+    insert = "0 INSERT 8 0 2 B{} 10 0 20 0 30 0 "
+    blocks = [f"0 BLOCK 8 0 2 B{k} 70 0 10 0 20 0 30 0 {insert.format(k + 1) * 10}0 ENDBLK " for k in range(12)]
+    last = "0 BLOCK 8 0 2 B12 70 0 10 0 20 0 30 0 0 ENDBLK "
+    words = f"0 SECTION 2 BLOCKS {''.join(blocks)}{last}0 ENDSEC 0 SECTION 2 ENTITIES {insert.format(0)}0 ENDSEC 0 EOF"
+    path.write_text("\n".join(words.split()) + "\n")
+    return path
+
+
+def huge_spline(tmp_path: Path) -> Path:
+    """A spline that reaches 1e300."""
+    path = tmp_path / "spline.dxf"
+    points = "10 0 20 0 30 0 10 20 20 1e300 30 0 10 10 20 50 30 0 10 0 20 0 30 0"
+    words = f"0 SECTION 2 ENTITIES 0 SPLINE 8 0 70 8 71 3 72 8 73 4 40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 {points}"
+    path.write_text("\n".join(f"{words} 0 ENDSEC 0 EOF".split()) + "\n")
+    return path
+
+
+def written_svg(body: str):
+    def write(tmp_path: Path) -> Path:
+        path = tmp_path / "bomb.svg"
+        path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>')
+        return path
+
+    return write
+
+
+def scribble(count: int) -> str:
+    ends = np.random.default_rng(0).random((count, 2)) * 100
+    return f'<polyline fill="none" stroke="red" points="{" ".join(f"{x:.3f},{y:.3f}" for x, y in ends)}"/>'
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        bomb,
+        huge_spline,
+        written_svg(f'<path fill="rgb({"1" * 30_000},0,0)" d="M0 0h9v9z"/>'),
+        written_svg('<rect width="1" height="2"/>' * 90_000),
+        written_svg(f'<path d="M0 0{"L1 2" * 500_000}"/>'),
+        written_svg(f'<path d="M0 0 {" ".join(["C1 2 3 4 5 6"] * 40_000)}"/>'),
+        written_svg(scribble(20_000)),
+    ],
+    ids=["blocks", "spline", "digits", "rectangles", "points", "curves", "scribble"],
+)
+def test_that_a_drawing_that_unfolds_without_end_is_given_up_in_time(write, tmp_path) -> None:
+    path = write(tmp_path)
+    read_parts_of_a_square(tmp_path)  # what is imported first is not the drawing's fault
+    begun = time.thread_time()
+    try:
+        source = read_parts(path)
+        merged(source, source.parts, Merging())
+    except TargetError as error:
+        assert len(str(error)) < 400
+    assert time.thread_time() - begun < 5.0
+
+
+def read_parts_of_a_square(tmp_path: Path) -> None:
+    path = tmp_path / "square.svg"
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>')
+    assert isinstance(read_parts(path).parts[0].region, Polygon)
