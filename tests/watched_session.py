@@ -129,7 +129,7 @@ class WatchedSession:
         )
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
         self.step("move the balance over it", self.balance)
-        self.step("show every look-alike", lambda: self.window.gallery.bar.grouped.setChecked(False))
+        self.step("show every look-alike", lambda: self.window.gallery.bar.filters.grouped.setChecked(False))
         self.step("look through its gallery", self.look_through)
         self.step("scrub a large design", self.scrub)
         self.step("show its cuts", lambda: self.press("cuts"))

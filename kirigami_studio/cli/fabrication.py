@@ -183,7 +183,7 @@ def _advice(document: Document, settings: FabricationSettings, verdict: Verdict)
             second=wishes.second,
         )
         coarser = coarser_designs(candidate, request)
-    return result_of(find_fixes(candidate, settings, verdict, document.candidates, coarser))
+    return result_of(find_fixes(candidate, settings, verdict, document.named_candidates, coarser))
 
 
 def say_verdict(verdict: Verdict) -> None:

@@ -20,7 +20,7 @@ from kirigami_studio.gui.cutting import CutPlanner, FabricationEditor
 from kirigami_studio.gui.designs.artwork import ArtworkKeeper
 from kirigami_studio.gui.designs.as_cut import AsCutEstimates, AsCutReader
 from kirigami_studio.gui.designs.chosen_design import Refitter, SampledScores, TrimSwitch
-from kirigami_studio.gui.designs.collection import DesignMarks
+from kirigami_studio.gui.designs.collection import DesignLabels, DesignMarks
 from kirigami_studio.gui.designs.curves import CurveReader
 from kirigami_studio.gui.designs.generation import Generation
 from kirigami_studio.gui.designs.gripping import GripFinder
@@ -54,7 +54,7 @@ class Controller(QObject):
     ----------
     session : Session
         Document, history, stage; the parts report to the user through it.
-    hand, trimming, refitting, sampled, marks, curves, as_cut
+    hand, trimming, refitting, sampled, marks, labels, curves, as_cut
         What is done to the chosen design, or found out about it.
     generation, run
         Making designs, and the run that makes them.
@@ -84,6 +84,7 @@ class Controller(QObject):
         self.refitting = Refitter(session, self)
         self.sampled = SampledScores(session, self)
         self.marks = DesignMarks(session)
+        self.labels = DesignLabels(session)
         self.curves = CurveReader(session, self)
         self.generation = Generation(session, self.hand, self)
         self.run = self.generation.run

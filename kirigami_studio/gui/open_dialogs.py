@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt, QUrl
+from PySide6.QtCore import QObject, QRect, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.look import theme
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
     from kirigami_studio.gui.dialogs.history_list import HistoryList
+    from kirigami_studio.gui.dialogs.label_editor import LabelEditor
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.outline_board import OutlineBoard
     from kirigami_studio.gui.dialogs.pairs import PairGallery
@@ -44,6 +47,7 @@ class Dialogs(QObject):
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
         self.artwork: ArtworkEditor | None = None
+        self.label: LabelEditor | None = None
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
@@ -180,6 +184,20 @@ class Dialogs(QObject):
         self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.picker.chosen.connect(take)
         self.picker.show_below(below)
+
+    def show_label(self, candidate: Candidate | None, beside: QRect) -> None:
+        """Open the name and the note of a design beside a place on the screen."""
+        from kirigami_studio.gui.dialogs.label_editor import LabelEditor
+
+        label = self._controller.labels.of(candidate)
+        if label is None:
+            return
+        self.label = LabelEditor(self._window, label, partial(self._controller.labels.set, label))
+        self.label.destroyed.connect(self._forget_label)
+        self.label.show_beside(beside)
+
+    def _forget_label(self) -> None:
+        self.label = None
 
     def show_guide(self) -> None:
         """Open the guide, or bring it to the front."""

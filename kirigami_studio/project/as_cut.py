@@ -84,8 +84,7 @@ class AsCut:
     stretch : float
         Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not.
     strain : float
-        Largest strain on the way to where the sheet comes to, of the figure that is believed; not a number in an
-        estimate.
+        Largest strain on the way to where the sheet comes to, of the figure that is believed.
     figure : StrainFigure
     iou, ideal_iou : float or None
         Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
@@ -278,7 +277,11 @@ def estimate(
     largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
     blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
-    return AsCut(jam, phi, outcome, largest, math.nan, believed_figure(sheet))
+    figure = believed_figure(sheet)
+    turn = np.full(len(sheet.connectors), math.pi - (phi if outcome is Outcome.CLOSES else max(jam, phi)))
+    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
+    strain = in_plane if figure is StrainFigure.IN_PLANE else out_of_plane
+    return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure)
 
 
 def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:

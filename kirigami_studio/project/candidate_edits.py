@@ -14,6 +14,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import joined_provenance, with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit, set_candidates
+from kirigami_studio.project.labels import Label, cleaned_name, cleaned_note, run_labels
 from kirigami_studio.project.settings import DesignSettings
 
 #: Designs that a project collects at most; one run may bring as many.
@@ -36,16 +37,41 @@ def set_mark(document: Document, index: int, mark: Mark, chosen: int | None = No
         raise ProjectError("project.no_such_design", index=index, designs=len(document.candidates))
     marks = list(document.marks)
     before, marks[index] = marks[index], mark
+    name = document.labels[index].text
     labels = {
-        Mark.PINNED: tr("Pin design {number}", number=index + 1),
-        Mark.REJECTED: tr("Reject design {number}", number=index + 1),
-        Mark.NONE: tr("Unpin design {number}", number=index + 1)
+        Mark.PINNED: tr("Pin design {name}", name=name),
+        Mark.REJECTED: tr("Reject design {name}", name=name),
+        Mark.NONE: tr("Unpin design {name}", name=name)
         if before is Mark.PINNED
-        else tr("Restore design {number}", number=index + 1),
+        else tr("Restore design {name}", name=name),
     }
     return Edit(
         labels[mark], replace(document, marks=tuple(marks), chosen=document.chosen if chosen is None else chosen)
     )
+
+
+def set_label(document: Document, index: int, name: str, note: str) -> Edit:
+    """Call candidate ``index`` otherwise, and note something of it; without a name it has its own one again.
+
+    Raises
+    ------
+    ProjectError
+        There is no such candidate, another one has that name, or a text is too long.
+    """
+    if not 0 <= index < len(document.candidates):
+        raise ProjectError("project.no_such_design", index=index, designs=len(document.candidates))
+    before, name = document.labels[index], cleaned_name(name)
+    after = Label(before.code, "" if name == before.code else name, cleaned_note(note))
+    others = document.labels[:index] + document.labels[index + 1 :]
+    if any(after.text.casefold() in (one.text.casefold(), one.code.casefold()) for one in others):
+        raise ProjectError("labels.taken", name=after.text)
+    labels = (*document.labels[:index], after, *document.labels[index + 1 :])
+    told = (
+        tr("Rename design {name}", name=before.text)
+        if after.name != before.name
+        else tr("Note on design {name}", name=before.text)
+    )
+    return Edit(told, replace(document, labels=labels))
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,16 +100,16 @@ class NewDesigns:
 def add_candidates(document: Document, new: NewDesigns, rank: RankKey, limit: int = LARGEST_COLLECTION) -> Edit:
     """Join the designs of another run for the same target, grid and angle to those there are.
 
-    All are ranked together; marks stay with their designs, and the same design stays chosen.  A sheet that is there
-    already is not added.  Where more than ``limit`` would come together, the worst rejected designs go first, then the
-    worst unmarked ones; pinned designs and the chosen one stay.
+    All are ranked together; marks and names stay with their designs, and the same design stays chosen.  A sheet that is
+    there already is not added.  Where more than ``limit`` would come together, the worst rejected designs go first,
+    then the worst unmarked ones; pinned designs and the chosen one stay.
     """
     marked = dict(zip(document.candidates, document.marks, strict=True))
     sheets = {candidate.sheet for candidate in document.candidates}
     added = with_run(_without_repeats(new.candidates, sheets), new.provenance)
     present = with_run(document.candidates, document.provenance)
     kept = _within([*present, *added], marked, document.candidate, rank, limit)
-    changed = _collected(document, kept, marked, document.candidate)
+    changed = _collected(document, kept, marked, document.candidate, _labelled(document))
     changed = replace(changed, provenance=joined_provenance(document.provenance, new.provenance))
     changed = replace(changed, settings=_settings(document, new))
     if not added:
@@ -95,6 +121,7 @@ def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen:
     """Take the designs of a new run in the place of all but the pinned ones, and choose one, by default the best.
 
     Pinned designs stay only where they share target, grid and angle with the new ones, which the caller has checked.
+    A design that is found again keeps its name.
     """
     known = with_run(document.candidates, document.provenance)
     pinned = [one for one, mark in zip(known, document.marks, strict=True) if mark is Mark.PINNED]
@@ -104,7 +131,8 @@ def renew_candidates(document: Document, new: NewDesigns, rank: RankKey, chosen:
     joined = joined_provenance(document.provenance, new.provenance) if pinned else new.provenance
     edit = set_candidates(document, found, joined, new.target)
     label = tr_n("Generate {count} design", "Generate {count} designs", len(new.candidates))
-    changed = _collected(edit.document, found, dict.fromkeys(pinned, Mark.PINNED), chosen or found[0])
+    marked = dict.fromkeys(pinned, Mark.PINNED)
+    changed = _collected(edit.document, found, marked, chosen or found[0], _labelled(document), document.runs)
     return Edit(label, replace(changed, settings=_settings(document, new)))
 
 
@@ -123,7 +151,7 @@ def rank_again(document: Document, regular: float, rank: RankKey, merge_key: str
     settings = replace(document.settings, regular=regular)
     ordered = sorted(document.candidates, key=rank)
     chosen = ordered[0] if document.chosen == 0 else document.candidate
-    changed = _collected(document, ordered, _marked(document), chosen)
+    changed = _collected(document, ordered, _marked(document), chosen, _labelled(document))
     return Edit(tr("Change match or regular"), replace(changed, settings=settings), merge_key)
 
 
@@ -136,9 +164,10 @@ def replace_candidates(
     """
     changed = [better.get(one, one) for one in document.candidates]
     marked = dict(zip(changed, document.marks, strict=True))
+    labelled = dict(zip(changed, document.labels, strict=True))
     ordered = sorted(changed, key=rank)
     chosen = None if document.chosen is None else changed[document.chosen]
-    after = _collected(document, ordered, marked, ordered[0] if document.chosen == 0 else chosen)
+    after = _collected(document, ordered, marked, ordered[0] if document.chosen == 0 else chosen, labelled)
     return Edit(tr("Change match or regular"), after, merge_key)
 
 
@@ -169,13 +198,30 @@ def _within(
     return ordered
 
 
+def _labelled(document: Document) -> dict[Candidate, Label]:
+    return dict(zip(document.candidates, document.labels, strict=True))
+
+
 def _collected(
-    document: Document, candidates: list[Candidate], marked: dict[Candidate, Mark], chosen: Candidate | None
+    document: Document,
+    candidates: list[Candidate],
+    marked: dict[Candidate, Mark],
+    chosen: Candidate | None,
+    labelled: dict[Candidate, Label],
+    runs: int | None = None,
 ) -> Document:
-    """The document with other candidates, marked as they were."""
+    """The document with other candidates, marked and named as they were; new ones are named as those of one run.
+
+    ``runs`` is how many runs have named designs before, by default those that the document knows of.
+    """
+    before = document.runs if runs is None else runs
+    fresh = [one for one in candidates if one not in labelled]
+    names = dict(zip(fresh, run_labels(before, len(fresh), labelled.values()), strict=True)) | labelled
     return replace(
         document,
         candidates=tuple(candidates),
         marks=tuple(marked.get(one, Mark.NONE) for one in candidates),
         chosen=candidates.index(chosen) if chosen in candidates else None,
+        labels=tuple(names[one] for one in candidates),
+        runs=before + (1 if fresh else 0),
     )

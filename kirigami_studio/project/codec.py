@@ -32,6 +32,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.project.document import Document, Mark, Void
 from kirigami_studio.project.json_record import Record, one_of, read_json
+from kirigami_studio.project.labels import Label
 from kirigami_studio.project.migrations import Members
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
@@ -56,6 +57,8 @@ def encode(document: Document) -> dict[str, bytes]:
         "chosen": document.chosen,
         "provenance": dict(sorted(document.provenance.items())),
         "marks": [mark.value for mark in document.marks],
+        "labels": [asdict(label) for label in document.labels],
+        "naming_runs": document.runs,
         "locked": [list(void) for void in sorted(document.locked)],
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
@@ -109,6 +112,8 @@ def decode(members: Members) -> Document:
         fabrication=_fabrication(design.record("fabrication")),
         provenance=design.texts("provenance"),
         marks=tuple(one_of(Mark, name) for name in design.list("marks")),
+        labels=tuple(_label(entry, k) for k, entry in enumerate(design.list("labels"))),
+        runs=design.whole("naming_runs"),
         locked=frozenset(_void(entry) for entry in design.list("locked")),
     )
 
@@ -413,6 +418,11 @@ def _run(record: Record, runs: list[tuple[tuple[str, str], ...]]) -> tuple[tuple
     if not 0 <= number < len(runs):
         raise ProjectError("project.no_such_run", number=number, runs=len(runs))
     return runs[number]
+
+
+def _label(entry: object, number: int) -> Label:
+    record = Record(entry, f"{DESIGN}.labels[{number}]")
+    return Label(record.text("code"), record.text("name"), record.text("note"))
 
 
 def _void(entry: object) -> Void:

@@ -52,7 +52,7 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
     if variant in by_model:
         facts["model_sha256"] = by_model[variant]
     (rows, columns), cut = candidate.sheet.grid, candidate.final_sheet
-    trim = candidate.trim
+    trim, label = candidate.trim, document.label_of(candidate)
     return facts | {
         "seed": str(candidate.seed),
         "sample": str(candidate.index),
@@ -63,6 +63,7 @@ def design_facts(document: Document, candidate: Candidate) -> dict[str, str]:
         **({} if cut.is_default else {"sheet": _differences(cut)}),
         "phi_degrees": f"{math.degrees(candidate.score.phi):g}",
         **({} if document.target is None else {"target": document.target.name}),
+        **({} if label is None else {"name": label.text}),
     }
 
 

@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.labels import Label, run_labels
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
 #: A void by its row and column.
@@ -51,12 +52,16 @@ class Document:
         Voids whose ratio a change by hand leaves as it is.
     artwork : Artwork or None
         What is printed on the sheet.
+    labels : tuple of Label
+        Name and note of each candidate; left out, they are named as those of one run.
+    runs : int
+        How many runs have named designs; the next one begins with another letter.
 
     Raises
     ------
     ProjectError
-        Candidates without a target or of different grids, a choice that is not among them, more or fewer marks than
-        candidates, or a locked void that their grid does not have.
+        Candidates without a target or of different grids, a choice that is not among them, more or fewer marks or
+        labels than candidates, or a locked void that their grid does not have.
     """
 
     target: Outline | None = None
@@ -68,6 +73,8 @@ class Document:
     marks: tuple[Mark, ...] = ()
     locked: frozenset[Void] = frozenset()
     artwork: Artwork | None = None
+    labels: tuple[Label, ...] = ()
+    runs: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))
@@ -88,6 +95,7 @@ class Document:
         if self.chosen is not None and not (isinstance(self.chosen, int) and 0 <= self.chosen < count):
             raise ProjectError("project.no_such_design", index=self.chosen, designs=count)
         self._check_marks(count)
+        self._check_labels(count)
 
     def _check_marks(self, count: int) -> None:
         marks = tuple(self.marks) or (Mark.NONE,) * count
@@ -101,7 +109,31 @@ class Document:
             row, column = outside[0]
             raise ProjectError("project.no_such_void", row=row, column=column, rows=rows, columns=columns)
 
+    def _check_labels(self, count: int) -> None:
+        object.__setattr__(self, "runs", max(self.runs, 1 if count else 0))
+        labels = tuple(self.labels) or run_labels(max(self.runs - 1, 0), count)
+        if len(labels) != count:
+            raise ProjectError("project.labels_do_not_match", labels=len(labels), designs=count)
+        object.__setattr__(self, "labels", labels)
+
     @property
     def candidate(self) -> Candidate | None:
         """The chosen candidate, or None."""
         return None if self.chosen is None else self.candidates[self.chosen]
+
+    @property
+    def label(self) -> Label | None:
+        """Name and note of the chosen candidate, or None."""
+        return None if self.chosen is None else self.labels[self.chosen]
+
+    @property
+    def named_candidates(self) -> dict[str, Candidate]:
+        """The candidates by their names, best first."""
+        return {label.text: one for label, one in zip(self.labels, self.candidates, strict=True)}
+
+    def label_of(self, candidate: Candidate) -> Label | None:
+        """Name and note of a candidate, None for one that is not among them."""
+        found = next((place for place, one in enumerate(self.candidates) if one is candidate), None)
+        if found is None and candidate in self.candidates:
+            found = self.candidates.index(candidate)
+        return None if found is None else self.labels[found]

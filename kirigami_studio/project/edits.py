@@ -15,6 +15,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import FabricationSettings
 
 
@@ -144,8 +145,10 @@ def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
 
 
 def without_designs(document: Document, target: Outline | None) -> Document:
-    """The document with another target; the designs of the old one, their marks and locks go."""
-    return replace(document, target=target, candidates=(), chosen=None, provenance={}, marks=(), locked=frozenset())
+    """The document with another target; the designs of the old one, their marks, names and locks go."""
+    return replace(
+        document, target=target, candidates=(), chosen=None, provenance={}, marks=(), labels=(), locked=frozenset()
+    )
 
 
 def as_drawn(document: Document, target: Outline) -> Document:
@@ -277,6 +280,8 @@ def set_candidates(
         chosen=0 if found else None,
         provenance=provenance,
         marks=(),
+        labels=run_labels(document.runs, len(found)),
+        runs=document.runs + (1 if found else 0),
         locked=frozenset(),
     )
     count = len(found)
@@ -301,8 +306,13 @@ def choose(document: Document, index: int | None) -> Edit:
     ProjectError
         There is no such candidate.
     """
-    label = tr("Deselect the design") if index is None else tr("Choose design {number}", number=index + 1)
+    label = tr("Deselect the design") if index is None else tr("Choose design {name}", name=_name(document, index))
     return Edit(label, replace(document, chosen=index))
+
+
+def _name(document: Document, index: int) -> str:
+    """What a design is called; its number where there is none, which the document refuses."""
+    return document.labels[index].text if 0 <= index < len(document.labels) else str(index)
 
 
 def replace_candidate(document: Document, index: int, candidate: Candidate, gesture: str) -> Edit:

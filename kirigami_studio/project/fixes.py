@@ -9,9 +9,10 @@ would jam or break.
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
+from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import check_plan
@@ -141,7 +142,7 @@ def find_fixes(
     candidate: Candidate,
     settings: FabricationSettings,
     verdict: Verdict,
-    others: Sequence[Candidate] = (),
+    others: Mapping[str, Candidate] = MappingProxyType({}),
     coarser: Iterable[tuple[Candidate, ...]] = (),
 ) -> Generator[None, None, Advice]:
     """Look for changes that help; yields between them, for others to have their turn.
@@ -154,8 +155,8 @@ def find_fixes(
         How it is cut.
     verdict : Verdict
         On that; a change helps if it leads to a better one.
-    others : sequence of Candidate
-        Other designs of the document, by their numbers.
+    others : mapping of str to Candidate
+        Other designs of the document by their names, best first.
     coarser : iterable of tuple of Candidate
         Designs for the same target on coarser grids, best first; made when they are asked for.
 
@@ -366,12 +367,12 @@ def _connectors(material: Material, settings: FabricationSettings, multiples: Se
 
 
 def _other_designs(
-    candidate: Candidate, settings: FabricationSettings, others: Sequence[Candidate]
+    candidate: Candidate, settings: FabricationSettings, others: Mapping[str, Candidate]
 ) -> Iterator[_Change]:
     """Other designs of the document, best first."""
-    hopeful = [(number, one) for number, one in enumerate(others, start=1) if one.score.feasible and one != candidate]
-    for number, one in hopeful[:MOST_DESIGNS]:
-        yield _Change(Note.of("fix.design", number=number), one, settings)
+    hopeful = [(name, one) for name, one in others.items() if one.score.feasible and one != candidate]
+    for name, one in hopeful[:MOST_DESIGNS]:
+        yield _Change(Note.of("fix.design", name=name), one, settings)
 
 
 def _coarser_grids(

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.project.labels import letters_of
 
 #: The members of a project file by name; the manifest is not among them.
 Members = Mapping[str, bytes]
@@ -35,8 +36,28 @@ def _with_sheet_settings(members: Members) -> Members:
     return {**members, DESIGN: json.dumps(design).encode()}
 
 
-CURRENT_VERSION = 2
-MIGRATIONS: Mapping[int, Migration] = MappingProxyType({1: _with_sheet_settings})
+def _with_labels(members: Members) -> Members:
+    """Format 3 names designs: those of the run that the best one comes from A1, A2, ..., those of others B1, ..."""
+    if DESIGN not in members:
+        return members
+    try:
+        design = json.loads(members[DESIGN])
+        runs: dict[object, int] = {}
+        counts: dict[object, int] = {}
+        labels = []
+        for entry in design["candidates"]:
+            run = entry.get("run")
+            counts[run] = counts.get(run, 0) + 1
+            code = f"{letters_of(runs.setdefault(run, len(runs)))}{counts[run]}"
+            labels.append({"code": code, "name": "", "note": ""})
+        design |= {"labels": labels, "naming_runs": len(runs)}
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return members  # reading says what is wrong with it
+    return {**members, DESIGN: json.dumps(design).encode()}
+
+
+CURRENT_VERSION = 3
+MIGRATIONS: Mapping[int, Migration] = MappingProxyType({1: _with_sheet_settings, 2: _with_labels})
 
 
 def migrate(members: Members, version: int, path: Path) -> Members:

@@ -41,7 +41,7 @@ def test_that_the_menu_writes_each_kind(
     designed.fabrication.kinds[extension].trigger()
     until(lambda: bool(designed.messages.messages))
     assert designed.messages.messages[-1].tone is Tone.DONE
-    assert files.proposals == [f"heart{extension}"]  # type: ignore[attr-defined]
+    assert files.proposals == [f"heart-A1{extension}"]  # type: ignore[attr-defined]
     written = (tmp_path / f"sheet{extension}").read_bytes().replace(b"\r\n", b"\n")
     assert written.startswith(FIRST_BYTES[extension])
 
@@ -70,7 +70,7 @@ def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_as
         "heart.gif exported: as cut, to 0°.",
         "heart-ideal.gif exported: the ideal motion, with connectors of no width.",
     ]
-    assert files.proposals == ["heart.gif", "heart-ideal.gif"]  # type: ignore[attr-defined]
+    assert files.proposals == ["heart-A1.gif", "heart-A1-ideal.gif"]  # type: ignore[attr-defined]
     for name, said in (("heart.gif", True), ("heart-ideal.gif", False)):
         with Image.open(tmp_path / name) as image:
             assert (b"MOTION As cut" in image.info["comment"]) is said, name

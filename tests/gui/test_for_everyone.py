@@ -138,7 +138,7 @@ def test_that_painted_controls_say_their_value(designed: MainWindow) -> None:
     gallery = QAccessible.queryAccessibleInterface(view)
     assert gallery is not None and gallery.childCount() == 3
     card = gallery.child(0)
-    assert card is not None and card.text(QAccessible.Text.Name).startswith("Design 1: match")
+    assert card is not None and card.text(QAccessible.Text.Name).startswith("Design A1: match")
 
 
 def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed: MainWindow, qtbot: QtBot) -> None:

@@ -217,7 +217,7 @@ def test_that_a_click_on_a_card_chooses_its_design(designed: MainWindow, qtbot: 
     place = view.visualRect(view.model_.index(1, 0)).center()
     qtbot.mouseClick(view.viewport(), LEFT, pos=place)
     assert designed.controller.document.chosen == 1
-    assert designed.stage.title.text() == "Design 2"
+    assert designed.stage.title.text() == "Design A2"
 
 
 def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: QtBot) -> None:
@@ -236,7 +236,7 @@ def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: Q
 def test_that_a_card_tells_its_numbers_to_screen_readers(designed: MainWindow, designs: Document) -> None:
     model = designed.gallery.view.model_
     text = model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
-    assert text == described(designs.candidates[0], 1)
+    assert text == described(designs.candidates[0], "A1")
     assert f"{100 * designs.candidates[0].score.siou:.2f} %" in str(text)
 
 

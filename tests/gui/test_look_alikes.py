@@ -43,7 +43,7 @@ def similar(designs: Document) -> Document:
         sheet = Sheet(field)
         near.append(replace(best, sheet=sheet, score=evaluate(deploy(sheet), target, 0.0), index=index))
     found = ranking.ranked((*designs.candidates, *near))
-    return replace(designs, candidates=found, chosen=0, marks=())
+    return replace(designs, candidates=found, chosen=0, marks=(), labels=())
 
 
 @pytest.fixture
@@ -133,11 +133,11 @@ def test_that_grouping_can_be_switched_off_and_keeps_to_any_order(stacked: MainW
         box.setCurrentIndex(box.findData(order))
         box.activated.emit(box.currentIndex())
         assert len(shown(stacked)) == 3
-    bar.grouped.setChecked(False)
+    bar.filters.grouped.setChecked(False)
     assert len(shown(stacked)) == 5
     values = [one.score.evenness.area_cv for one in shown(stacked)]
     assert values == sorted(values)
-    bar.grouped.setChecked(True)
+    bar.filters.grouped.setChecked(True)
     assert len(shown(stacked)) == 3
 
 

@@ -30,12 +30,12 @@ def test_that_a_card_is_pinned_without_being_chosen(designed: MainWindow, qtbot:
     press_button(designed, qtbot, 1, CardButton.PIN)
     document = designed.controller.document
     assert document.marks == (Mark.NONE, Mark.PINNED, Mark.NONE) and document.chosen == 0
-    assert designed.controller.history.undo_label == "Pin design 2"
+    assert designed.controller.history.undo_label == "Pin design A2"
     assert "Pinned" in str(designed.gallery.view.model_.index(1, 0).data(Qt.ItemDataRole.AccessibleTextRole))
-    assert designed.status_text.text() == "Design 2 pinned. Undo to unpin."
+    assert designed.status_text.text() == "Design A2 pinned. Undo to unpin."
     press_button(designed, qtbot, 1, CardButton.PIN)
-    assert designed.controller.history.undo_label == "Unpin design 2"
-    assert designed.status_text.text() == "Design 2 unpinned. Undo to pin again."
+    assert designed.controller.history.undo_label == "Unpin design A2"
+    assert designed.status_text.text() == "Design A2 unpinned. Undo to pin again."
     designed.commands["undo"].trigger()
     designed.commands["undo"].trigger()
     assert set(designed.controller.document.marks) == {Mark.NONE}
@@ -47,7 +47,7 @@ def test_that_a_rejected_card_goes_and_comes_back_with_undo(designed: MainWindow
     assert designed.controller.document.marks[1] is Mark.REJECTED and model.rowCount() == 2
     assert designed.controller.document.chosen == 0
     assert designed.gallery.count.text().startswith("2 of 3 shown")
-    assert designed.status_text.text() == "Design 2 rejected. Undo to restore."
+    assert designed.status_text.text() == "Design A2 rejected. Undo to restore."
     designed.commands["undo"].trigger()
     assert model.rowCount() == 3
 
@@ -61,7 +61,7 @@ def test_that_delete_rejects_the_chosen_design_and_goes_on_to_the_next(
     document = designed.controller.document
     assert document.marks[0] is Mark.REJECTED and document.chosen == 1
     assert designed.controller.stage is not None and designed.controller.stage.candidate == designs.candidates[1]
-    assert designed.stage.title.text() == "Design 2"
+    assert designed.stage.title.text() == "Design A2"
     assert view.currentIndex().row() == 0
     qtbot.keyClick(view, Qt.Key.Key_Backspace)
     qtbot.keyClick(view, Qt.Key.Key_Backspace)
@@ -80,14 +80,14 @@ def test_that_delete_elsewhere_rejects_nothing(designed: MainWindow, qtbot: QtBo
 
 
 def test_that_shown_rejected_designs_are_taken_back_by_the_same_button(designed: MainWindow, qtbot: QtBot) -> None:
-    designed.gallery.bar.rejected.setChecked(True)
+    designed.gallery.bar.filters.rejected.setChecked(True)
     designed.gallery.view.setFocus()
     qtbot.keyClick(designed.gallery.view, Qt.Key.Key_Delete)
     assert designed.controller.document.chosen == 0 and designed.gallery.view.model_.rowCount() == 3
     assert designed.commands["reject"].text().replace("&", "") == "Restore design"
     press_button(designed, qtbot, 0, CardButton.REJECT)
     assert designed.controller.document.marks[0] is Mark.NONE
-    assert designed.controller.history.undo_label == "Restore design 1"
+    assert designed.controller.history.undo_label == "Restore design A1"
 
 
 def test_that_the_key_pins_the_chosen_design(designed: MainWindow, qtbot: QtBot) -> None:

@@ -126,7 +126,7 @@ def uneven(document: Document) -> Document:
         )
         for one, (match, variation) in zip(document.candidates, figures, strict=True)
     )
-    return replace(document, candidates=found, marks=(Mark.NONE, Mark.PINNED, Mark.NONE))
+    return replace(document, candidates=found, marks=(Mark.NONE, Mark.PINNED, Mark.NONE), labels=())
 
 
 @pytest.fixture

@@ -197,7 +197,7 @@ def test_that_choosing_another_design_keeps_what_was_seen_of_a_drag_as_one_step(
     settle(by_hand, until)
     let_go(by_hand, place)
     until(lambda: gestures_done(by_hand))
-    assert controller.history.steps == (LABEL, "Choose design 2")
+    assert controller.history.steps == (LABEL, "Choose design A2")
     assert controller.document.chosen == 1 and seen(by_hand) == document.candidates[1].sheet.field
     assert controller.document.candidates[1:] == document.candidates[1:]
 

@@ -177,7 +177,7 @@ def test_that_copied_cuts_are_the_exported_file(
 
 def test_that_the_animation_is_offered_in_the_menu(designed: MainWindow, files: object, tmp_path: Path) -> None:
     designed.commands["animation"].trigger()
-    assert files.proposals == ["heart.gif"]  # type: ignore[attr-defined]
+    assert files.proposals == ["heart-A1.gif"]  # type: ignore[attr-defined]
 
 
 def test_that_without_a_design_nothing_is_copied_and_that_is_said(window: MainWindow) -> None:

@@ -201,7 +201,7 @@ def test_that_the_history_names_every_step_and_a_click_goes_there(
     steps: HistoryList, designed: MainWindow, designs: Document, qtbot: QtBot
 ) -> None:
     rows, width = steps.steps, "Change the sheet width"
-    assert [rows.item(row).text() for row in range(4)] == ["Start", "Choose design 2", width, width]
+    assert [rows.item(row).text() for row in range(4)] == ["Start", "Choose design A2", width, width]
     assert rows.currentRow() == 3 and "3 steps" in steps.counted.text()
     place = rows.visualItemRect(rows.item(1)).center()
     qtbot.mouseClick(rows.viewport(), Qt.MouseButton.LeftButton, pos=place)
@@ -221,7 +221,7 @@ def test_that_the_history_follows_the_work(steps: HistoryList, designed: MainWin
     designed.commands["undo"].trigger()
     assert steps.steps.currentRow() == 2
     designed.commands["next"].trigger()
-    assert [steps.steps.item(row).text() for row in range(steps.steps.count())][3:] == ["Choose design 3"]
+    assert [steps.steps.item(row).text() for row in range(steps.steps.count())][3:] == ["Choose design A3"]
 
 
 def test_that_going_to_a_step_undoes_as_often_as_it_takes(designs: Document) -> None:

@@ -17,7 +17,7 @@ from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.gallery_model import NUMBER_ROLE, VALUE_ROLE, GalleryModel
+from kirigami_studio.gui.views.gallery_model import NAME_ROLE, VALUE_ROLE, GalleryModel
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
@@ -57,8 +57,8 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
     assert shown(designed) == sorted(designs.candidates, key=values)
     assert designed.controller.document is before and not designed.controller.history.unsaved
     model = designed.gallery.view.model_
-    numbers = [model.data(model.index(row, 0), NUMBER_ROLE) for row in range(3)]
-    assert numbers == [designs.candidates.index(one) + 1 for one in shown(designed)]
+    names = [model.data(model.index(row, 0), NAME_ROLE) for row in range(3)]
+    assert names == [f"A{designs.candidates.index(one) + 1}" for one in shown(designed)]
     assert designed.gallery.view.currentIndex().row() == shown(designed).index(designs.candidates[0])
 
 
@@ -100,52 +100,52 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
 def test_that_unlike_stays_with_its_design_until_it_is_asked_for_again(designed: MainWindow, designs: Document) -> None:
     sort_by(designed, SortOrder.UNLIKE)
     first = shown(designed)
-    assert first[-1] == designs.candidates[0] and "design 1" in designed.gallery.bar.order.currentText()
+    assert first[-1] == designs.candidates[0] and "design A1" in designed.gallery.bar.order.currentText()
     designed.controller.choose(designs.candidates[2])
     assert shown(designed) == first
     sort_by(designed, SortOrder.UNLIKE)
-    assert shown(designed)[-1] == designs.candidates[2] and "design 3" in designed.gallery.bar.order.currentText()
+    assert shown(designed)[-1] == designs.candidates[2] and "design A3" in designed.gallery.bar.order.currentText()
 
 
 def test_that_filters_leave_designs_out_and_the_head_counts_them(
     designed: MainWindow, designs: Document, qtbot: QtBot
 ) -> None:
     bar, best = designed.gallery.bar, designs.candidates[0]
-    assert not bar.least.isVisible()
+    assert not bar.filters.least.isVisible()
     qtbot.mouseClick(bar.filter, LEFT)
-    assert bar.least.isVisible()
+    assert bar.filters.least.isVisible()
     matches = [one.score.iou_exact for one in designs.candidates]
-    bar.least.setValue(100 * sorted(matches)[1] - 0.05)
-    taken = [one for one in designs.candidates if one.score.iou_exact >= 0.01 * bar.least.value()]
+    bar.filters.least.setValue(100 * sorted(matches)[1] - 0.05)
+    taken = [one for one in designs.candidates if one.score.iou_exact >= 0.01 * bar.filters.least.value()]
     assert shown(designed) == taken and len(taken) == 2
     feasible = sum(one.score.feasible for one in taken)
     assert designed.gallery.count.text() == f"2 of 3 shown · {feasible} feasible"
     designed.controller.marks.pin(best)
-    bar.pinned.setChecked(True)
+    bar.filters.pinned.setChecked(True)
     assert shown(designed) == [best]
     qtbot.mouseClick(bar.filter, LEFT)
-    assert shown(designed) == [best] and not bar.least.isVisible()
+    assert shown(designed) == [best] and not bar.filters.least.isVisible()
 
 
 def test_that_designs_with_uneven_panels_can_be_left_out(designed: MainWindow, designs: Document) -> None:
     bar = designed.gallery.bar
     variations = sorted(100 * one.score.evenness.area_cv for one in designs.candidates)
-    bar.variation.setValue(math.ceil(variations[0]))
+    bar.filters.variation.setValue(math.ceil(variations[0]))
     assert shown(designed) == [
-        one for one in designs.candidates if 100 * one.score.evenness.area_cv <= bar.variation.value()
+        one for one in designs.candidates if 100 * one.score.evenness.area_cv <= bar.filters.variation.value()
     ]
     assert 1 <= len(shown(designed)) < 3
     bar.show_all()
-    assert len(shown(designed)) == 3 and bar.variation.text() == "any"
+    assert len(shown(designed)) == 3 and bar.filters.variation.text() == "any"
 
 
 def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindow, qtbot: QtBot) -> None:
     view, bar = designed.gallery.view, designed.gallery.bar
-    bar.pinned.setChecked(True)
+    bar.filters.pinned.setChecked(True)
     assert shown(designed) == [] and view.hint[0] == "No design matches the filter"
     assert designed.controller.stage is not None and designed.controller.document.chosen == 0
     qtbot.mouseClick(view.viewport(), LEFT, pos=view.viewport().rect().center())
-    assert len(shown(designed)) == 3 and not bar.pinned.isChecked()
+    assert len(shown(designed)) == 3 and not bar.filters.pinned.isChecked()
     assert view.currentIndex().row() == 0
 
 

@@ -244,7 +244,9 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
         row = model.index(model.row_of(of_two_starts.candidates[place]), 0)
         assert row.data(START_ROLE) == name
         assert f"Flat: {name}, 100 {TIMES} " in row.data(Qt.ItemDataRole.ToolTipRole)
-    controller.session.restart(replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=()), None)
+    controller.session.restart(
+        replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=(), labels=()), None
+    )
     until(lambda: len(model.entries) == 1)
     assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
 

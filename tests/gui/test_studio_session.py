@@ -88,9 +88,9 @@ class Sitting:
     def choose(self) -> None:
         """Click on the second card, where every design has its own."""
         view = self.window.gallery.view
-        self.window.gallery.bar.grouped.setChecked(False)
+        self.window.gallery.bar.filters.grouped.setChecked(False)
         self.bot.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model_.index(1, 0)).center())
-        assert self.document.chosen == 1 and self.window.stage.title.text() == "Design 2"
+        assert self.document.chosen == 1 and self.window.stage.title.text() == "Design A2"
         self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
 
     def scrub(self) -> None:

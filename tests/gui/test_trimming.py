@@ -97,7 +97,7 @@ def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off
     trimmed: MainWindow, until: Until, qtbot: QtBot
 ) -> None:
     controller, stage = trimmed.controller, trimmed.stage
-    assert controller.history.undo_label == "Trim design 1"
+    assert controller.history.undo_label == "Trim design A1"
     candidate = controller.document.candidates[0]
     assert candidate.trim is not None and stage.trim.isChecked() and trimmed.commands["trim"].isChecked()
     trimmed.commands["undo"].trigger()
@@ -106,7 +106,7 @@ def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off
     trimmed.commands["redo"].trigger()
     assert controller.document.candidates[0] == candidate and stage.trim.isChecked()
     qtbot.keyClick(trimmed, Qt.Key.Key_T, CONTROL)
-    assert controller.history.undo_label == "Untrim design 1"
+    assert controller.history.undo_label == "Untrim design A1"
     assert controller.document.candidates[0] == replace(candidate, trim=None) and not stage.trim.isChecked()
 
 

@@ -147,7 +147,7 @@ def test_that_fit_again_improves_the_design_and_holds_what_is_locked(
     assert after.score.siou > before.score.siou and after.polished and after.sampled_sheet == before.sheet
     for void in ((0, 0), (2, 2)):
         assert after.sheet.field.ratio[void] == before.sheet.field.ratio[void]
-    assert controller.history.undo_label == "Fit design 1" and not by_hand.stage.voids.refit.isChecked()
+    assert controller.history.undo_label == "Fit design A1" and not by_hand.stage.voids.refit.isChecked()
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
@@ -175,7 +175,7 @@ def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
     message = by_hand.messages.messages[-1]
     assert message.sentence.startswith("No better fit found")
     message.actions[0][1]()
-    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
+    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design A1"
 
 
 def test_that_a_stopped_fit_changes_nothing(by_hand: MainWindow) -> None:
@@ -237,7 +237,7 @@ def test_that_a_fit_is_not_taken_when_voids_were_locked_since(by_hand: MainWindo
     assert controller.document is before and "Voids were locked since the fit" in by_hand.status_text.text()
     controller.hand.lock(frozenset({(1, 1), (2, 2)}), False)  # fewer locks than the fit has held
     act()
-    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design 1"
+    assert chosen(by_hand).polished and controller.history.undo_label == "Fit design A1"
     assert by_hand.status_text.text().startswith("Fit applied: match ")
 
 

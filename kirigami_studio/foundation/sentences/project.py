@@ -11,7 +11,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "fix.width": mark("Make it {width_mm:.1f} mm wide."),
     "fix.combined": mark("Use {style} connectors of {connector_mm:g} mm on a sheet {width_mm:.1f} mm wide."),
     "fix.material": mark("Cut {material}."),
-    "fix.design": mark("Choose design {number}."),
+    "fix.design": mark("Choose design {name}."),
     "fix.grid": mark("Use {rows} x {columns} voids: match {match_percent:.1f} %."),
     "fix.removed": mark("Put the removed connectors back."),
     "fix.hinges": mark("Give all connectors the same width."),
@@ -40,6 +40,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "There is no design with index {index!s:.40}; the project has {designs}, from 0 on."
     ),
     "project.marks_do_not_match": mark("Every design needs one mark: got {marks} for {designs} designs."),
+    "project.labels_do_not_match": mark("Every design needs one name: got {labels} for {designs} designs."),
+    "labels.not_a_code": mark("A design's own name is letters and a number, such as A1, got {value!r:.40}."),
+    "labels.name_too_long": mark("The name has {letters} letters; the limit is {most}."),
+    "labels.note_too_long": mark("The note has {letters} letters; the limit is {most}."),
+    "labels.not_printable": mark("The name or note of design {code} has characters that cannot be shown."),
+    "labels.taken": mark("Another design is already called {name}."),
     "project.no_such_void": mark(
         "Void ({row}, {column}) cannot be locked: it is outside of the designs' {rows} x {columns} voids."
     ),

@@ -190,6 +190,16 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             worded=_pin_wording,
         ),
         Command(
+            "rename",
+            menu,
+            tr("N&ame and note …"),
+            tr("Rename the chosen design, and note what you want to remember of it"),
+            designs.rename_current,
+            shortcuts=("F2",),
+            icon="note",
+            enabled_when=_can_change,
+        ),
+        Command(
             "reject",
             menu,
             tr("Re&ject design"),

@@ -17,6 +17,7 @@ from kirigami_studio.gui.jobs.cut_jobs import Motion
 from kirigami_studio.gui.jobs.project_jobs import Leftover
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE
+from kirigami_studio.project.labels import file_ending
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
@@ -96,15 +97,23 @@ class FileCommands(QObject):
             sentence = tr("No design to export yet. Generate one first.")
             self._window.messages.add(Message(sentence, Tone.HINT))
             return
-        path = self._window.file_dialogs.export(f"{self._window.unsaved.name}{ending}")
+        path = self._window.file_dialogs.export(f"{self._name}{ending}")
         if path is not None:
             self._controller.export(path, motion)
+
+    @property
+    def _name(self) -> str:
+        """What files of the design on the stage are called: the project's name, then the design's."""
+        stage = self._controller.stage
+        label = None if stage is None else self._controller.document.label_of(stage.candidate)
+        project = self._window.unsaved.name
+        return project if label is None else f"{project}-{file_ending(label)}"
 
     def export_all(self) -> None:
         """Write everything that there is of the design into a folder of the user's choice."""
         folder = self._window.file_dialogs.folder()
         if folder is not None:
-            self._controller.export_all(folder, self._window.unsaved.name)
+            self._controller.export_all(folder, self._name)
 
     def ask_artwork(self) -> None:
         """Lay a picture of the user's choice on the sheet."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QPoint, Qt
+from PySide6.QtCore import QObject, QPoint, QRect, Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QMenu
 
@@ -141,15 +141,13 @@ class DesignConnections(QObject):
     def _show_estimates(self, known: Mapping[Candidate, AsCut]) -> None:
         """Designs were estimated as cut: the cards say so, and are ranked by it too."""
         view = self._window.gallery.view
-        view.model_.set_as_cut(known)
+        view.model_.set_as_cut(known, self._controller.estimates.strain_limit)
         if self._controller.running or not known:
             return
         ranking = self._as_cut(ranking_of(self._controller.document))
         jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
         if jams or self._ranked_as_cut:  # the document's order stays where all designs close
             view.rank_by(ranking)
-            stage = self._controller.stage
-            self._window.stage.set_rank(-1 if stage is None else view.model_.number_of(stage.candidate))
             self._show_chosen()
         self._ranked_as_cut = jams
 
@@ -160,12 +158,13 @@ class DesignConnections(QObject):
 
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery
-        gallery.view.model_.set_width_mm(document.fabrication.width_mm)
+        running = self._controller.running
+        gallery.view.set_measure(document.fabrication.width_mm, None if running else self._as_cut(ranking_of(document)))
         marks = dict(zip(document.candidates, document.marks, strict=True))
+        gallery.view.model_.set_labels(dict(zip(document.candidates, document.labels, strict=True)))
         gallery.view.show_marks(marks, self._controller.generation.planner.added)
         gallery.bar.show_count(document.settings.k)
-        if not self._controller.running:
-            gallery.view.model_.set_ranking(self._as_cut(ranking_of(document)))
+        if not running:
             gallery.view.mark(document.candidate)
         self._show_ready(document)
         self._show_chosen()
@@ -181,16 +180,15 @@ class DesignConnections(QObject):
         self._show_chosen()
 
     def _add_card(self, entry: Entry) -> None:
-        view, stage = self._window.gallery.view, self._controller.stage
-        view.add(entry)
-        if stage is not None:
-            self._window.stage.set_rank(view.model_.number_of(stage.candidate))
+        self._window.gallery.view.add(entry)
+        self._show_chosen()
 
     def _show_chosen(self) -> None:
-        """Tell the bar which design is chosen."""
-        model, candidate = self._window.gallery.view.model_, self.chosen
-        number = model.number_of(candidate)
-        self._window.gallery.bar.set_chosen(None if candidate is None or not number else (candidate.sheet, number))
+        """Tell the bar and the stage which design is chosen, and what it is called."""
+        candidate = self.chosen
+        name = self._window.gallery.view.model_.name_of(candidate)
+        self._window.stage.set_name(name)
+        self._window.gallery.bar.set_chosen(None if candidate is None or not name else (candidate.sheet, name))
 
     @property
     def chosen(self) -> Candidate | None:
@@ -204,10 +202,25 @@ class DesignConnections(QObject):
         hides = not view.model_.selection.show_rejected
         self._controller.marks.reject(candidate, view.beside(candidate) if hides else None)
 
+    def rename(self, candidate: Candidate | None) -> None:
+        """Open the name and the note of a design, at its card where that is in sight."""
+        view, title = self._window.gallery.view, self._window.stage.title
+        row = view.model_.row_of(candidate)
+        card = view.visualRect(view.model_.index(row, 0)) if row >= 0 else QRect()
+        if card.isValid() and view.isVisible() and view.viewport().rect().intersects(card):
+            beside = QRect(view.viewport().mapToGlobal(card.topLeft()), card.size())
+        else:
+            beside = QRect(title.mapToGlobal(QPoint(0, 0)), title.size())
+        self._window.dialogs.show_label(candidate, beside)
+
     # the menu of a card --------------------------------------------------------------------------------------------
 
-    def show_menu(self, candidate: Candidate, place: QPoint) -> None:
-        """Open the context menu of a card."""
+    def rename_current(self) -> None:
+        """Open the name and the note of the chosen design."""
+        self.rename(self.chosen)
+
+    def show_menu(self, candidate: Candidate, place: QPoint, compare: Callable[[], None] | None = None) -> None:
+        """Open the context menu of a card; ``compare`` is what comparing it means where it is."""
         menu = QMenu(self._window)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)
@@ -217,11 +230,17 @@ class DesignConnections(QObject):
         alike: int = row.data(ALIKE_ROLE) if row.isValid() else 0
         mark = view.model_.mark_of(candidate)
         ready = not controller.running and candidate in controller.document.candidates
+        comparing = (
+            (("compare", tr("Compare with chosen"), lambda: self._side_by_side.compare_with(candidate)),)
+            if compare is None
+            else (("compare", tr("Mark to compare"), compare),)
+        )
         for name, text, run in (
             ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: controller.marks.pin(candidate)),
             ("reject", tr("Restore") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
-            ("alike", tr("More like this"), lambda: self._more_like(candidate)),
-            ("compare", tr("Compare with chosen"), lambda: self._side_by_side.compare_with(candidate)),
+            ("note", tr("Name and note … (F2)"), lambda: self.rename(candidate)),
+            ("alike", tr("More like this"), lambda: self.more_like(candidate)),
+            *comparing,
             ("dice", tr("Use seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
         ):
             action = QAction(icons.icon(name, self._window.palette_), text, menu)
@@ -243,7 +262,8 @@ class DesignConnections(QObject):
     def _forget_menu(self) -> None:
         self.menu = None
 
-    def _more_like(self, candidate: Candidate) -> None:
+    def more_like(self, candidate: Candidate) -> None:
+        """Choose a design and draw more like it."""
         self._controller.choose(candidate)
         self._controller.generation.more_like(self._window.gallery.bar.nearness_value)
 

@@ -26,7 +26,7 @@ class SideBySide(QObject):
         self._controller = controller
         self._compared: Candidate | None = None
         self._chosen: Candidate | None = None
-        self._shown: tuple[tuple[Entry, int], tuple[Entry, int], Outline | None, float] | None = None
+        self._shown: tuple[tuple[Entry, str], tuple[Entry, str], Outline | None, float] | None = None
         stage, gallery = window.stage, window.gallery
         gallery.view.compare_wanted.connect(self.compare_with)
         gallery.bar.compare.clicked.connect(self.show)
@@ -96,8 +96,8 @@ class SideBySide(QObject):
         if stage is None or other is None:
             window.stage.set_comparing(False)
             return
-        number_of = window.gallery.view.model_.number_of
-        left, right = (stage, number_of(stage.candidate)), (other, number_of(other.candidate))
+        name_of = window.gallery.view.model_.name_of
+        left, right = (stage, name_of(stage.candidate)), (other, name_of(other.candidate))
         document = self._controller.document
         shown = left, right, document.target, document.fabrication.width_mm
         if shown != self._shown:

@@ -90,8 +90,8 @@ class StageConnections(QObject):
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is chosen, or none."""
         view, document = self._window.gallery.view, self._controller.document
-        rank = -1 if entry is None else view.model_.number_of(entry.candidate)
-        self._window.stage.show_entry(entry, document.target, rank)
+        name = "" if entry is None else view.model_.name_of(entry.candidate)
+        self._window.stage.show_entry(entry, document.target, name)
         self._controller.curves.show(None if entry is None else entry.design, document.target)
         view.mark(None if entry is None else entry.candidate)
         self._window.facts.setText("" if entry is None else "   ·   ".join(_facts(entry)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from dataclasses import dataclass, replace
 from functools import partial
@@ -151,6 +152,7 @@ class AsCutEstimates(QObject):
         self._entries: tuple[Entry, ...] = ()
         self._settings: FabricationSettings | None = None
         self.known: dict[Candidate, AsCut] = {}
+        self.strain_limit = math.inf  #: of the material that they were estimated in
         self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
         self._timer.timeout.connect(self._begin)
         session.display.gallery_reset.connect(self._take_entries)
@@ -193,6 +195,7 @@ class AsCutEstimates(QObject):
 
     def _take(self, report: Estimated) -> None:
         self.known.update(report.found)
+        self.strain_limit = report.strain_limit
 
     def _tell(self) -> None:
         self.changed.emit(dict(self.known))

@@ -88,7 +88,7 @@ class ChosenDesignJob(Generic[T]):
 
 def chosen_name(document: Document) -> str:
     """The chosen design in a sentence."""
-    return tr("the design") if document.chosen is None else tr("design {number}", number=document.chosen + 1)
+    return tr("the design") if document.label is None else tr("design {name}", name=document.label.text)
 
 
 class TrimSwitch(QObject):

@@ -1,15 +1,17 @@
-"""The collection of designs: pinned and rejected ones, and those that a change of the target has discarded."""
+"""The collection of designs: pinned, rejected and renamed ones, and those that a change of the target has discarded."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.project.labels import Label
 
 
 class DesignMarks:
@@ -38,18 +40,46 @@ class DesignMarks:
         moves = wanted is Mark.REJECTED and index == document.chosen and beside in document.candidates
         chosen = document.candidates.index(beside) if moves and beside is not None else None
         self._session.apply(candidate_edits.set_mark(document, index, wanted, chosen))
-        self._session.set_status(_what_happened(index + 1, before, wanted))
+        self._session.set_status(_what_happened(document.labels[index].text, before, wanted))
 
 
-def _what_happened(number: int, before: Mark, now: Mark) -> str:
+def _what_happened(name: str, before: Mark, now: Mark) -> str:
     """The status line after a design was marked."""
     if now is Mark.PINNED:
-        return tr("Design {number} pinned. Undo to unpin.", number=number)
+        return tr("Design {name} pinned. Undo to unpin.", name=name)
     if now is Mark.REJECTED:
-        return tr("Design {number} rejected. Undo to restore.", number=number)
+        return tr("Design {name} rejected. Undo to restore.", name=name)
     if before is Mark.PINNED:
-        return tr("Design {number} unpinned. Undo to pin again.", number=number)
-    return tr("Design {number} restored. Undo to reject again.", number=number)
+        return tr("Design {name} unpinned. Undo to pin again.", name=name)
+    return tr("Design {name} restored. Undo to reject again.", name=name)
+
+
+class DesignLabels:
+    """Names designs, and notes what a person thinks of them."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def of(self, candidate: Candidate | None) -> Label | None:
+        """Name and note of a design; None, after saying so, for one that the run still works on."""
+        label = None if candidate is None else self._session.document.label_of(candidate)
+        if label is None:
+            sentence = tr("Only finished designs can be renamed. Wait for the run to finish.")
+            self._session.post(Message(sentence, Tone.HINT))
+        return label
+
+    def set(self, label: Label, name: str, note: str) -> str:
+        """Call the design of a label otherwise; the sentence why it cannot be, "" where it can."""
+        document = self._session.document
+        index = next((place for place, one in enumerate(document.labels) if one.code == label.code), None)
+        if index is None:  # it is gone
+            return ""
+        try:
+            self._session.apply(candidate_edits.set_label(document, index, name, note))
+        except KirigamiError as error:
+            self._session.set_status(str(error))
+            return str(error)
+        return ""
 
 
 class DiscardedDesigns(QObject):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -36,12 +37,14 @@ class Selection:
     ----------
     order : SortOrder
     pinned_first : bool
-    feasible_only, pinned_only : bool
+    feasible_only, pinned_only, cuttable_only : bool
     show_rejected : bool
     least_match : float, 0..1
         Exact IoU that a design has at least.
     most_variation : float
         Coefficient of variation of panel areas that a design has at most; 0 for any.
+    least_feature_mm : float
+        Smallest panel edge or neck that a design has at least.
     grouped : bool
         Whether designs that look the same are one card.
     unlike : Sheet or None
@@ -53,49 +56,59 @@ class Selection:
     pinned_first: bool = False
     feasible_only: bool = False
     pinned_only: bool = False
+    cuttable_only: bool = False
     show_rejected: bool = False
     least_match: float = 0.0
     most_variation: float = 0.0
+    least_feature_mm: float = 0.0
     grouped: bool = True
     unlike: Sheet | None = None
 
     @property
     def filters(self) -> bool:
         """Whether more is left out than rejected designs."""
-        return self.feasible_only or self.pinned_only or self.least_match > 0.0 or self.most_variation > 0.0
+        numbers = (self.least_match, self.most_variation, self.least_feature_mm)
+        return self.feasible_only or self.pinned_only or self.cuttable_only or max(numbers) > 0.0
 
     def unfiltered(self) -> Selection:
         """The same order, everything shown."""
-        return replace(
-            self, feasible_only=False, pinned_only=False, show_rejected=True, least_match=0.0, most_variation=0.0
-        )
+        everything = Selection(show_rejected=True)
+        kept = (self.order, self.pinned_first, self.grouped, self.unlike)
+        return replace(everything, order=kept[0], pinned_first=kept[1], grouped=kept[2], unlike=kept[3])
 
-    def takes(self, candidate: Candidate, mark: Mark) -> bool:
+    def takes(self, item: GalleryItem) -> bool:
         """Whether a design is shown."""
-        score = candidate.score
+        score, mark = item.candidate.score, item.mark
         return (
             (score.feasible or not self.feasible_only)
             and (mark is Mark.PINNED or not self.pinned_only)
+            and (item.cuttable or not self.cuttable_only)
             and (mark is not Mark.REJECTED or self.show_rejected)
             and score.iou_exact >= self.least_match
             and (not self.most_variation or score.evenness.area_cv <= self.most_variation)
+            and item.feature_mm >= self.least_feature_mm
         )
 
 
 @dataclass(frozen=True, slots=True)
 class GalleryItem:
-    """One design of the gallery: its place in the document counts from 0; fresh are the last run's."""
+    """One design of the gallery: its place in the document counts from 0; fresh are the last run's.
+
+    ``cuttable`` is whether it can be cut, and ``feature_mm`` its smallest edge or neck, in material and width chosen.
+    """
 
     place: int
     candidate: Candidate
     mark: Mark
     deployment: Deployment = field(repr=False)
     fresh: bool = False
+    cuttable: bool = True
+    feature_mm: float = math.inf
 
 
 def places_in_order(designs: Sequence[GalleryItem], selection: Selection) -> list[int]:
     """Places of the designs that are shown, in the order in which they are shown."""
-    taken = [one for one in designs if selection.takes(one.candidate, one.mark)]
+    taken = [one for one in designs if selection.takes(one)]
     values = sorting_values(taken, selection)
     keys = {
         one.place: (selection.pinned_first and one.mark is not Mark.PINNED, value, one.place)

@@ -6,7 +6,7 @@ its result; :class:`DesignRun` runs at most one run at a time; :class:`StoppedRu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
@@ -156,6 +156,12 @@ class RunPlanner:
         self.plan: RunPlan | None = None
         self.added: frozenset[Candidate] = frozenset()
         self.keeps_seed = True
+        self._drawn: set[tuple[int, int]] = set()  # project and seed of every run so far, also of those undone
+
+    def _next_seed(self, document: Document) -> int:
+        """The next seed; where it is not kept, one that no run has drawn from, so that no two runs are the same."""
+        drawn = () if self.keeps_seed else (seed for project, seed in self._drawn if project == self._session.project)
+        return next_seed(document, drawn)
 
     def anew(self, target: Outline) -> RunPlan:
         """New designs in the place of all but the pinned ones.
@@ -167,10 +173,11 @@ class RunPlanner:
         """
         document = self._session.document
         settings = document.settings
-        seed = settings.seed if self.keeps_seed else next_seed(document)
+        seed = settings.seed if self.keeps_seed else self._next_seed(document)
         request = request_of(target, replace(settings, seed=seed), document.fabrication)
         status = tr("Generating {k} designs for {name} …", k=request.k, name=target.name)
         kept = Ranking.of(request).ranked(_staying(document, request))
+        self._drawn.add((self._session.project, seed))
         self.plan = RunPlan(request, kept, False, seed, status)
         return self.plan
 
@@ -200,8 +207,8 @@ class RunPlanner:
             raise UsageError("designs.none_chosen")
         start = own_start(chosen, document.settings.start)
         request = replace(self._joining(target), near=chosen.sheet, nearness=nearness, search=0, start=start)
-        number = (document.chosen or 0) + 1
-        status = tr("Generating {count} designs like design {number} …", count=request.k, number=number)
+        name = "" if document.label is None else document.label.text
+        status = tr("Generating {count} designs like design {name} …", count=request.k, name=name)
         return self._joined(request, status)
 
     def _joining(self, target: Outline) -> Request:
@@ -209,13 +216,14 @@ class RunPlanner:
         if not document.candidates:
             raise UsageError("designs.none_to_add_to")
         first = document.candidates[0]
-        seed = next_seed(document)
+        seed = self._next_seed(document)
         same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
         # Fits from the uniform sheet do not depend on the seed: they would be the same again.
         return replace(request_of(target, same, document.fabrication), guided=0)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
         seed = None if self.keeps_seed else request.seed
+        self._drawn.add((self._session.project, request.seed))
         kept = Ranking.of(request).ranked(self._session.document.candidates)
         self.plan = RunPlan(request, kept, True, seed, status)
         return self.plan
@@ -276,9 +284,9 @@ class RunPlanner:
         )
 
 
-def next_seed(document: Document) -> int:
-    """The first seed from the settings' own on that no design of the document was drawn from."""
-    used = {candidate.seed for candidate in document.candidates}
+def next_seed(document: Document, drawn: Iterable[int] = ()) -> int:
+    """The first seed from the settings' own on that no design of the document, and no run ``drawn`` so far, has had."""
+    used = {candidate.seed for candidate in document.candidates} | set(drawn)
     seed = document.settings.seed
     while seed in used:
         seed += 1

@@ -155,7 +155,9 @@ class VerdictKeeper(QObject):
         except KirigamiError:  # its material is gone, which the verdict tells
             run = None
         callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))
-        self._job.start(tr("trying fixes"), partial(fixing, request, verdict, document.candidates, run), callbacks)
+        self._job.start(
+            tr("trying fixes"), partial(fixing, request, verdict, document.named_candidates, run), callbacks
+        )
         self._say(VerdictState(verdict, searching=True))
 
     def _take_advice(self, key: tuple[Candidate, FabricationSettings], verdict: Verdict, advice: Advice | None) -> None:

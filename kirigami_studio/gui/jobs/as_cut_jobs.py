@@ -4,7 +4,7 @@ they close.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -32,9 +32,13 @@ AT_ONCE = 4
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut; those that cannot be cut at all are left out."""
+    """What is expected of some designs as cut, and at which strain connectors break.
+
+    Designs that cannot be cut at all are left out.
+    """
 
     found: tuple[tuple[Candidate, AsCut], ...]
+    strain_limit: float
 
 
 def _in_turns(steps: Generator[None, None, Found], cancel: Cancel) -> Iterator[Found | None]:
@@ -96,11 +100,12 @@ def animating(
 
 
 def fixing(
-    request: CutRequest, verdict: Verdict, others: tuple[Candidate, ...], run: Request | None, cancel: Cancel
+    request: CutRequest, verdict: Verdict, others: Mapping[str, Candidate], run: Request | None, cancel: Cancel
 ) -> Iterator[Advice | None]:
     """Try changes on a design that is not ready to cut; None after every step, so that other jobs have their turn.
 
-    ``run`` is what designs on coarser grids are asked for by; without one there are none.
+    ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
+    there are none.
     """
     from kirigami_studio.pipeline.coarser import coarser_designs
     from kirigami_studio.project.cutting import plan_of
@@ -147,4 +152,4 @@ def estimating(
                     found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
-        yield Estimated(tuple(found))
+        yield Estimated(tuple(found), material.strain_limit)

@@ -155,9 +155,9 @@ class ComparePage(QWidget):
         return self._entries
 
     def show_pair(
-        self, chosen: tuple[Entry, int] | None, other: tuple[Entry, int] | None, target: Outline | None, width_mm: float
+        self, chosen: tuple[Entry, str] | None, other: tuple[Entry, str] | None, target: Outline | None, width_mm: float
     ) -> None:
-        """Show two designs, each with its number; zoom and place stay."""
+        """Show two designs, each with its name; zoom and place stay."""
         pair = (chosen, other)
         self._entries = None if chosen is None else chosen[0], None if other is None else other[0]
         for side, one in zip(self.sides, pair, strict=True):
@@ -176,16 +176,16 @@ class ComparePage(QWidget):
             second = chosen[0].candidate.second
             self.bar.set_marks(chosen[0].design.phi_target, first, None if second is None else second.target.phi)
 
-    def _show_side(self, side: Side, one: tuple[Entry, int] | None, target: Outline | None) -> None:
+    def _show_side(self, side: Side, one: tuple[Entry, str] | None, target: Outline | None) -> None:
         if one is None:
             side.name("")
             side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card in the gallery."))
             side.view.show_design(None, None, None)
             return
-        entry, number = one
+        entry, name = one
         chosen = side is self.left
-        alone = tr("Design {number}", number=number)
-        side.name(*((tr("Design {number}, chosen", number=number), alone) if chosen else (alone,)))
+        alone = tr("Design {name}", name=name)
+        side.name(*((tr("Design {name}, chosen", name=name), tr("{name}, chosen", name=name)) if chosen else ()), alone)
         candidate = entry.candidate
         # Contacts and the second target's pose are known of the sheet that was scored.
         scored = candidate.final_sheet == candidate.sheet

@@ -4,25 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QComboBox,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QSlider,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder, count_texts
 from kirigami_studio.gui.panels.card import INSET, Card, FittingLabel, ToolButton
-from kirigami_studio.gui.panels.number_field import DecimalField, number_field
+from kirigami_studio.gui.panels.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.views.gallery_view import GalleryView
 from kirigami_studio.lattice.sheet import Sheet
 
@@ -79,8 +68,12 @@ class GalleryBar(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._selection = Selection()
-        self._chosen: tuple[Sheet, int] | None = None
-        self.order = self._order_box()
+        self._chosen: tuple[Sheet, str] | None = None
+        self._unlike: tuple[Sheet, str] | None = None
+        self.order = order_box("galleryOrder")
+        self.order.activated.connect(lambda _: self._choose_order())
+        self.filters = FilterControls(self)
+        self.filters.changed.connect(self._emit_selection)
         self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
@@ -95,7 +88,7 @@ class GalleryBar(QWidget):
         column.setContentsMargins(0, 0, 8, 0)
         column.setSpacing(6)
         column.addLayout(row)
-        self.filter_pane = self._filter_pane()
+        self.filter_pane = self.filters.narrow()
         self.alike_pane = self._alike_pane()
         for pane in (self.filter_pane, self.alike_pane):
             column.addWidget(pane)
@@ -104,83 +97,6 @@ class GalleryBar(QWidget):
         self.alike.toggled.connect(self._fold)
         self.again.clicked.connect(self.again_wanted)
         self.set_ready(False)
-
-    def _order_box(self) -> QComboBox:
-        box = QComboBox()
-        box.setObjectName("galleryOrder")
-        box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        box.setAccessibleName(tr("Sort designs by"))
-        box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        for order, text, tip in _orders():
-            box.addItem(text, order)
-            box.setItemData(box.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
-        box.activated.connect(lambda _: self._choose_order())
-        box.currentIndexChanged.connect(lambda row: box.setToolTip(box.itemData(row, Qt.ItemDataRole.ToolTipRole)))
-        box.setToolTip(_orders()[0][2])
-        return box
-
-    def _filter_pane(self) -> QWidget:
-        self.feasible = _check("feasibleOnly", tr("Feasible"), tr("Show only designs that can be built."))
-        self.pinned = _check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
-        self.rejected = _check("showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
-        self.pinned_first = _check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
-        tip = tr("Show designs that look the same, also turned or mirrored, as one card.")
-        self.grouped = _check("groupAlike", tr("Group alike"), tip)
-        self.grouped.setChecked(True)
-        self.least = DecimalField()
-        self.least.setObjectName("leastMatch")
-        self.least.setRange(0.0, 100.0)
-        self.least.setDecimals(1)
-        self.least.setPrefix("\N{GREATER-THAN OR EQUAL TO} ")
-        self.least.setSuffix(" %")
-        self.least.setSpecialValueText(tr("any"))
-        self.least.setKeyboardTracking(False)
-        self.least.setFixedWidth(92)
-        self.least.setAccessibleName(tr("Minimum match in percent"))
-        self.least.setToolTip(tr("Show only designs with at least this match (exact IoU), in percent."))
-        self.variation = DecimalField()
-        self.variation.setObjectName("mostVariation")
-        self.variation.setRange(0.0, 300.0)
-        self.variation.setDecimals(0)
-        self.variation.setSingleStep(5.0)
-        self.variation.setPrefix("\N{LESS-THAN OR EQUAL TO} ±")
-        self.variation.setSuffix(" %")
-        self.variation.setSpecialValueText(tr("any"))
-        self.variation.setKeyboardTracking(False)
-        self.variation.setFixedWidth(92)
-        self.variation.setAccessibleName(tr("Maximum variation of panel sizes in percent"))
-        self.variation.setToolTip(
-            tr("Evenness: show only designs whose panel sizes vary by at most this, in percent (CV).")
-        )
-        for number in (self.least, self.variation):
-            number_field(number)
-            number.valueChanged.connect(lambda _: self._emit_selection())
-        pane = QWidget()
-        column = QVBoxLayout(pane)
-        column.setContentsMargins(0, 0, 0, 2)
-        column.setSpacing(6)
-        first, second, third = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
-        for box in (self.feasible, self.pinned, self.rejected):
-            first.addWidget(box)
-        first.addStretch(1)
-        caption = QLabel(tr("match"))
-        caption.setBuddy(self.least)
-        evenness = QLabel(tr("panels"))
-        evenness.setBuddy(self.variation)
-        second.addWidget(self.pinned_first)
-        second.addWidget(self.grouped)
-        second.addStretch(1)
-        third.addWidget(caption)
-        third.addWidget(self.least)
-        third.addStretch(1)
-        third.addWidget(evenness)
-        third.addWidget(self.variation)
-        for box in (self.feasible, self.pinned, self.rejected, self.pinned_first, self.grouped):
-            box.toggled.connect(lambda _: self._emit_selection())
-        column.addLayout(first)
-        column.addLayout(second)
-        column.addLayout(third)
-        return pane
 
     def _alike_pane(self) -> QWidget:
         self.nearness = QSlider(Qt.Orientation.Horizontal)
@@ -217,24 +133,25 @@ class GalleryBar(QWidget):
         """How near new designs are to lie, from ``FARTHEST`` to ``NEAREST``."""
         return NEAREST - (NEAREST - FARTHEST) * self.nearness.value() / STEPS
 
+    def sort_by(self, order: SortOrder) -> None:
+        """Sort by what was chosen elsewhere."""
+        self.order.setCurrentIndex(self.order.findData(order))
+        self._choose_order()
+
     def show_all(self) -> None:
         """Take every filter off; the order stays."""
-        wanted = self._selection.unfiltered()
-        boxes = (
-            (self.feasible, wanted.feasible_only),
-            (self.pinned, wanted.pinned_only),
-            (self.rejected, wanted.show_rejected),
-        )
-        for box, on in boxes:
-            with QSignalBlocker(box):
-                box.setChecked(on)
-        for number in (self.least, self.variation):
-            with QSignalBlocker(number):
-                number.setValue(0.0)
-        self._emit_selection()
+        self.take(self._selection.unfiltered())
 
-    def set_chosen(self, chosen: tuple[Sheet, int] | None) -> None:
-        """The design on the stage and its number: what others can be unlike, or drawn alike."""
+    def take(self, selection: Selection) -> None:
+        """Show a selection that was made elsewhere, and report it."""
+        self._selection = selection
+        self.filters.show(selection)
+        self.order.setCurrentIndex(self.order.findData(selection.order))
+        self._word_difference()
+        self.selection_changed.emit(selection)
+
+    def set_chosen(self, chosen: tuple[Sheet, str] | None) -> None:
+        """The design on the stage and its name: what others can be unlike, or drawn alike."""
         self._chosen = chosen
 
     def set_ready(self, ready: bool) -> None:
@@ -257,24 +174,21 @@ class GalleryBar(QWidget):
         if order is SortOrder.UNLIKE and self._chosen is None:
             order = SortOrder.RANK
             self.order.setCurrentIndex(0)
-        unlike = self._chosen if order is SortOrder.UNLIKE else None
-        last = self.order.count() - 1
-        text = tr("By difference") if unlike is None else tr("Unlike design {number}", number=unlike[1])
-        self.order.setItemText(last, text)
-        self._selection = replace(self._selection, order=order, unlike=None if unlike is None else unlike[0])
+        self._unlike = self._chosen if order is SortOrder.UNLIKE else None
+        unlike = None if self._unlike is None else self._unlike[0]
+        self._selection = replace(self._selection, order=order, unlike=unlike)
+        self._word_difference()
         self._emit_selection()
 
+    def _word_difference(self) -> None:
+        """Name the design that others are compared with in the list of orders."""
+        if self._selection.unlike is None:
+            self._unlike = None
+        text = tr("By difference") if self._unlike is None else tr("Unlike design {name}", name=self._unlike[1])
+        self.order.setItemText(self.order.findData(SortOrder.UNLIKE), text)
+
     def _emit_selection(self) -> None:
-        self._selection = replace(
-            self._selection,
-            pinned_first=self.pinned_first.isChecked(),
-            grouped=self.grouped.isChecked(),
-            feasible_only=self.feasible.isChecked(),
-            pinned_only=self.pinned.isChecked(),
-            show_rejected=self.rejected.isChecked(),
-            least_match=0.01 * self.least.value(),
-            most_variation=0.01 * self.variation.value(),
-        )
+        self._selection = self.filters.apply(self._selection)
         self.selection_changed.emit(self._selection)
 
     def _fold(self) -> None:
@@ -286,37 +200,3 @@ class GalleryBar(QWidget):
                 other.setChecked(False)
         self.filter_pane.setVisible(self.filter.isChecked())
         self.alike_pane.setVisible(self.alike.isChecked())
-
-
-def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
-    return (
-        (SortOrder.RANK, tr("By rank"), tr("What can be cut first, then the best balance of match and even panels.")),
-        (SortOrder.MATCH, tr("By match"), tr("The closest match (exact IoU) first, feasible or not.")),
-        (
-            SortOrder.EVENNESS,
-            tr("By evenness"),
-            tr("The most even panels first: the smallest coefficient of variation of their areas."),
-        ),
-        (SortOrder.GAIN, tr("By gain"), tr("The largest gain in sIoU over the uniform sheet first.")),
-        (SortOrder.TV, tr("By smoothness"), tr("The lowest total variation (TV) of the ratios first.")),
-        (
-            SortOrder.PANEL,
-            tr("By smallest feature"),
-            tr("The largest minimum panel edge or neck first, in mm at the sheet's width."),
-        ),
-        (SortOrder.NEWEST, tr("Newest first"), tr("Designs added by the last run first, marked with a dot.")),
-        (
-            SortOrder.UNLIKE,
-            tr("By difference"),
-            tr("Most different from the chosen design first. Choose this again to start from another design."),
-        ),
-    )
-
-
-def _check(name: str, text: str, tip: str) -> QCheckBox:
-    box = QCheckBox(text)
-    box.setObjectName(name)
-    box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-    box.setToolTip(tip)
-    box.setAccessibleName(tip.rstrip("."))
-    return box

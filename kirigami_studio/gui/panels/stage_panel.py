@@ -67,7 +67,7 @@ class StagePanel(Card):
         self._entry: Entry | None = None
         self._sample: Entry | None = None
         self._target: Outline | None = None
-        self._rank = 0
+        self._name = ""
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
@@ -252,10 +252,10 @@ class StagePanel(Card):
         """Whether the design is shown as the generator sampled it."""
         return self._sample is not None and self.before.isChecked()
 
-    def show_entry(self, entry: Entry | None, target: Outline | None, rank: int) -> None:
+    def show_entry(self, entry: Entry | None, target: Outline | None, name: str) -> None:
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.scene_bounds() is None
-        self._entry, self._target, self._rank, self._sample = entry, target, rank, None
+        self._entry, self._target, self._name, self._sample = entry, target, name, None
         self.place_sample()
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
@@ -299,10 +299,11 @@ class StagePanel(Card):
         self._trimmable = trimmable
         self._set_switches()
 
-    def set_rank(self, rank: int) -> None:
-        """The same design has another place now."""
-        self._rank = rank
-        self.show_title()
+    def set_name(self, name: str) -> None:
+        """The same design is called otherwise now."""
+        if name != self._name:
+            self._name = name
+            self.show_title()
 
     def _toggle_before(self, on: bool) -> None:
         self._sample = None
@@ -357,10 +358,10 @@ class StagePanel(Card):
 
     def show_title(self) -> None:
         """Show what the header says of the design or of its cuts."""
-        entry, rank = self._entry, self._rank
-        self.title.setText(tr("Layout") if entry is None or rank <= 0 else tr("Design {rank}", rank=rank))
+        entry, name = self._entry, self._name
+        self.title.setText(tr("Layout") if entry is None or not name else tr("Design {name}", name=name))
         self.numbers.set_texts(*self._texts())
-        self.numbers.setToolTip("" if entry is None else described(entry.candidate, max(rank, 1)))
+        self.numbers.setToolTip("" if entry is None else described(entry.candidate, name))
         self._fit_numbers()
 
     def _texts(self) -> tuple[str, ...]:

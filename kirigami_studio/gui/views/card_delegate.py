@@ -1,4 +1,4 @@
-"""One card of the gallery: picture, numbers, mark, and its buttons under the mouse."""
+"""One card of the gallery: picture, name, numbers, mark, and its buttons under the mouse."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ from kirigami_studio.gui.views.gallery_model import (
     FRESH_ROLE,
     GRID_ROLE,
     MARK_ROLE,
-    NUMBER_ROLE,
+    NAME_ROLE,
+    NOTE_ROLE,
     OPEN_ROLE,
     RISE_ROLE,
     START_ROLE,
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from kirigami_studio.project.as_cut import AsCut
 
 SMALLEST_CARD = 132
-#: Pixels above the picture, for the number and the marks, and below it, for two lines of text.
+#: Pixels above the picture, for the name and the marks, and below it, for two lines of text.
 HEAD_HEIGHT, TEXT_HEIGHT = 24, 48
 GAP = 8
 #: What polishing must have added to sIoU at least for a card to say so.
@@ -53,6 +54,8 @@ BUTTON = 24
 DOT = 7
 #: Pixels that the match takes at the left of the first line of text.
 MATCH_WIDTH = 66
+#: Share of a card's head that a long name may take.
+NAME_SHARE = 0.45
 #: Opacity of a rejected design's picture.
 DIMMED = 0.3
 #: Seconds for new pictures in one paint event; a large window shows dozens of cards, a large design takes 7 ms.
@@ -76,7 +79,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, number, match, sort value, whether it can be cut and closes, its mark."""
+    """Paints one candidate: pictures, name, match, sort value, whether it can be cut and closes, its mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -136,7 +139,7 @@ class CardDelegate(QStyledItemDelegate):
         if drawn is not None:
             painter.drawPixmap(picture.topLeft(), drawn)
         painter.setOpacity(1.0)
-        left = self._paint_number(painter, card, index.data(NUMBER_ROLE), mark, index.data(FRESH_ROLE))
+        left = self._paint_name(painter, card, index, mark)
         left = self._paint_symmetry(painter, card, left, candidate.symmetry)
         rise: float = index.data(RISE_ROLE)
         if candidate == self.compared:
@@ -183,7 +186,7 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawText(place, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop), text)
 
     def _paint_symmetry(self, painter: QPainter, card: QRect, left: int, symmetry: Symmetry | None) -> int:
-        """The sign of a symmetric design, right of its number and marks; returns where there is room left."""
+        """The sign of a symmetric design, right of its name and marks; returns where there is room left."""
         if symmetry is None:
             return left
         edge = painter.fontMetrics().height()
@@ -219,16 +222,22 @@ class CardDelegate(QStyledItemDelegate):
             self._pictures[key] = candidate_pixmap(design, self.target, size, ratio, self.palette_)
         return self._pictures[key]
 
-    def _paint_number(self, painter: QPainter, card: QRect, number: int, mark: Mark, fresh: bool) -> int:
-        """The design's number, a dot where it is new, a pin or a sign where it is rejected.
+    def _paint_name(self, painter: QPainter, card: QRect, index: Index, mark: Mark) -> int:
+        """The design's name, a sheet where it has a note, a dot where it is new, a pin or a sign where it is rejected.
 
         Returns where there is room left, pixels from the left.
         """
         painter.setPen(QColor(self.palette_.muted))
-        text, place = f"{number}", card.adjusted(10, 6, -10, 0)
+        place, metrics, fresh = card.adjusted(10, 6, -10, 0), painter.fontMetrics(), index.data(FRESH_ROLE)
+        room = round(NAME_SHARE * place.width())
+        text = metrics.elidedText(index.data(NAME_ROLE), Qt.TextElideMode.ElideRight, room)
         painter.drawText(place, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop), text)
-        metrics = painter.fontMetrics()
         left = place.left() + metrics.horizontalAdvance(text) + 5
+        if index.data(NOTE_ROLE):
+            edge = metrics.height() - 3
+            icon = icons.pixmap("note", self.palette_.muted, edge, painter.device().devicePixelRatio())
+            painter.drawPixmap(left, place.top() + 1, icon)
+            left += edge + 5
         if fresh:
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(self.palette_.accent))

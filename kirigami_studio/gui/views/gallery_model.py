@@ -13,6 +13,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.designs.badges import badges_of
 from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.designs.look_alikes import Stacks
 from kirigami_studio.gui.designs.two_states import TwoStates, start_of
@@ -21,6 +22,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
+from kirigami_studio.project.labels import Label
 
 if TYPE_CHECKING:
     from kirigami_studio.project.as_cut import AsCut
@@ -28,9 +30,10 @@ if TYPE_CHECKING:
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
 RISE_ROLE = Qt.ItemDataRole.UserRole + 3
-NUMBER_ROLE = Qt.ItemDataRole.UserRole + 4
+NAME_ROLE = Qt.ItemDataRole.UserRole + 4  #: what it is called; its number while it has no name
 MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
+NOTE_ROLE = Qt.ItemDataRole.UserRole + 14  #: what a person has noted of it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
 CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its panels are wide enough to be cut
@@ -39,6 +42,10 @@ AS_CUT_ROLE = Qt.ItemDataRole.UserRole + 12  #: AsCut, as estimated, or None whi
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 START_ROLE = Qt.ItemDataRole.UserRole + 13  #: what it starts as where designs of several starts are there, else ""
 
+BADGES_ROLE = Qt.ItemDataRole.UserRole + 15  #: tuple of Badge, worst first
+FEATURE_ROLE = Qt.ItemDataRole.UserRole + 17  #: its smallest panel edge or neck, mm
+THIN_ROLE = Qt.ItemDataRole.UserRole + 16  #: whether panels are too thin for the material
+
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -46,7 +53,7 @@ class GalleryModel(QAbstractListModel):
     """The designs in the order of the document, or of the ranking while a run goes on; rows are those that are shown.
 
     Which ones are shown, and in which order, is a :class:`~kirigami_studio.gui.designs.gallery_selection.Selection`;
-    the number of a design is its place among all of them, whatever is shown.
+    the number of a design is its place among all of them, whatever is shown, and its name stays whatever its place is.
     """
 
     arranged = Signal()  #: what is shown, or its order, has changed
@@ -66,6 +73,8 @@ class GalleryModel(QAbstractListModel):
         self._target: Outline | None = None
         self._starts_differ: bool | None = None  # once it is asked for
         self._as_cut: Mapping[Candidate, AsCut] = {}
+        self._strain_limit = math.inf
+        self._labels: Mapping[Candidate, Label] = {}
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -102,12 +111,21 @@ class GalleryModel(QAbstractListModel):
         if role == VALUE_ROLE:
             return format_value(self._as_item(entry, 0), self._selection, self._width_mm)
         simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
-        if role == NUMBER_ROLE:
-            return self.number_of(entry.candidate)
+        if role == NAME_ROLE:
+            return self.name_of(entry.candidate)
+        if role == NOTE_ROLE:
+            return self.note_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
         if role == CUTTABLE_ROLE:
             return self.ranking.cuttable(entry.candidate)
+        if role == BADGES_ROLE:
+            as_cut = self._as_cut.get(entry.candidate)
+            return badges_of(entry.candidate, self.ranking, as_cut, self._strain_limit)
+        if role == FEATURE_ROLE:
+            return entry.candidate.score.evenness.least_feature_mm(self._width_mm)
+        if role == THIN_ROLE:
+            return not self.ranking.wide_enough(entry.candidate)
         if role == AS_CUT_ROLE:
             return self._as_cut.get(entry.candidate)
         if role == ALIKE_ROLE:
@@ -132,7 +150,7 @@ class GalleryModel(QAbstractListModel):
         return self._starts_differ
 
     def _described(self, entry: Entry) -> str:
-        lines = [described(entry.candidate, self.number_of(entry.candidate))]
+        lines = [described(entry.candidate, self.name_of(entry.candidate))]
         if entry.rise > 0:
             lines.append(tr("Polishing raised sIoU by {rise:.2f} points so far", rise=100 * entry.rise))
         mark = self.mark_of(entry.candidate)
@@ -140,6 +158,9 @@ class GalleryModel(QAbstractListModel):
             lines.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
         if entry.candidate in self._fresh:
             lines.append(tr("Added by the last run"))
+        note = self.note_of(entry.candidate)
+        if note:
+            lines.append(tr("Note: {note}", note=note))
         return "\n".join(lines)
 
     def _placed(self, entry: Entry) -> str:
@@ -178,9 +199,9 @@ class GalleryModel(QAbstractListModel):
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
-    def set_as_cut(self, known: Mapping[Candidate, AsCut]) -> None:
-        """Tell which designs close as cut, by an estimate."""
-        self._as_cut = known
+    def set_as_cut(self, known: Mapping[Candidate, AsCut], strain_limit: float = math.inf) -> None:
+        """Tell which designs close as cut, by an estimate, and at which strain connectors break."""
+        self._as_cut, self._strain_limit = known, strain_limit
         if self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
@@ -188,7 +209,9 @@ class GalleryModel(QAbstractListModel):
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
         if ranking != self.ranking:
             self.ranking, self._reasons = ranking, None
-            if self._shown:
+            if self._selection.cuttable_only:
+                self._rearrange()
+            elif self._shown:
                 self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def rank_by(self, ranking: Ranking) -> None:
@@ -273,15 +296,37 @@ class GalleryModel(QAbstractListModel):
             self._fresh = fresh
             self._rearrange()
 
+    def set_labels(self, labels: Mapping[Candidate, Label]) -> None:
+        """Set what the designs are called, and what is noted of them."""
+        if labels != self._labels:
+            self._labels = dict(labels)
+            if self._shown:
+                self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
     def set_width_mm(self, width_mm: float) -> None:
         """Set the width of the sheet, for sizes of panels."""
         if width_mm != self._width_mm:
             self._width_mm = width_mm
-            if self._shown:
+            if self._selection.least_feature_mm > 0.0:
+                self._rearrange()
+            elif self._shown:
                 self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def mark_of(self, candidate: Candidate) -> Mark:
         return self._marks.get(candidate, Mark.NONE) if self._marks else Mark.NONE
+
+    def name_of(self, candidate: Candidate | None) -> str:
+        """What a design is called, its number while the run that finds it goes on; "" when there is no such design."""
+        label = None if candidate is None else self._labels.get(candidate)
+        if label is not None:
+            return label.text
+        number = self.number_of(candidate)
+        return str(number) if number else ""
+
+    def note_of(self, candidate: Candidate) -> str:
+        """What a person has noted of a design."""
+        label = self._labels.get(candidate)
+        return "" if label is None else label.note
 
     def number_of(self, candidate: Candidate | None) -> int:
         """The number of a design among all, from 1; 0 when there is no such design."""
@@ -302,7 +347,9 @@ class GalleryModel(QAbstractListModel):
 
     def _as_item(self, entry: Entry, place: int) -> GalleryItem:
         mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
-        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh)
+        feature_mm = entry.candidate.score.evenness.least_feature_mm(self._width_mm)
+        cuttable = self.ranking.cuttable(entry.candidate)
+        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh, cuttable, feature_mm)
 
     def _rearrange(self) -> None:
         after = self._arranged()
@@ -348,13 +395,13 @@ def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
     return next((place for place, entry in enumerate(entries) if entry.candidate == candidate), -1)
 
 
-def described(candidate: Candidate, rank: int) -> str:
+def described(candidate: Candidate, name: str) -> str:
     """Describe a candidate in words, for tooltips and screen readers."""
     score = candidate.score
     lines = [
         tr(
-            "Design {rank}: match {iou_exact:.2f} % (exact IoU; sIoU {siou:.2f} %)",
-            rank=rank,
+            "Design {name}: match {iou_exact:.2f} % (exact IoU; sIoU {siou:.2f} %)",
+            name=name,
             siou=100 * score.siou,
             iou_exact=100 * score.iou_exact,
         ),

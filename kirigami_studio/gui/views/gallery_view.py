@@ -119,6 +119,13 @@ class GalleryView(QListView):
         self._reporting = True
         self.mark(self._marked)
 
+    def set_measure(self, width_mm: float, ranking: Ranking | None) -> None:
+        """Judge by another width of the sheet, and by another ranking where one is given; the order stays."""
+        self._quietly(lambda: self.model_.set_width_mm(width_mm))
+        if ranking is not None:
+            self._quietly(lambda: self.model_.set_ranking(ranking))
+        self.mark(self._marked)
+
     def show_marks(self, marks: Mapping[Candidate, Mark], fresh: frozenset[Candidate]) -> None:
         """Show which candidates are pinned or rejected, and which the last further run has added."""
         self._reporting = False

@@ -60,6 +60,7 @@ def test_that_all_writes_and_verifies_the_whole_set(
         "model": "balanced",
         "seed": "0",
         "sample": "0",
+        "name": "A1",
         "origin": "sampled",
         "polished": "no",
         "trimmed": "no",

@@ -48,11 +48,11 @@ def other(like: Candidate, seed: int, siou: float) -> Candidate:
 @pytest.mark.parametrize(
     ("before", "mark", "label"),
     [
-        (Mark.NONE, Mark.PINNED, "Pin design 3"),
-        (Mark.NONE, Mark.REJECTED, "Reject design 3"),
-        (Mark.PINNED, Mark.NONE, "Unpin design 3"),
-        (Mark.REJECTED, Mark.NONE, "Restore design 3"),
-        (Mark.PINNED, Mark.REJECTED, "Reject design 3"),
+        (Mark.NONE, Mark.PINNED, "Pin design A3"),
+        (Mark.NONE, Mark.REJECTED, "Reject design A3"),
+        (Mark.PINNED, Mark.NONE, "Unpin design A3"),
+        (Mark.REJECTED, Mark.NONE, "Restore design A3"),
+        (Mark.PINNED, Mark.REJECTED, "Reject design A3"),
     ],
 )
 def test_that_a_mark_is_a_named_edit_that_a_file_keeps(

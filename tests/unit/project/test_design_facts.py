@@ -42,7 +42,9 @@ def test_that_the_only_model_of_a_project_is_that_of_a_candidate_which_does_not_
 ) -> None:
     known = {"model": "balanced", "model_sha256": "aa"}
     silent = replace(candidates[0], variant="")
-    facts = design_facts(replace(document, candidates=(silent,), chosen=0, marks=(), provenance=known), silent)
+    facts = design_facts(
+        replace(document, candidates=(silent,), chosen=0, marks=(), labels=(), provenance=known), silent
+    )
     assert (facts["model"], facts["model_sha256"]) == ("balanced", "aa")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -61,8 +61,9 @@ def ended(search: Generator[None, None, Advice]) -> Advice:
             return found
 
 
-def advice(design: Candidate, settings: FabricationSettings, others: tuple[Candidate, ...] = ()) -> Advice:
-    found = ended(find_fixes(design, settings, verdict_on(design, settings), others))
+def advice(design: Candidate, settings: FabricationSettings, others: Sequence[Candidate] = ()) -> Advice:
+    named = {f"A{number}": one for number, one in enumerate(others, start=1)}
+    found = ended(find_fixes(design, settings, verdict_on(design, settings), named))
     for fix in found.fixes:
         again = verdict_on(fix.candidate, fix.settings)
         assert again == fix.verdict and again.better_than(verdict_on(design, settings)), fix.change.text
@@ -134,9 +135,9 @@ def test_that_another_design_is_offered_and_chosen_in_one_step(design: Candidate
     crossed = replace(design, score=replace(design.score, feasible=False), index=1)
     document = Document(target, DesignSettings((4, 4)), (crossed, design), 0, FILM)
     found = advice(crossed, FILM, document.candidates)
-    assert [fix.change.text for fix in found.fixes] == ["Choose design 2."]
+    assert [fix.change.text for fix in found.fixes] == ["Choose design A2."]
     edit = found.fixes[0].edit(document)
-    assert edit.document.candidate == design and edit.label == "Choose design 2"
+    assert edit.document.candidate == design and edit.label == "Choose design A2"
 
 
 def test_that_a_fix_is_one_step_that_can_be_undone_and_leaves_the_files_alone(
@@ -168,7 +169,7 @@ def test_that_a_coarser_grid_is_offered_where_panels_leave_no_room_and_takes_the
         made.append(coarse)
         yield (coarse, replace(coarse, index=1))
 
-    found = ended(find_fixes(design, crowded, verdict_on(design, crowded), (), coarser()))
+    found = ended(find_fixes(design, crowded, verdict_on(design, crowded), {}, coarser()))
     assert made == [coarse]
     (fix,) = [fix for fix in found.fixes if fix.instead]
     match = 100.0 * coarse.score.iou_exact
@@ -182,5 +183,5 @@ def test_that_a_coarser_grid_is_offered_where_panels_leave_no_room_and_takes_the
     assert history.undo_label == f"Use 2 x 2 voids: match {match:.1f} %"
     assert history.undo() and history.document == document
     # A sheet that jams, but has room, asks for no other grid while anything else helps.
-    ended(find_fixes(design, STRAIGHT, verdict_on(design, STRAIGHT), (), coarser()))
+    ended(find_fixes(design, STRAIGHT, verdict_on(design, STRAIGHT), {}, coarser()))
     assert made == [coarse]

@@ -43,7 +43,7 @@ def test_that_labels_say_what_undo_and_redo_would_do(document: Document) -> None
     history.apply(edits.choose(history.document, 2))
     history.apply(edits.set_fabrication(history.document, connector_mm=0.5))
     history.undo()
-    assert (history.undo_label, history.redo_label) == ("Choose design 3", "Change the connector width")
+    assert (history.undo_label, history.redo_label) == ("Choose design A3", "Change the connector width")
 
 
 def test_that_a_new_edit_forgets_what_was_undone(document: Document) -> None:

@@ -162,7 +162,7 @@ def test_that_equal_documents_give_equal_bytes(document: Document, tmp_path: Pat
 
 def test_that_the_manifest_names_format_and_versions(document: Document) -> None:
     manifest = json.loads(members_of(document)["manifest.json"])
-    assert manifest["version"] == 2
+    assert manifest["version"] == 3
     assert manifest["app_version"]
 
 
@@ -194,16 +194,16 @@ def test_that_another_kind_of_file_is_a_sentence(content: bytes, tmp_path: Path)
 
 def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 3')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 4')
     newer = write_members(tmp_path / "newer.kiri", members)
-    with pytest.raises(ProjectError, match=r"newer .*format 3.* up to 2.*Update Kirigami Studio\.$") as caught:
+    with pytest.raises(ProjectError, match=r"newer .*format 4.* up to 3.*Update Kirigami Studio\.$") as caught:
         store.load(newer)
     assert caught.value.code == "project.newer_format"
 
 
 def test_that_a_project_of_format_1_opens_with_its_fixed_grid_and_even_rim(document: Document, tmp_path: Path) -> None:
     members = members_of(document)
-    members["manifest.json"] = members["manifest.json"].replace(b'"version": 2', b'"version": 1')
+    members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 1')
     design = json.loads(members["design.json"])
     for name in ("auto_grid", "symmetry", "rim", "regular"):
         del design["settings"][name]
