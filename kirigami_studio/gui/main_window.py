@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QMainWindow,
     QSizePolicy,
     QSplitter,
+    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
@@ -127,7 +128,9 @@ class MainWindow(QMainWindow):
         whole.setContentsMargins(10, 0, 10, 2)
         whole.setSpacing(8)
         whole.addWidget(self.messages)
-        whole.addWidget(self.columns, 1)
+        self.center = QStackedWidget()
+        self.center.addWidget(self.columns)
+        whole.addWidget(self.center, 1)
         self.setCentralWidget(body)
 
     def _build_status(self) -> None:

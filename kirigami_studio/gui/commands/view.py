@@ -247,6 +247,15 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             checked_when=lambda now: now.comparing,
         ),
         Command(
+            "all_designs",
+            menu,
+            tr("All designs"),
+            tr("Show all designs flat, half open and open in one window"),
+            window.connections.all_designs.toggle,
+            shortcuts=("A",),
+            icon="table",
+        ),
+        Command(
             "swap",
             menu,
             tr("S&wap compared designs"),

@@ -204,6 +204,10 @@ class DesignConnections(QObject):
 
     def rename(self, candidate: Candidate | None) -> None:
         """Open the name and the note of a design, at its card where that is in sight."""
+        table = self._window.connections.all_designs
+        if table.shown and candidate is not None:
+            self._window.dialogs.show_label(candidate, table.card(candidate))
+            return
         view, title = self._window.gallery.view, self._window.stage.title
         row = view.model_.row_of(candidate)
         card = view.visualRect(view.model_.index(row, 0)) if row >= 0 else QRect()
@@ -216,8 +220,10 @@ class DesignConnections(QObject):
     # the menu of a card --------------------------------------------------------------------------------------------
 
     def rename_current(self) -> None:
-        """Open the name and the note of the chosen design."""
-        self.rename(self.chosen)
+        """Open the name and the note of the chosen design, or of the one that is marked in the table of all."""
+        table = self._window.connections.all_designs
+        page = table.page
+        self.rename(page.table.current if table.shown and page is not None else self.chosen)
 
     def show_menu(self, candidate: Candidate, place: QPoint, compare: Callable[[], None] | None = None) -> None:
         """Open the context menu of a card; ``compare`` is what comparing it means where it is."""

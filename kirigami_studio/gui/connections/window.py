@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.connections.all_designs import AllDesignsConnections
 from kirigami_studio.gui.connections.designs import DesignConnections
 from kirigami_studio.gui.connections.first_start import FirstStart
 from kirigami_studio.gui.connections.side_by_side import SideBySide
@@ -29,6 +30,7 @@ class Connections(QObject):
         self._controller = controller
         self.side_by_side = SideBySide(window, controller)
         self.designs = DesignConnections(window, controller, self.side_by_side)
+        self.all_designs = AllDesignsConnections(window, controller, self.designs)
         self.target = TargetConnections(window, controller)
         self.stage = StageConnections(window, controller)
         self._connect_settings()

@@ -64,6 +64,7 @@ class GalleryBar(QWidget):
     selection_changed = Signal(Selection)
     again_wanted = Signal()
     alike_wanted = Signal(float)  #: nearness
+    all_wanted = Signal()  #: all designs in one window
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -74,6 +75,8 @@ class GalleryBar(QWidget):
         self.order.activated.connect(lambda _: self._choose_order())
         self.filters = FilterControls(self)
         self.filters.changed.connect(self._emit_selection)
+        self.all = ToolButton("allDesigns", "table", tr("All designs in one window: flat, half open and open (A)."))
+        self.all.clicked.connect(self.all_wanted)
         self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
@@ -82,7 +85,7 @@ class GalleryBar(QWidget):
         row = QHBoxLayout()
         row.setSpacing(4)
         row.addWidget(self.order, 1)
-        for button in (self.filter, self.compare, self.again, self.alike):
+        for button in (self.all, self.filter, self.compare, self.again, self.alike):
             row.addWidget(button)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 8, 0)

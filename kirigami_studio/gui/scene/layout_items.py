@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QPaintEngine, QPainter, QPen, QPixmap
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.paths import DOZEN, line_path, paths_of_quads, round_pen
@@ -22,6 +23,8 @@ from kirigami_studio.outlines.outline import Outline
 SMALLEST_LINED_PANEL = 3.6
 #: Pixels around the picture of a target, and around the pictures on a card.
 MARGIN, CARD_MARGIN = 6.0, 3.5
+#: Radius (pixels) of the ring around the smallest edge or neck.
+RING = 7.0
 #: Share of a card's picture that the sheet over its target gets; the rest shows it flat.
 TARGET_SHARE = 0.56
 
@@ -110,27 +113,57 @@ def candidate_pixmap(
     return pixmap
 
 
-def states_pixmap(design: PosedDesign, target: Outline, size: QSize, ratio: float, palette: Palette) -> QPixmap:
-    """Return a design flat, half way and over its target side by side, to one scale; ``size`` in logical pixels."""
+def states_pixmap(
+    design: PosedDesign,
+    target: Outline | None,
+    size: QSize,
+    ratio: float,
+    palette: Palette,
+    as_cut: bool = False,
+    ringed: bool = False,
+) -> QPixmap:
+    """Return a design flat, half way and over its target side by side, to one scale; ``size`` in logical pixels.
+
+    ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck.
+    """
     pixmap = _blank(size, ratio)
     painter = _painter(pixmap)
     angles = (math.pi, 0.5 * (math.pi + design.phi_target), design.phi_target)
-    shown = [design.nodes(phi) for phi in angles]
+    upright = PosedDesign(design.deployment, Similarity(design.pose.scale), math.pi, design.trim)
+    poses = (upright if as_cut else design, design, design)
+    shown = [posed.nodes(phi) for posed, phi in zip(poses, angles, strict=True)]
     boxes = [Bounds.of(nodes) for nodes in shown]
-    boxes[-1] = boxes[-1].united(Bounds.of(target.points))
+    if target is not None:
+        boxes[-1] = boxes[-1].united(Bounds.of(target.points))
     spans = [max(box.right - box.left, box.top - box.bottom) for box in boxes]
     side, turning = size.width() / len(angles), turning_left(*design.deployment.sheet.grid)
-    for number, (phi, nodes, box, span) in enumerate(zip(angles, shown, boxes, spans, strict=True)):
+    for number, (posed, phi, nodes, box, span) in enumerate(zip(poses, angles, shown, boxes, spans, strict=True)):
         edge = (min(side, size.height()) - 2 * CARD_MARGIN) * span / max(spans)
         middle = QPointF((number + 0.5) * side, 0.5 * size.height())
         transform = ViewTransform.fitting(box, QRectF(middle - QPointF(edge, edge) / 2, QSizeF(edge, edge)))
-        trimmed = {row: transform.to_pixels(part) for row, part in design.kept(nodes, phi).items()}
-        paint_panels(painter, transform.to_pixels(design.panels(nodes)), turning, palette, trimmed)
-    painter.setPen(round_pen(palette.target, 1.2))  # no halo: in so small a picture it would hide the rim's panels
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.drawPath(line_path(transform.to_pixels(target.points), closed=True))
+        trimmed = {row: transform.to_pixels(part) for row, part in posed.kept(nodes, phi).items()}
+        panels = transform.to_pixels(posed.panels(nodes))
+        paint_panels(painter, panels, turning, palette, trimmed)
+        if ringed and number == 0:
+            _paint_ring(painter, panels[[row for row in range(len(panels)) if row not in trimmed]], palette)
+    if target is not None:
+        painter.setPen(round_pen(palette.target, 1.2))  # no halo: in so small a picture it would hide the rim's panels
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPath(line_path(transform.to_pixels(target.points), closed=True))
     painter.end()
     return pixmap
+
+
+def _paint_ring(painter: QPainter, panels: FloatArray, palette: Palette) -> None:
+    """Ring the smallest edge or neck of panels (K, 4, 2), pixels."""
+    found = [smallest_edge(list(panels), 0.0), smallest_neck(list(panels), 0.0)]
+    places = [place for place in found if place is not None]
+    if places:
+        x, y = min(places, key=lambda place: place.size_mm).where
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for colour, width in ((palette.fault_line, 4.0), (palette.fault, 2.0)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.drawEllipse(QPointF(x, y), RING, RING)
 
 
 def target_pixmap(
