@@ -9,13 +9,14 @@ from PIL import Image, ImageDraw
 from PySide6.QtCore import QPointF, QSize
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.demonstrations.offscreen_session import Session, SessionError
+from kirigami_studio.demonstrations.offscreen_session import Session, SessionError, click
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine, combined
 from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
+from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.placed import Placed
 
@@ -27,6 +28,12 @@ LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour
 SCALED = QSize(1280, 720)
 #: A rectangle with a notch, mm.
 HOLLOW = ((-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0))
+#: A drawing with two layers and a stroke.
+LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="100mm" viewBox="0 0 160 100">
+<g id="Badge"><circle id="badge" cx="30" cy="40" r="20" fill="#c03030"/><path id="star" fill="#2050c0"
+d="M85 15l6 14 15 1-12 10 4 15-13-8-13 8 4-15-12-10 15-1z"/><path id="frame" fill-rule="evenodd"
+d="M120 20h30v40h-30z M127 30h16v20h-16z"/></g><g id="Lines"><path id="swoosh" d="M8 80C40 70 80 70 142 82" fill="none"
+stroke="#108040" stroke-width="5" stroke-linecap="round"/></g></svg>"""
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
@@ -59,6 +66,28 @@ class BoardStates(Session):
         page.save(path)
         self.window.controller.targeting.open(str(path))
         self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
+
+    def parts(self) -> None:
+        """The picker of a logo's parts: as it opens, with all parts bridged as painted, and their tight hull."""
+        path = self.out / "logo.svg"
+        path.write_text(LOGO, encoding="utf-8")
+        dialogs = self.window.dialogs
+        self.window.controller.targeting.open(str(path))
+        self.until(lambda: dialogs.parts is not None and dialogs.parts.complete, "the picker did not open")
+        picker = dialogs.parts
+        if picker is None:
+            raise SessionError("There is no picker.")
+        for state in ("largest", "bridges", "hull"):
+            if state == "bridges":
+                click(picker.all)
+                picker.painted.setChecked(True)
+            if state == "hull":
+                picker.join.choose(Join.TIGHT)
+            for palette in (DARK, LIGHT):
+                self.window.set_theme(palette)
+                self.until(lambda: picker.complete, "the outline was not made")
+                self.picture(f"parts-{state}-{palette.name}", picker)
+        picker.reject()
 
     def editor(self) -> None:
         """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""

@@ -104,6 +104,7 @@ class StateSheet(BoardStates):
         self.editor()
         self.points_and_mirror()
         window.target.set_editing(False)
+        self.parts()
         self.picture_target()
         self.all_sizes("photo")
         window.target.set_editing(True)

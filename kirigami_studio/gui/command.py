@@ -25,6 +25,8 @@ class WindowState:
     ----------
     has_target, has_designs : bool
         What the document holds.
+    has_parts : bool
+        The target was read from a drawing whose parts can be chosen.
     shows_design : bool
         A design is shown large; during a run it need not be the document's.
     chosen : Mark or None
@@ -50,6 +52,7 @@ class WindowState:
 
     has_target: bool
     has_designs: bool
+    has_parts: bool
     shows_design: bool
     chosen: Mark | None
     undo_label: str | None

@@ -170,6 +170,7 @@ class MainWindow(QMainWindow):
         return WindowState(
             has_target=document.target is not None,
             has_designs=bool(document.candidates),
+            has_parts=bool(controller.targeting.reader.drawing_of(document.target)),
             shows_design=controller.stage is not None,
             chosen=None if document.chosen is None else document.marks[document.chosen],
             undo_label=controller.history.undo_label,

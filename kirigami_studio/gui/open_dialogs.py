@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.outline_board import OutlineBoard
     from kirigami_studio.gui.dialogs.pairs import PairGallery
+    from kirigami_studio.gui.dialogs.part_picker import PartPicker
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.dialogs.start_board import StartBoard
+    from kirigami_studio.gui.jobs.part_jobs import PartsRead
     from kirigami_studio.gui.main_window import MainWindow
 
 
@@ -46,6 +48,7 @@ class Dialogs(QObject):
         self.start_board: StartBoard | None = None
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
+        self.parts: PartPicker | None = None
         self.artwork: ArtworkEditor | None = None
         self.label: LabelEditor | None = None
 
@@ -148,6 +151,19 @@ class Dialogs(QObject):
         self.pairs.read()
         bring_to_front(self.pairs)
 
+    def show_parts(self, read: PartsRead) -> None:
+        """Ask which parts of a drawing are the target."""
+        from kirigami_studio.gui.dialogs.part_picker import PartPicker
+
+        if self.parts is None:
+            targeting = self._controller.targeting
+            self.parts = PartPicker(self._window, self._controller.queue)
+            self.parts.taken.connect(targeting.reader.take_chosen)
+            self.parts.rejected.connect(targeting.drop_choice)
+        self.parts.begin(read)
+        self._colour(self.parts)
+        bring_to_front(self.parts)
+
     def show_artwork(self) -> None:
         """Open the window that lays a picture on the sheet, or bring it to the front."""
         from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
@@ -219,8 +235,8 @@ class Dialogs(QObject):
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
-        boards = (self.start_board, self.second_board)
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts, *boards, self.pairs, self.artwork):
+        asking = (self.start_board, self.second_board, self.parts)
+        for dialog in (self.materials, self.guide, self.history, self.shortcuts, *asking, self.pairs, self.artwork):
             if dialog is not None:
                 dialog.close()
 

@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.target_reader import next_run
+from kirigami_studio.gui.jobs.part_jobs import PartsRead, reading_parts, reading_source
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
     Picture,
@@ -28,6 +29,7 @@ from kirigami_studio.gui.jobs.target_jobs import (
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import PART_READERS
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -111,27 +113,61 @@ class PictureTracer(QObject):
 
 
 class TargetReader(QObject):
-    """Reads one target at a time and registers the picture it was traced from."""
+    """Reads one target at a time and registers the picture or drawing that it came from.
+
+    A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
+    """
 
     read = Signal(Outline, bool)  #: whether it is the first target of the session
+    choice_wanted = Signal(PartsRead)
     failed = Signal(str, str)  #: sentence, trace
 
     def __init__(self, session: Session, tracer: PictureTracer, parent: QObject) -> None:
         super().__init__(parent)
         self._tracer = tracer
-        self._job = LatestJob[TargetRead](session.queue)
+        self._job = LatestJob[TargetRead | PartsRead](session.queue)
+        self._drawings: OrderedDict[Outline, str] = OrderedDict()
+        self._asked = ("", False)
         self.source = ""  #: of the target that was read last
 
     def start(self, source: str, first: bool) -> None:
         """Read a file, or a silhouette of the library by name."""
+        self._start(source, first, partial(reading_source, source))
+
+    def choose_again(self, outline: Outline) -> None:
+        """Read the drawing again that an outline came from, and ask for its parts."""
+        source = self.drawing_of(outline)
+        if source:
+            self._start(source, False, partial(reading_parts, source))
+
+    def drawing_of(self, outline: Outline | None) -> str:
+        """The drawing that an outline was read from, "" for none."""
+        return "" if outline is None else self._drawings.get(outline, "")
+
+    def take_chosen(self, outline: Outline) -> None:
+        """Take the outline that was made of chosen parts."""
+        self._finish(*self._asked, TargetRead(outline))
+
+    def _start(self, source: str, first: bool, steps: Steps[TargetRead | PartsRead]) -> None:
         callbacks = JobCallbacks(partial(self._take, source, first), on_failed=self.failed.emit)
-        self._job.start(tr("reading {name}", name=Path(source).name), partial(reading_target, source), callbacks)
+        self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, first: bool, found: TargetRead) -> None:
+    def _take(self, source: str, first: bool, found: TargetRead | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self._asked = (source, first)
+            self.choice_wanted.emit(found)
+        else:
+            self._finish(source, first, found)
+
+    def _finish(self, source: str, first: bool, found: TargetRead) -> None:
+        if Path(source).suffix.lower() in PART_READERS:
+            self._drawings[found.outline] = source
+            while len(self._drawings) > CAPACITY:
+                self._drawings.popitem(last=False)
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
@@ -265,6 +301,16 @@ class Targeting(QObject):
         """Read a file, or a silhouette of the library by name."""
         self._session.set_status(tr("Reading {name} …", name=Path(source).name))
         self.reader.start(source, first)
+
+    def choose_parts(self) -> None:
+        """Ask again for the parts of the drawing that the target was read from."""
+        target = self._session.document.target
+        if target is not None:
+            self.reader.choose_again(target)
+
+    def drop_choice(self) -> None:
+        """The parts of a drawing were not chosen: everything stays as it was."""
+        self._session.set_status(tr("No part was taken; nothing changed."))
 
     def start_with(self, source: str, blank: Document) -> None:
         """Read the first target; into the ``blank`` document it is where the history starts, no change to be undone."""

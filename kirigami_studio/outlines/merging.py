@@ -30,6 +30,8 @@ USUAL_TIGHTNESS = 0.7
 HULL_STEP = 0.01
 #: Names of parts that a sentence lists.
 NAMED = 6
+#: Places that are farther than the nearest by this share of a bridge's width are as near.
+NEAR = 0.02
 #: Vertices of a quarter circle at the ends and corners of strokes.
 QUARTER = 16
 #: Deviation of simplified parts, share of the size: hulls and bridges need no more.
@@ -195,9 +197,16 @@ def _bridged(region: BaseGeometry, merging: Merging, size: float) -> tuple[BaseG
 
 
 def _bridge(one: BaseGeometry, other: BaseGeometry, width: float, size: float) -> Polygon:
-    """A rectangle between the nearest places of two pieces that reaches half its width into both."""
-    (x0, y0), (x1, y1) = shapely.get_coordinates(shapely.shortest_line(one, other))
-    start, end = np.array([x0, y0]), np.array([x1, y1])
+    """A rectangle between the nearest places of two pieces that reaches half its width into both.
+
+    Where a stretch of the other piece is as near, as between parallel edges, the bridge leads to its middle.
+    """
+    nearest = shapely.shortest_line(one, other)
+    near = one.buffer(nearest.length + NEAR * width, quad_segs=QUARTER).intersection(other.boundary)
+    stretch = max(shapely.get_parts(shapely.line_merge(near)), key=lambda part: float(part.length), default=None)
+    if stretch is not None and stretch.length > width:
+        nearest = shapely.shortest_line(one, stretch.interpolate(0.5, normalized=True))
+    start, end = shapely.get_coordinates(nearest)
     length = float(np.linalg.norm(end - start))
     # Pieces that touch in a point are joined across it.
     way = (end - start) / length if length > 1e-9 * size else np.array(other.centroid.coords[0]) - start

@@ -117,3 +117,11 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
     target = sheet.window.target
     assert target.editing and target.view.reach is not None and len(target.view.reach.arms) == 1
     assert (tmp_path / "editor-points-1280x720-dark.png").exists()
+
+
+def test_that_the_part_states_show_the_picker_and_take_nothing(sheet: StateSheet, tmp_path: Path) -> None:
+    before = sheet.window.controller.document
+    sheet.parts()
+    assert sheet.window.controller.document is before
+    for name in ("parts-largest-dark", "parts-bridges-light", "parts-hull-light"):
+        assert (tmp_path / f"{name}.png").exists()

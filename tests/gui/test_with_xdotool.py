@@ -129,6 +129,13 @@ def started(person: Person, log: Path) -> Iterator[subprocess.Popen[bytes]]:
             program.wait(10)
 
 
+LOGO = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="100mm" viewBox="0 0 120 100">
+<g id="Badge"><circle id="disc" cx="30" cy="40" r="20"/><rect id="plate" x="60" y="25" width="40" height="20"/></g>
+<text x="5" y="90">Logo</text></svg>"""
+#: Actions from the start of the program to the cut file of a part of an imported logo: keys, and paths that are typed.
+MOST_ACTIONS = 12
+
+
 def middle(widget: QWidget, window: QWidget, along: float = 0.5) -> QPoint:
     """A place in a widget, ``along`` its width."""
     return widget.mapTo(window, QPoint(round(along * widget.width()), widget.height() // 2))
@@ -201,3 +208,49 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
     document = store.load(project)
     assert document.target is not None and document.provenance["model_sha256"]
     assert "Traceback" not in (tmp_path / "log.txt").read_text(encoding="utf-8")
+
+
+def test_that_a_new_user_comes_from_a_part_of_a_logo_to_its_cut_file_in_twelve_actions(
+    person: Person, tmp_path: Path
+) -> None:
+    logo, cut = tmp_path / "logo.svg", tmp_path / "plate.dxf"
+    logo.write_text(LOGO, encoding="utf-8")
+    actions = 0
+
+    def press(*keys: str) -> None:
+        nonlocal actions
+        actions += len(keys)
+        person.presses(*keys)
+
+    def type_into(dialog: str, path: Path) -> None:
+        nonlocal actions
+        person.looks_at(dialog)
+        actions += 2  # the path and Return
+        person.do("type", "--delay", 8, str(path))
+        person.presses("Return")
+        person.waits(lambda: not person.sees(dialog), f"{dialog} closed")
+
+    with started(person, tmp_path / "log.txt") as program:
+        person.looks_at("Kirigami Studio")
+        press("Escape", "ctrl+o")  # the question of the first start; a target file
+        type_into("Open target", logo)
+        person.looks_at("Parts of logo")
+        press("space", "Down", "space", "Return")  # not the disc but the plate
+        person.waits(lambda: not person.sees("Parts of logo"), "the picker closed")
+        person.looks_at("Kirigami Studio")
+        press("ctrl+g")
+
+        def asks_for_a_file() -> bool:
+            if not person.sees("Export DXF"):
+                person.presses("ctrl+e")  # says that there is no design yet, until there is one
+                time.sleep(1.0)
+            return bool(person.sees("Export DXF"))
+
+        person.waits(asks_for_a_file, "the first design")
+        actions += 1
+        person.presses("ctrl+a")  # the name that is offered is selected where a desktop's own dialog opens
+        type_into("Export DXF", cut)
+        person.waits(cut.exists, "the cut file")
+        program.terminate()
+    assert actions <= MOST_ACTIONS
+    assert len(ezdxf.readfile(cut).modelspace()) > 20

@@ -194,6 +194,14 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             gap=True,
         ),
         Command(
+            "choose_parts",
+            menu,
+            tr("Choose par&ts …"),
+            tr("Choose other parts of the target's drawing, or join them in another way"),
+            window.controller.targeting.choose_parts,
+            enabled_when=lambda now: now.has_parts,
+        ),
+        Command(
             "library",
             menu,
             tr("Target &library …"),

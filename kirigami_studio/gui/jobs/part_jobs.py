@@ -1,0 +1,93 @@
+"""Jobs on the parts of a drawing: find out whether there is a choice, and make one outline of chosen parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.gui.jobs.queue import Cancel
+from kirigami_studio.gui.jobs.target_jobs import TargetRead, reading_target
+from kirigami_studio.outlines.merging import Merged, Merging, merged
+from kirigami_studio.outlines.parts import SourceParts
+from kirigami_studio.outlines.read import PART_READERS, read_parts
+
+#: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
+DRAWN = 1.0 / 3000.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartsRead:
+    """A drawing that holds several parts, and how they are drawn.
+
+    Attributes
+    ----------
+    source : SourceParts
+    sketches : tuple of tuple of (P, 2) float, source units
+        For each part its rings, or its lines where it encloses nothing; fewer vertices than the part itself.
+    """
+
+    source: SourceParts
+    sketches: tuple[tuple[FloatArray, ...], ...]
+
+
+def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
+    """Read a target, or the parts of a drawing that has several to choose from."""
+    if Path(source).suffix.lower() in PART_READERS:
+        found = read_parts(source)
+        if found.is_ambiguous:
+            yield sketched(found)
+            return
+    yield from reading_target(source, cancel)
+
+
+def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:
+    """Read the parts of a drawing, whether there is a choice or not."""
+    yield sketched(read_parts(source))
+
+
+def sketched(source: SourceParts) -> PartsRead:
+    """The parts with what is drawn of them."""
+    tolerance = DRAWN * source.size
+    sketches = []
+    for part in source.parts:
+        if part.is_closed:
+            rings = shapely.get_rings(part.region.simplify(tolerance))
+            sketches.append(tuple(shapely.get_coordinates(ring) for ring in rings))
+        else:
+            lines = [shapely.linestrings(line) for line in part.lines]
+            sketches.append(tuple(shapely.get_coordinates(shapely.simplify(line, tolerance)) for line in lines))
+    return PartsRead(source, tuple(sketches))
+
+
+def merging_parts(source: SourceParts, numbers: frozenset[int], merging: Merging, cancel: Cancel) -> Iterator[Merged]:
+    """Make one outline of some parts."""
+    yield merged(source, source.of(numbers), merging)
+
+
+def part_at(read: PartsRead, place: tuple[float, float], reach: float) -> int:
+    """The number of the smallest part at a place, source units; 0 where there is none within ``reach``."""
+    point = shapely.points(place)
+    found = [
+        part
+        for part in read.source.parts
+        if (
+            shapely.intersects_xy(part.region, *place)
+            if part.is_closed
+            else any(shapely.distance(shapely.linestrings(line), point) <= reach for line in part.lines)
+        )
+    ]
+    return min(found, key=lambda part: part.worth).number if found else 0
+
+
+def bounds_of(read: PartsRead) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of all parts with their strokes, source units."""
+    boxes = np.array([part.bounds for part in read.source.parts])
+    pen = 0.5 * max(part.pen.width for part in read.source.parts)
+    left, bottom = (boxes[:, :2].min(axis=0) - pen).tolist()
+    right, top = (boxes[:, 2:].max(axis=0) + pen).tolist()
+    return left, bottom, right, top

@@ -1,0 +1,224 @@
+"""The picker of a drawing's parts: it asks where there is a choice and shows the result; Cancel changes nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.gui.dialogs.part_picker import PartPicker
+from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.outlines.merging import Join
+
+Until = Callable[[Callable[[], bool]], None]
+LAYER = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer"'
+LOGO = f"""
+<g {LAYER} inkscape:label="Badge"><circle id="disc" cx="30" cy="40" r="20" fill="#c03030"/>
+<rect id="plate" x="60" y="25" width="30" height="30" fill="#2050c0"/></g>
+<g {LAYER} inkscape:label="Line"><path id="swoosh" d="M10 80H110" fill="none" stroke="#108040" stroke-width="5"/></g>"""
+
+
+def written(folder: Path, body: str, name: str = "logo.svg") -> Path:
+    path = folder / name
+    size = 'width="120mm" height="100mm" viewBox="0 0 120 100"'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{body}</svg>', encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def logo(tmp_path: Path) -> Path:
+    return written(tmp_path, LOGO)
+
+
+@pytest.fixture
+def picker(window: MainWindow, logo: Path, until: Until) -> PartPicker:
+    """The picker as it opens by itself."""
+    window.files.open(str(logo))
+    return opened(window, until)
+
+
+def opened(window: MainWindow, until: Until) -> PartPicker:
+    until(lambda: window.dialogs.parts is not None and window.dialogs.parts.isVisible())
+    made = window.dialogs.parts
+    assert made is not None
+    until(lambda: not made._job.busy)
+    return made
+
+
+def settled(picker: PartPicker, until: Until) -> None:
+    until(lambda: not picker._job.busy)
+
+
+def told(picker: PartPicker) -> tuple[float, float]:
+    """Width and height, mm, that the picker tells."""
+    found = re.fullmatch(r"The target will be ([\d.]+) \N{MULTIPLICATION SIGN} ([\d.]+) mm\.", picker.size_.text())
+    assert found is not None
+    return float(found[1]), float(found[2])
+
+
+def names(picker: PartPicker) -> set[str]:
+    assert picker._read is not None
+    return {part.name for part in picker._read.source.of(picker.chosen)}
+
+
+def click_part(picker: PartPicker, x: float, y: float) -> None:
+    """Click at a place of the drawing, mm, y up."""
+    px, py = picker.view.transform.to_pixels(np.array([x, y])).tolist()
+    QTest.mouseClick(picker.view, Qt.MouseButton.LeftButton, pos=QPointF(px, py).toPoint())
+
+
+def test_that_a_drawing_of_several_parts_asks_with_the_largest_checked(window, picker) -> None:
+    assert names(picker) == {"disc"}
+    layers = [picker.list.topLevelItem(row).text(0) for row in range(picker.list.topLevelItemCount())]
+    assert layers == ["Badge", "Line"]
+    assert told(picker) == (40.0, 40.0)
+    assert "2 parts were left out: plate, swoosh." in picker.notes.text()
+    assert window.target.view.outline is None
+
+
+def test_that_every_part_has_a_picture(picker, until) -> None:
+    until(lambda: not picker._undrawn)
+    assert all(not item.icon(0).isNull() for item in picker._items.values())
+
+
+def test_that_return_takes_what_is_checked_as_one_step(window, picker, until) -> None:
+    QTest.keyClick(picker.list, Qt.Key.Key_Return)
+    until(lambda: window.target.view.outline is not None)
+    target = window.controller.document.target
+    assert target is not None and target.name == "disc" and target.size == pytest.approx((40, 40), rel=1e-3)
+    assert not picker.isVisible()
+    window.controller.undo()
+    assert window.controller.document.target is None
+
+
+def test_that_a_click_in_the_picture_takes_a_part_in_and_bridges_it(window, picker, until) -> None:
+    click_part(picker, 75, -40)
+    settled(picker, until)
+    assert names(picker) == {"disc", "plate"}
+    assert picker.result_ is not None and len(picker.result_.bridges) == 1
+    assert told(picker) == (80.0, 40.0)
+    click_part(picker, 30, -40)
+    settled(picker, until)
+    assert names(picker) == {"plate"}
+
+
+def test_that_keys_alone_choose_parts(picker, until) -> None:
+    for key in (Qt.Key.Key_Space, Qt.Key.Key_Down, Qt.Key.Key_Space):
+        QTest.keyClick(picker.list, key)
+    settled(picker, until)
+    assert names(picker) == {"plate"}
+
+
+def test_that_a_layer_is_checked_and_cleared_at_once(picker, until) -> None:
+    picker.list.topLevelItem(0).setCheckState(0, Qt.CheckState.Checked)
+    settled(picker, until)
+    assert names(picker) == {"disc", "plate"}
+    picker.list.topLevelItem(0).setCheckState(0, Qt.CheckState.Unchecked)
+    settled(picker, until)
+    assert not picker.chosen and not picker.take.isEnabled()
+    assert picker.notes.text() == "Check at least one part."
+
+
+def test_that_cancel_changes_nothing(window, heart_and_logo, until) -> None:
+    picker, before = heart_and_logo
+    click_part(picker, 75, -40)
+    QTest.keyClick(picker, Qt.Key.Key_Escape)
+    assert not picker.isVisible()
+    assert window.controller.document is before
+    assert window.status_text.text() == "No part was taken; nothing changed."
+
+
+@pytest.fixture
+def heart_and_logo(heart: MainWindow, logo: Path, until: Until):
+    before = heart.controller.document
+    heart.files.open(str(logo))
+    return opened(heart, until), before
+
+
+def test_that_strokes_are_taken_as_painted_and_joined(window, tmp_path, until) -> None:
+    body = '<g fill="none" stroke="#000" stroke-width="6"><path d="M10 10h80"/><path d="M10 40h80"/></g>'
+    window.files.open(str(written(tmp_path, body)))
+    picker = opened(window, until)
+    assert picker.painted.isChecked() and len(picker.chosen) == 2
+    assert told(picker) == (80.0, 36.0)
+    picker.painted.setChecked(False)
+    settled(picker, until)
+    assert picker.result_ is None and "enclose no area" in picker.notes.text()
+    assert not picker.take.isEnabled()
+    picker.join.choose(Join.HULL)
+    settled(picker, until)
+    assert told(picker) == (80.0, 30.0)
+
+
+def test_that_lines_without_a_width_have_a_field_for_it(window, tmp_path, until) -> None:
+    path = tmp_path / "line.dxf"
+    drawing = ezdxf.new(units=4)
+    drawing.modelspace().add_line((0, 0), (100, 0))
+    drawing.saveas(path)
+    window.files.open(str(path))
+    picker = opened(window, until)
+    assert picker.stroke.isVisible()
+    picker.stroke.setValue(10.0)
+    settled(picker, until)
+    assert told(picker) == (110.0, 10.0)
+
+
+def test_that_the_width_of_bridges_is_taken(picker, until) -> None:
+    picker.all.click()
+    picker.bridge.setValue(2.0)
+    settled(picker, until)
+    assert picker.result_ is not None
+    (bridge,) = picker.result_.bridges
+    assert min(bridge.bounds[2] - bridge.bounds[0], bridge.bounds[3] - bridge.bounds[1]) == pytest.approx(2.0)
+
+
+def test_that_dropping_and_pasting_ask_too(window, logo, until) -> None:
+    content = QMimeData()
+    content.setUrls([QUrl.fromLocalFile(str(logo))])
+    window.pasting.take(content)
+    picker = opened(window, until)
+    picker.reject()
+    content = QMimeData()
+    content.setText(logo.read_text(encoding="utf-8"))
+    window.pasting.take(content)
+    assert names(opened(window, until)) == {"disc"}
+
+
+def test_that_a_drawing_of_one_part_is_taken_at_once(window, tmp_path, until) -> None:
+    window.files.open(str(written(tmp_path, '<circle cx="50" cy="50" r="30"/>')))
+    until(lambda: window.target.view.outline is not None)
+    assert window.dialogs.parts is None
+
+
+def test_that_parts_can_be_chosen_again(window, picker, until) -> None:
+    QTest.keyClick(picker.list, Qt.Key.Key_Return)
+    until(lambda: window.target.view.outline is not None)
+    assert window.commands["choose_parts"].isEnabled()
+    window.commands["choose_parts"].trigger()
+    opened(window, until)
+    click_part(picker, 75, -40)
+    settled(picker, until)
+    picker.take.click()
+    QApplication.processEvents()
+    target = window.controller.document.target
+    assert target is not None and target.size == pytest.approx((80, 40), rel=1e-3)
+
+
+def test_that_parts_of_a_library_silhouette_cannot_be_chosen(heart) -> None:
+    assert not heart.commands["choose_parts"].isEnabled()
+
+
+def test_that_a_damaged_drawing_says_so_and_asks_nothing(heart, tmp_path, until) -> None:
+    path = tmp_path / "broken.svg"
+    path.write_text("<svg><g></svg>")
+    before = heart.controller.document
+    heart.files.open(str(path))
+    until(lambda: bool(heart.messages.messages))
+    assert heart.controller.document is before and heart.dialogs.parts is None
