@@ -98,8 +98,9 @@ def read_dxf(path: str | Path) -> Outline:
         Not a DXF file, damaged beyond repair, no lines, or an open contour (with the gap and its place).
     """
     path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path)
+        found = _read(path, content)
         region, joints = join([line.chain * found.to_mm for line in found.lines], WIDEST_GAP, found.unit)
         ring, dropped = largest_piece(region)
         notes = (*found.notes, *joints, *dropped)
@@ -115,8 +116,9 @@ def dxf_parts(path: str | Path) -> SourceParts:
         As :func:`read_dxf`, but for open contours.
     """
     path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path)
+        found = _read(path, content)
         lines_of: dict[str, list[Line]] = {}
         for line in found.lines:
             lines_of.setdefault(line.layer, []).append(line)
@@ -135,7 +137,7 @@ def dxf_parts(path: str | Path) -> SourceParts:
         return SourceParts(path.stem, kept, left_out, found.unit, MappingProxyType(found.facts))
 
 
-def _read(path: Path) -> Read:
+def _read(path: Path, content: bytes) -> Read:
     """Everything visible in model space, flattened.
 
     Raises
@@ -143,7 +145,7 @@ def _read(path: Path) -> Read:
     TargetError
         No DXF file, one that takes too much to read, or no lines.
     """
-    content, budget = read_bytes(path, MOST_MEGABYTES), TimeBudget()
+    budget = TimeBudget()
     drawing, notes = _opened(path, content, budget)
     curves, texts, hidden = _visible(drawing, budget)
     if not curves:

@@ -93,8 +93,9 @@ def read_svg(path: str | Path) -> Outline:
         Not SVG, larger than 20 MB, with entity declarations, nothing drawn, text only, or open strokes.
     """
     path = Path(path)
+    content = read_bytes(path)
     with decoding(path, "source.svg_damaged"):
-        read = _read(path)
+        read = _read(content)
         ring, found = _ring(read.drawn, read.left_out, read.unit)
         # Turned upright last, so that places in sentences are those that a drawing program shows.
         down = Outline.from_points(thinned(ring), name=path.stem, notes=found, unit=read.unit)
@@ -110,8 +111,9 @@ def svg_parts(path: str | Path) -> SourceParts:
         As :func:`read_svg`, but for open strokes.
     """
     path = Path(path)
+    content = read_bytes(path)
     with decoding(path, "source.svg_damaged"):
-        read = _read(path)
+        read = _read(content)
         filled, notes = _without_paper([shape for shape in read.drawn if shape.is_filled])
         strokes = [shape for shape in read.drawn if not shape.is_filled]
         if not filled and not strokes:
@@ -145,7 +147,7 @@ def _upright(part: Part) -> Part:
     return replace(part, region=region, lines=tuple(line * (1.0, -1.0) for line in part.lines))
 
 
-def _read(path: Path) -> Read:
+def _read(content: bytes) -> Read:
     """Everything visible in a file, y down.
 
     Raises
@@ -153,7 +155,7 @@ def _read(path: Path) -> Read:
     TargetError
         No SVG, or one that takes too much to read.
     """
-    content, budget = read_bytes(path), TimeBudget()
+    budget = TimeBudget()
     checked, width_mm, notes = checked_svg(content)
     svg = svgelements.SVG.parse(io.BytesIO(checked), reify=True, ppi=PIXELS_PER_INCH)
     budget.check()
