@@ -28,7 +28,7 @@ help:
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
-	@echo "make pictures  make the README's pictures with the program"
+	@echo "make pictures  make the pictures of README and guide with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
 	@echo "make messages  collect all sentences for translators in resources/locale"
 	@echo "make clean   remove what the other targets made, except .venv"
@@ -97,6 +97,7 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
 	cp out/pictures/pairs.png docs/pictures/pairs.png
 	cp out/pictures/pairs-small.png resources/guide/pairs.png
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --out resources/guide
 	$(BIN)/python -m kirigami_studio.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
 	  --out docs/pictures/artwork.png

@@ -99,6 +99,7 @@ class StateSheet(BoardStates):
         window = self.window
         window.show()
         self.all_sizes("empty")
+        self.first_start()
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
@@ -147,6 +148,17 @@ class StateSheet(BoardStates):
         window.close()
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
+
+    def first_start(self) -> None:
+        """The sample on the empty stage with the question for machine and material, and without it."""
+        first, empty = self.window.connections.first_start, self.window.stage.empty
+        first.begin()
+        self.until(lambda: empty.ready, "the sample was not read")
+        empty.stop()
+        empty.view.set_phi(math.radians(100.0))
+        self.all_sizes("first-start")
+        first.decline()
+        self.all_sizes("sample")
 
     def first_steps(self) -> None:
         """The tour at a control on every side, and the sheet of keys."""

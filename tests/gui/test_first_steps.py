@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -72,6 +73,55 @@ def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow
     qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
     assert tour.at == 5
     tour.end()
+
+
+def test_that_a_tour_without_a_design_borrows_the_sample_opens_it_and_gives_it_back(
+    window: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
+) -> None:
+    window.controller.use_preferences(tmp_path / "preferences.toml")
+    window.controller.start_with("star")
+    until(lambda: window.controller.document.target is not None)
+    before = window.controller.document
+    tour, bar = window.tour, window.stage.deployment
+    tour.start()
+    until(lambda: window.controller.stage is not None)
+    for _ in range(3):
+        qtbot.mouseClick(tour.callout.next, LEFT)
+    assert tour.at == 3 and bar.playing and bar.slider.phi == pytest.approx(math.pi, abs=0.2)
+    until(lambda: bar.slider.phi < math.pi - 0.1)  # it opens by itself
+    qtbot.mouseClick(tour.callout.next, LEFT)
+    assert tour.at == 4 and not bar.playing and bar.slider.phi == pytest.approx(0.0, abs=1e-3)
+    tour.end()
+    assert window.controller.document == before and window.controller.stage is None
+    assert not window.controller.history.unsaved
+    assert preferences.load(tmp_path / "preferences.toml").tour_seen
+
+
+def test_that_a_tour_leaves_unsaved_work_and_a_changed_sample_alone(
+    heart: MainWindow, until: Until, project_file: Path
+) -> None:
+    tour, controller = heart.tour, heart.controller
+    assert controller.history.unsaved
+    tour.start()
+    assert not controller.queue.busy or controller.stage is None
+    tour.end()
+    assert controller.document.target is not None and not controller.document.candidates
+    controller.history.mark_saved()
+    tour.start()
+    until(heart.fabrication.export.isEnabled)
+    controller.fabrication.change(connector_mm=0.3)
+    tour.end()
+    assert controller.document.candidates and controller.document.fabrication.connector_mm == 0.3
+
+
+def test_that_a_tour_ended_at_once_gives_the_sample_back_when_it_has_come(window: MainWindow, until: Until) -> None:
+    window.controller.start_with("star")
+    until(lambda: window.controller.document.target is not None)
+    before = window.controller.document
+    window.tour.start()
+    window.tour.end()
+    until(lambda: not window.controller.queue.busy)
+    assert window.controller.document == before and window.controller.stage is None
 
 
 def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: Until) -> None:

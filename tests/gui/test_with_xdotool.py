@@ -52,8 +52,8 @@ class Person:
         done = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=30, check=False)
         return done.stdout.strip()
 
-    def waits(self, happened: Callable[[], bool], what: str) -> None:
-        end = time.monotonic() + PATIENCE
+    def waits(self, happened: Callable[[], bool], what: str, patience: float = PATIENCE) -> None:
+        end = time.monotonic() + patience
         while not happened():
             assert time.monotonic() < end, f"gave up waiting: {what}"
             time.sleep(0.1)
@@ -254,3 +254,33 @@ def test_that_a_new_user_comes_from_a_part_of_a_logo_to_its_cut_file_in_twelve_a
         program.terminate()
     assert actions <= MOST_ACTIONS
     assert len(ezdxf.readfile(cut).modelspace()) > 20
+
+
+def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
+    person: Person, window: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
+) -> None:
+    window.resize(*SIZE)
+    first = window.connections.first_start
+    first.begin()
+    until(lambda: window.stage.empty.ready)
+    QApplication.processEvents()
+    scissors = middle(window.stage.empty.question.buttons["by hand"], window)
+    generate = middle(window.run.generate, window)
+    cut, actions = tmp_path / "heart.pdf", []
+    with started(person, tmp_path / "log.txt") as program:
+        person.looks_at("Kirigami Studio")
+        person.do("windowsize", "--sync", person.sees("Kirigami Studio"), *SIZE)
+        time.sleep(1.0)  # the window lays itself out anew
+        person.clicks(scissors)  # the answer to the one question; actions are counted from here
+        person.clicks(generate)
+        actions.append("Generate")
+        person.waits(lambda: bool(person.sees(r"Untitled\*")), "designs in the project", 3.0 * PATIENCE)
+        person.presses("ctrl+e")
+        actions.append("Export")
+        person.answers("Export PDF", cut)
+        actions.append("a place for the file")
+        person.waits(cut.exists, "the cut file")
+        program.terminate()
+    assert len(actions) <= 6
+    assert cut.read_bytes().startswith(b"%PDF") and cut.stat().st_size > 5_000
+    assert "Traceback" not in (tmp_path / "log.txt").read_text(encoding="utf-8")

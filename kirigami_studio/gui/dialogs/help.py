@@ -1,19 +1,22 @@
-"""Help: the user guide, and the sheet of all keys and mouse gestures with a search."""
+"""Help: the user guide with contents and search, and the sheet of all keys and mouse gestures with a search."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut, QTextCursor
 from PySide6.QtWidgets import (
     QHeaderView,
     QLabel,
     QLineEdit,
+    QSplitter,
     QTextBrowser,
+    QTextEdit,
     QTreeWidget,
     QTreeWidgetItem,
+    QTreeWidgetItemIterator,
     QVBoxLayout,
     QWidget,
 )
@@ -22,23 +25,156 @@ from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.command import Command
 
+#: Headings down to this level are in the guide's contents.
+DEEPEST = 3
+#: Role of a heading's place in the text, characters.
+PLACE = Qt.ItemDataRole.UserRole
+
 
 class GuideWindow(QWidget):
-    """Shows ``resources/guide/guide.md``."""
+    """Shows ``resources/guide/guide.md`` beside its contents, and finds words in it."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Window)
         self.setWindowTitle(tr("Kirigami Studio guide"))
+        self._places: list[QTextCursor] = []
+        self._at = -1
         self.text = QTextBrowser()
         self.text.setObjectName("guideText")
         self.text.setAccessibleName(tr("User guide"))
         self.text.setOpenExternalLinks(True)
         self.text.setSearchPaths([str(resource("guide"))])  # for its pictures
         self.text.setMarkdown(resource("guide", "guide.md").read_text(encoding="utf-8"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.text)
-        self.resize(680, 720)
+        self.search = QLineEdit()
+        self.search.setPlaceholderText(tr("Search the guide"))
+        self.search.setAccessibleName(tr("Search the guide"))
+        self.search.setToolTip(tr("Find words in the guide (Ctrl+F); Enter goes on, Shift+Enter back."))
+        self.search.setClearButtonEnabled(True)
+        self.found = QLabel()
+        self.found.setObjectName("muted")
+        self.contents = QTreeWidget()
+        self.contents.setObjectName("guideContents")
+        self.contents.setAccessibleName(tr("Contents of the guide"))
+        self.contents.setHeaderHidden(True)
+        self.contents.setIndentation(14)
+        self.contents.setUniformRowHeights(True)
+        self._lay_out()
+        self._list_contents()
+        QShortcut(QKeySequence.StandardKey.Find, self, self._begin_search)
+        self.search.textChanged.connect(self._find)
+        self.contents.itemClicked.connect(self._go_to)
+        self.contents.itemActivated.connect(self._go_to)
+        self.text.verticalScrollBar().valueChanged.connect(self._follow)
+        self.resize(960, 720)
+
+    def _lay_out(self) -> None:
+        side = QWidget()
+        left = QVBoxLayout(side)
+        left.setContentsMargins(12, 12, 4, 12)
+        left.setSpacing(6)
+        for part in (self.search, self.found, self.contents):
+            left.addWidget(part)
+        columns = QSplitter(Qt.Orientation.Horizontal)
+        columns.setChildrenCollapsible(False)
+        columns.addWidget(side)
+        columns.addWidget(self.text)
+        columns.setStretchFactor(1, 1)
+        columns.setSizes([260, 700])
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(columns)
+
+    def _list_contents(self) -> None:
+        """One line for each heading, under the one above it."""
+        above: dict[int, QTreeWidgetItem] = {}
+        block = self.text.document().begin()
+        while block.isValid():
+            level = block.blockFormat().headingLevel()
+            if 2 <= level <= DEEPEST:
+                line = QTreeWidgetItem([block.text()])
+                line.setToolTip(0, block.text())
+                line.setData(0, PLACE, block.position())
+                above[level] = line
+                if level > 2 and level - 1 in above:
+                    above[level - 1].addChild(line)
+                else:
+                    self.contents.addTopLevelItem(line)
+            block = block.next()
+        self.contents.expandAll()
+
+    @property
+    def headings(self) -> list[QTreeWidgetItem]:
+        """The lines of the contents, in the order of the text."""
+        walk, found = QTreeWidgetItemIterator(self.contents), []
+        while line := walk.value():
+            found.append(line)
+            walk += 1
+        return found
+
+    def _go_to(self, line: QTreeWidgetItem) -> None:
+        block = self.text.document().findBlock(line.data(0, PLACE))
+        top = self.text.document().documentLayout().blockBoundingRect(block).top()
+        self.text.verticalScrollBar().setValue(round(top))
+        self.contents.setCurrentItem(line)
+
+    def _follow(self) -> None:
+        """The text was scrolled: the contents show where."""
+        top = self.text.cursorForPosition(QPoint(4, 12)).position()
+        passed = [line for line in self.headings if line.data(0, PLACE) <= top]
+        if passed:
+            self.contents.setCurrentItem(passed[-1])
+
+    def _begin_search(self) -> None:
+        self.search.setFocus()
+        self.search.selectAll()
+
+    def _find(self, words: str) -> None:
+        """Mark every place with these words, and go to the first one from here on."""
+        document, wanted = self.text.document(), words.strip()
+        self._places, self._at = [], -1
+        cursor = document.find(wanted) if wanted else QTextCursor()
+        while not cursor.isNull():
+            self._places.append(cursor)
+            cursor = document.find(wanted, cursor)
+        top = self.text.cursorForPosition(QPoint(4, 12)).position()
+        below = (place for place, found in enumerate(self._places) if found.position() >= top)
+        self._show_place(next(below, 0))
+
+    def _show_place(self, place: int) -> None:
+        count = len(self._places)
+        if not count:
+            self.found.setText(tr("Not found") if self.search.text().strip() else "")
+            self.text.setExtraSelections([])
+            return
+        self._at = place % count
+        self.found.setText(tr("{place} of {count}", place=self._at + 1, count=count))
+        here, others = self.palette().highlight().color(), self.palette().highlight().color()
+        others.setAlpha(70)
+        marks = []
+        for number, found in enumerate(self._places):
+            mark = QTextEdit.ExtraSelection()
+            mark.cursor = found
+            mark.format.setBackground(here if number == self._at else others)
+            if number == self._at:
+                mark.format.setForeground(self.palette().highlightedText().color())
+            marks.append(mark)
+        self.text.setExtraSelections(marks)
+        there = QTextCursor(self._places[self._at])
+        there.clearSelection()
+        self.text.setTextCursor(there)
+        self.text.ensureCursorVisible()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Enter goes to the next place, Shift+Enter to the one before; Esc clears the search, then closes the guide."""
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self._places:
+            back = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            self._show_place(self._at + (-1 if back else 1))
+        elif event.key() != Qt.Key.Key_Escape:
+            super().keyPressEvent(event)
+        elif self.search.text():
+            self.search.clear()
+        else:
+            self.close()
 
 
 #: Role of the words that a line is found by.

@@ -1,0 +1,88 @@
+"""The guide: its contents lead to every section, its search to every place, and its pictures are there."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from PIL import Image
+from PySide6.QtCore import Qt, QUrl
+from PySide6.QtGui import QImage, QTextDocument
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.gui.dialogs.help import GuideWindow
+from kirigami_studio.gui.main_window import MainWindow
+
+
+@pytest.fixture
+def guide(window: MainWindow, qtbot: QtBot) -> GuideWindow:
+    window.commands["guide"].trigger()
+    shown = window.dialogs.guide
+    assert shown is not None
+    for _ in range(5):  # it is laid out step by step
+        QApplication.processEvents()
+    return shown
+
+
+def seen_heading(guide: GuideWindow) -> str:
+    """The first heading from the top of the text on."""
+    cursor = guide.text.cursorForPosition(guide.text.viewport().rect().topLeft())
+    block = cursor.block()
+    while block.isValid() and not block.blockFormat().headingLevel():
+        block = block.next()
+    return block.text()
+
+
+def test_that_the_contents_list_every_section_and_lead_to_it(guide: GuideWindow) -> None:
+    markdown = resource("guide", "guide.md").read_text(encoding="utf-8")
+    sections = re.findall(r"^#{2,3} (.+)$", markdown, flags=re.MULTILINE)
+    assert [line.text(0) for line in guide.headings] == sections
+    for line in guide.headings[:-1]:  # the last one is short: it cannot come to the top
+        guide.contents.itemClicked.emit(line, 0)
+        QApplication.processEvents()
+        assert seen_heading(guide) == line.text(0)
+        assert guide.contents.currentItem() is line
+
+
+def test_that_scrolling_moves_on_in_the_contents(guide: GuideWindow) -> None:
+    bar, passed = guide.text.verticalScrollBar(), []
+    for share in (0.25, 0.5, 0.75, 1.0):
+        bar.setValue(round(share * bar.maximum()))
+        passed.append(guide.contents.currentItem().text(0))
+    assert passed == sorted(set(passed), key=[line.text(0) for line in guide.headings].index)
+
+
+def test_that_words_are_found_marked_and_walked_through(guide: GuideWindow, qtbot: QtBot) -> None:
+    qtbot.keyClick(guide, Qt.Key.Key_F, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(guide.search.hasFocus)
+    qtbot.keyClicks(guide.search, "connector")
+    plain = guide.text.document().toPlainText().lower()
+    count = plain.count("connector")
+    assert len(guide.text.extraSelections()) == count > 5 and guide.found.text() == f"1 of {count}"
+    first = guide.text.textCursor().position()
+    qtbot.keyClick(guide.search, Qt.Key.Key_Return)
+    assert guide.found.text() == f"2 of {count}" and guide.text.textCursor().position() > first
+    qtbot.keyClick(guide.search, Qt.Key.Key_Return, Qt.KeyboardModifier.ShiftModifier)
+    qtbot.keyClick(guide.search, Qt.Key.Key_Return, Qt.KeyboardModifier.ShiftModifier)
+    assert guide.found.text() == f"{count} of {count}"  # round again
+    guide.search.setText("no such words in it")
+    assert guide.found.text() == "Not found" and guide.text.extraSelections() == []
+    qtbot.keyClick(guide, Qt.Key.Key_Escape)
+    assert guide.search.text() == "" and guide.found.text() == "" and guide.isVisible()
+    qtbot.keyClick(guide, Qt.Key.Key_Escape)
+    assert not guide.isVisible()
+
+
+def test_that_every_picture_is_shown_and_small(guide: GuideWindow) -> None:
+    markdown = resource("guide", "guide.md").read_text(encoding="utf-8")
+    pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", markdown)
+    assert len(pictures) >= 8
+    for name in pictures:
+        file = resource("guide", name)
+        assert file.stat().st_size < 100_000, name
+        with Image.open(file) as picture:
+            assert picture.width <= 640, name
+        loaded = guide.text.loadResource(QTextDocument.ResourceType.ImageResource.value, QUrl(name))
+        assert isinstance(loaded, (bytes, QImage)) or loaded is not None, name
