@@ -28,6 +28,7 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.foundation.words import number
 
 SIZE_MM = (60.0, 40.0)
 COMB_SLITS, FINGER_MM, FINGER_LENGTH_MM = 10, 1.5, 10.0
@@ -191,8 +192,8 @@ def _row_marks(reach: float) -> list[FloatArray]:
 
 
 def _notes(rungs: Sequence[float]) -> tuple[Note, ...]:
-    widths = ", ".join(f"{rung:g}" for rung in rungs)
-    flaps = ", ".join(f"{width:g}" for width in FLAP_WIDTHS_MM)
+    widths = ", ".join(number(rung, "g") for rung in rungs)
+    flaps = ", ".join(number(width, "g") for width in FLAP_WIDTHS_MM)
     return (
         Note.of("coupon.how_to_read_kerf", fingers=COMB_SLITS - 1, slits=COMB_SLITS),
         Note.of("coupon.how_to_read_ligament", widths=widths, flaps=flaps),

@@ -19,19 +19,22 @@ from PySide6.QtCore import (
 from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.uncaught_errors import log_qt_messages, show_uncaught
+from kirigami_studio.project import preferences
 
 FIRST_TARGET = "heart"
 PREFERENCES = "preferences.toml"
 RECENT = "recent.toml"
 RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
-NO_DISPLAY = tr(
+NO_DISPLAY = mark(
     "No display available. Use the command line (kirigami-studio --help), or run an "
     "off-screen session: python -m kirigami_studio.demonstrations.offscreen_session --out "
     "out."
@@ -111,6 +114,7 @@ def create_application(argv: list[str]) -> QApplication:
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     application = QApplication(argv)
     application.setFont(readable_font(application.font()))
+    speak(SYSTEM)
     return application
 
 
@@ -151,6 +155,14 @@ def open_first(window: MainWindow, source: str) -> None:
         window.controller.start_with(source)
 
 
+def preferred_language(path: Path) -> str:
+    """The language that the preferences name; a file that cannot be read is spoken of once there is a window."""
+    try:
+        return preferences.load(path).language
+    except KirigamiError:
+        return SYSTEM
+
+
 def run(argv: list[str]) -> int:
     """Open the window and stay until it is closed.
 
@@ -165,14 +177,15 @@ def run(argv: list[str]) -> int:
         Exit code, 0 when the user closed the window, 1 when there is no display to open it on.
     """
     if not display_present():
-        sys.stderr.write(f"{NO_DISPLAY}\n")
+        sys.stderr.write(f"{tr(NO_DISPLAY)}\n")
         return 1
     application = create_application(argv[:1] or ["kirigami-studio"])
+    config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
+    speak(preferred_language(config / PREFERENCES))
     window = create_window()
     show_uncaught(window.messages.add)
     state = QSettings()
     window.restore(state)
-    config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
     window.controller.use_preferences(config / PREFERENCES)
     window.controller.filing.recent.load(config / RECENT)
     window.controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)

@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.jobs.as_cut_jobs import animating
 from kirigami_studio.gui.jobs.cut_jobs import (
     ANIMATION,
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
-TRIM_AGAIN = tr("Or untrim and trim again to make room for these widths.")
+TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
 
 
 class CutPlanner(QObject):
@@ -107,7 +107,7 @@ class CutPlanner(QObject):
         self.answered.emit(request, made)
 
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
-        told = sentence if request.candidate.trim is None else f"{sentence} {TRIM_AGAIN}"
+        told = sentence if request.candidate.trim is None else f"{sentence} {tr(TRIM_AGAIN)}"
         self.refused.emit(told)
         self.not_planned.emit(request, told)
 
@@ -338,4 +338,4 @@ def differences(carried: Material, known: Material) -> str:
 
 
 def _text(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return number(value, "g") if isinstance(value, float) else str(value)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,17 +32,17 @@ class FileKind:
     @property
     def filter(self) -> str:
         """As a line of a file dialog."""
-        return f"{self.title} (*{self.extension})"
+        return f"{tr(self.title)} (*{self.extension})"
 
 
 FILE_KINDS = (
-    FileKind(".dxf", tr("DXF cut file, mm"), tr("Cut file in mm, DXF R2010, read back and checked"), True),
-    FileKind(".svg", tr("SVG cut file, mm"), tr("Cut file in mm for laser software and Inkscape"), True),
-    FileKind(".pdf", tr("PDF cut sheet, mm"), tr("Cut sheet at 1:1, to print or plot"), True),
-    FileKind(".png", tr("PNG picture"), tr("Picture of the opened sheet over its target"), False),
-    FileKind(".gif", tr("GIF animation, as cut"), tr("The sheet opening as cut; it stops where it jams"), False),
+    FileKind(".dxf", mark("DXF cut file, mm"), mark("Cut file in mm, DXF R2010, read back and checked"), True),
+    FileKind(".svg", mark("SVG cut file, mm"), mark("Cut file in mm for laser software and Inkscape"), True),
+    FileKind(".pdf", mark("PDF cut sheet, mm"), mark("Cut sheet at 1:1, to print or plot"), True),
+    FileKind(".png", mark("PNG picture"), mark("Picture of the opened sheet over its target"), False),
+    FileKind(".gif", mark("GIF animation, as cut"), mark("The sheet opening as cut; it stops where it jams"), False),
     FileKind(
-        ".lbrn2", tr("LightBurn project"), tr("Named layers in cutting order; connectors on the tool layer"), True
+        ".lbrn2", mark("LightBurn project"), mark("Named layers in cutting order; connectors on the tool layer"), True
     ),
 )
 

@@ -23,13 +23,14 @@ from kirigami_studio.gui.command import Switch, WindowState
 from kirigami_studio.gui.commands import all_commands
 from kirigami_studio.gui.commands.actions import CommandActions
 from kirigami_studio.gui.commands.file import FileCommands
-from kirigami_studio.gui.commands.submenus import PictureMenu, RecentMenu
+from kirigami_studio.gui.commands.submenus import LanguageMenu, PictureMenu, RecentMenu
 from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS, Appearance
 from kirigami_studio.gui.connections.window import Connections
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.dialogs.files import FileDialogs, SystemFileDialogs
 from kirigami_studio.gui.files.pasting import PasteReader
 from kirigami_studio.gui.files.picturing import PictureMaker
+from kirigami_studio.gui.language import Language
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.open_dialogs import Dialogs
@@ -89,6 +90,7 @@ class MainWindow(QMainWindow):
         self.drops.file_dropped.connect(self.files.open)
         self.dialogs = Dialogs(self, controller)
         self.appearance = Appearance(self, controller.preferences)
+        self.language = Language(self, self._reword)
         self.pasting = PasteReader(controller.session, self)
         self.picturing = PictureMaker(self, controller.session, controller.cutting)
         self.heading = self._heading()
@@ -149,6 +151,8 @@ class MainWindow(QMainWindow):
         self.commands.insert_menu("save", self.recent_menu)
         self.picture_menu = PictureMenu(self, self.picturing, lambda proposal: self.file_dialogs.picture(proposal))
         self.commands.insert_menu("animation", self.picture_menu)
+        self.language_menu = LanguageMenu(self, self.appearance)
+        self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
         controller, refresh = self.controller, self.commands.refresh
@@ -269,6 +273,16 @@ class MainWindow(QMainWindow):
         for part in theme.themed(self.findChildren(QWidget)):
             part.set_palette(palette)
         self.commands.set_palette(palette)
+
+    def speak(self, language: str) -> None:
+        """Say everything in another language, "system" or a code; nothing else changes."""
+        self.language.change(language)
+
+    def _reword(self) -> None:
+        """Say again what depends on the document, and the commands."""
+        self.commands.reword(all_commands(self))
+        self.dialogs.reword()
+        self.controller.session.document_changed.emit(self.controller.document)
 
     def restore(self, settings: QSettings) -> None:
         """Restore the size and columns of the last session."""

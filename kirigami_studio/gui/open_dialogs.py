@@ -232,6 +232,22 @@ class Dialogs(QObject):
         bring_to_front(self.shortcuts)
         self.shortcuts.search.setFocus()
 
+    def reword(self) -> None:
+        """The language has changed: what is only read is written anew."""
+        for dialog, show in ((self.guide, self.show_guide), (self.shortcuts, self.show_shortcuts)):
+            if dialog is None:
+                continue
+            visible = dialog.isVisible()
+            dialog.close()
+            dialog.deleteLater()
+            if dialog is self.guide:
+                self.guide = None
+            else:
+                self.shortcuts = None
+            if visible:
+                show()
+        self._update_history()
+
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()

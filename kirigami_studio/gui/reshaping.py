@@ -7,14 +7,14 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session import Session
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.edits import Edit, as_drawn, without_designs
 
 #: What the sliders do, by their names.
-REFINEMENTS = {"simplify": tr("Simplify target"), "smooth": tr("Smooth target")}
+REFINEMENTS = {"simplify": mark("Simplify target"), "smooth": mark("Smooth target")}
 
 
 class TargetReshaper(QObject):
@@ -65,7 +65,7 @@ class TargetReshaper(QObject):
         placed = self._context.placed
         if made is not None and (placed is None or made.outline != placed.outline):
             self._result = made
-            self.take(Change(REFINEMENTS[kind], lambda: made))
+            self.take(Change(tr(REFINEMENTS[kind]), lambda: made))
 
     def _refined(self, kind: str, strength: float) -> Placed | None:
         from kirigami_studio.outlines import refining

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.messages import Message, Tone
 
@@ -33,24 +33,24 @@ class Replacement:
 
 
 NEW_PROJECT = Replacement(
-    tr("This project has unsaved changes. Save before you start a new project?"),
-    tr("Start a new project without saving"),
+    mark("This project has unsaved changes. Save before you start a new project?"),
+    mark("Start a new project without saving"),
 )
 OTHER_PROJECT = Replacement(
-    tr("This project has unsaved changes. Save before you open another project?"),
-    tr("Open another project without saving"),
+    mark("This project has unsaved changes. Save before you open another project?"),
+    mark("Open another project without saving"),
 )
 SAMPLE = Replacement(
-    tr("This project has unsaved changes. Save before you open the sample project?"),
-    tr("Open the sample project without saving"),
+    mark("This project has unsaved changes. Save before you open the sample project?"),
+    mark("Open the sample project without saving"),
 )
 PAIR = Replacement(
-    tr("This project has unsaved changes. Save before you open an example?"),
-    tr("Open the example without saving"),
+    mark("This project has unsaved changes. Save before you open an example?"),
+    mark("Open the example without saving"),
 )
 RECOVERED = Replacement(
-    tr("This project has unsaved changes. Save before you recover another project?"),
-    tr("Recover another project without saving"),
+    mark("This project has unsaved changes. Save before you recover another project?"),
+    mark("Recover another project without saving"),
 )
 
 
@@ -97,8 +97,8 @@ class UnsavedWork(QObject):
         if not self._controller.history.unsaved:
             then()
             return
-        actions = ((tr("Save first"), self._save_first), (replacement.proceed, then))
-        self._ask(Message(replacement.question, Tone.WARNING, actions=actions))
+        actions = ((tr("Save first"), self._save_first), (tr(replacement.proceed), then))
+        self._ask(Message(tr(replacement.question), Tone.WARNING, actions=actions))
 
     def may_close(self) -> bool:
         """Whether the window may close now; asks when work would be lost."""

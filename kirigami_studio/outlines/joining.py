@@ -16,7 +16,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.foundation.words import number, tr_n
 
 #: Ends nearer than this share of the drawing's size are one point: the rounding of coordinates in a file.
 SAME_END = 1e-6
@@ -237,4 +237,4 @@ def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError
 
 def _length(length: float, unit: str) -> str:
     """A length with its unit, as far as that is known."""
-    return f"{length:.4g} {unit}" if unit else f"{length:.4g}"
+    return f"{number(length, '.4g')} {unit}".strip()

@@ -11,7 +11,7 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document, Void
@@ -98,37 +98,37 @@ DECIMALS = 4
 
 #: What the Undo menu says of a change to one field; of several at once it names the first.
 _LABELS = {
-    "grid": tr("Change the grid"),
-    "auto_grid": tr("Change the grid"),
-    "symmetry": tr("Change the symmetry"),
-    "rim": tr("Change the rim"),
-    "regular": tr("Change match or regular"),
-    "start": tr("Change the start outline"),
-    "second": tr("Change the second target"),
-    "phi": tr("Change the target angle"),
-    "k": tr("Change the number of designs"),
-    "seed": tr("Change the seed"),
-    "variant": tr("Change the model"),
-    "steps": tr("Change the number of sampling steps"),
-    "polish": tr("Change the polish setting"),
-    "prefer": tr("Change the polish preference"),
-    "search": tr("Change the search setting"),
-    "width_mm": tr("Change the sheet width"),
-    "opened_mm": tr("Change the size of the opened shape"),
-    "material": tr("Change the material"),
-    "connector_mm": tr("Change the connector width"),
-    "kerf_mm": tr("Change the kerf"),
-    "options": tr("Change the cut options"),
-    "profile": tr("Change the machine profile"),
-    "dxf_version": tr("Change the DXF version"),
-    "paper": tr("Change the paper of PDFs"),
-    "markers": tr("Change the connector markers"),
-    "style": tr("Change the connector style"),
-    "order": tr("Change the cutting order"),
-    "tabs": tr("Change the number of tabs"),
-    "tab_mm": tr("Change the tab width"),
-    "copies": tr("Change the number of copies"),
-    "copy_gap_mm": tr("Change the gap between copies"),
+    "grid": mark("Change the grid"),
+    "auto_grid": mark("Change the grid"),
+    "symmetry": mark("Change the symmetry"),
+    "rim": mark("Change the rim"),
+    "regular": mark("Change match or regular"),
+    "start": mark("Change the start outline"),
+    "second": mark("Change the second target"),
+    "phi": mark("Change the target angle"),
+    "k": mark("Change the number of designs"),
+    "seed": mark("Change the seed"),
+    "variant": mark("Change the model"),
+    "steps": mark("Change the number of sampling steps"),
+    "polish": mark("Change the polish setting"),
+    "prefer": mark("Change the polish preference"),
+    "search": mark("Change the search setting"),
+    "width_mm": mark("Change the sheet width"),
+    "opened_mm": mark("Change the size of the opened shape"),
+    "material": mark("Change the material"),
+    "connector_mm": mark("Change the connector width"),
+    "kerf_mm": mark("Change the kerf"),
+    "options": mark("Change the cut options"),
+    "profile": mark("Change the machine profile"),
+    "dxf_version": mark("Change the DXF version"),
+    "paper": mark("Change the paper of PDFs"),
+    "markers": mark("Change the connector markers"),
+    "style": mark("Change the connector style"),
+    "order": mark("Change the cutting order"),
+    "tabs": mark("Change the number of tabs"),
+    "tab_mm": mark("Change the tab width"),
+    "copies": mark("Change the number of copies"),
+    "copy_gap_mm": mark("Change the gap between copies"),
 }
 
 
@@ -253,7 +253,7 @@ def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -
 
 
 def _label(changes: Mapping[str, object]) -> str:
-    return _LABELS[next(iter(changes))]
+    return tr(_LABELS[next(iter(changes))])
 
 
 def _merge_key(part: str, changes: Mapping[str, object]) -> str:

@@ -35,6 +35,8 @@ class Preferences:
         DXF dialect that was chosen last.
     theme : str
         Look of the window, one of :data:`THEMES`.
+    language : str
+        Code of the window's language, or "system" for the desktop's.
     tour_seen : bool
         Whether the guided tour was taken before.
     material : str
@@ -54,6 +56,7 @@ class Preferences:
     profile: str = "any"
     dxf_version: str = "R2010"
     theme: str = "system"
+    language: str = "system"
     tour_seen: bool = False
     material: str = DEFAULT_PRESET
     paper: str = NO_PAPER
@@ -64,7 +67,7 @@ class Preferences:
     motion: str = "system"
 
     def __post_init__(self) -> None:
-        for name in ("profile", "dxf_version", "theme", "material", "paper", "size", "motion"):
+        for name in ("profile", "dxf_version", "theme", "language", "material", "paper", "size", "motion"):
             value = getattr(self, name)
             if not isinstance(value, str) or not value:
                 raise ProjectError("preferences.not_a_name", name=name, value=value)

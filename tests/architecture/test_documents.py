@@ -76,11 +76,11 @@ def missing_targets(makefile: str, text: str) -> list[str]:
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """What the window's modules give to ``tr`` and ``tr_n``, without mnemonics and dots."""
-    found = set()
+    """What the window's modules give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
+    found, sayings = set(), ("tr", "tr_n", "mark")
     for path in (package / "gui").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("tr", "tr_n"):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in sayings:
                 words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
                 found |= {re.sub(r"&(?=\w)", "", text) for text in words}
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import re
@@ -12,8 +13,7 @@ from pathlib import Path
 import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
-from babel.messages.mofile import write_mo
-from babel.messages.pofile import read_po
+from babel.messages.pofile import read_po, write_po
 
 from kirigami_studio.foundation.words import DOMAIN, FOLDER_VARIABLE
 
@@ -21,7 +21,7 @@ KEYWORDS = {"tr": None, "mark": None, "tr_n": (1, 2)}
 OPEN, CLOSE = "\N{LEFT WHITE SQUARE BRACKET}", "\N{RIGHT WHITE SQUARE BRACKET}"
 #: Written in no language, or data: names of files and figures, units, abbreviations of the field, keys.
 NEUTRAL = re.compile(
-    r"\b(mm|min|sIoU|IoU|TV|DXF|SVG|PDF|PNG|GIF|R12|R2010|Kirigami Studio|heart|kiri|"
+    r"\b(English|Deutsch|mm|min|sIoU|IoU|TV|DXF|SVG|PDF|PNG|GIF|R12|R2010|Kirigami Studio|heart|kiri|"
     r"Ctrl|Shift|Alt|Esc|Del|PgDown|PgUp|Space|Left|Right|Up|Down)\b"
 )
 #: Names of materials and machines are data, and what the rooms below the window say is English.
@@ -86,6 +86,27 @@ def test_that_the_template_for_translators_holds_every_sentence(repository: Path
     assert written == said, "run `make messages`"
 
 
+def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:
+    """What is said while a module is imported would stay in the language of that moment: mark it, say it later."""
+    said = []
+    for path in sorted((repository / "kirigami_studio").rglob("*.py")):
+        said += [f"{path.name}:{line}" for line in said_on_import(ast.parse(path.read_text(encoding="utf-8")))]
+    assert said == [], "write mark(...) here and tr(...) where it is shown"
+    assert said_on_import(ast.parse("A = {1: tr('now')}\ndef f():\n    tr('later')")) == [1]
+
+
+def said_on_import(module: ast.AST) -> list[int]:
+    """Lines with ``tr`` or ``tr_n`` outside functions."""
+    found: list[int] = []
+    for child in ast.iter_child_nodes(module):
+        if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(child, ast.Call) and isinstance(child.func, ast.Name) and child.func.id in ("tr", "tr_n"):
+            found.append(child.lineno)
+        found += said_on_import(child)
+    return found
+
+
 @pytest.mark.slow
 def test_that_nothing_in_the_window_is_said_in_english_only(
     repository: Path, tmp_path: Path, project_file: Path
@@ -98,8 +119,8 @@ def test_that_nothing_in_the_window_is_said_in_english_only(
             catalogue.add(message.id, f"{OPEN}{message.id}{CLOSE}")
     folder = tmp_path / "xx" / "LC_MESSAGES"
     folder.mkdir(parents=True)
-    with (folder / f"{DOMAIN}.mo").open("wb") as stream:
-        write_mo(stream, catalogue)
+    with (folder / f"{DOMAIN}.po").open("wb") as stream:
+        write_po(stream, catalogue)
     env = {**os.environ, "LANGUAGE": "xx", FOLDER_VARIABLE: str(tmp_path), "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, str(project_file)],

@@ -37,22 +37,40 @@ class CommandActions:
         action.setObjectName(command.id)
         action.setCheckable(command.checked_when is not None)
         action.setShortcuts([QKeySequence(keys) for keys in command.shortcuts])
-        action.triggered.connect(partial(self._run, command))
+        action.triggered.connect(partial(self._run, command.id))
         if command.gap:
             self._menus[command.menu].addSeparator()
         self._menus[command.menu].addAction(action)
         self._window.addAction(action)
         return action
 
-    def _run(self, command: Command, _: bool = False) -> None:
+    def _run(self, name: str, _: bool = False) -> None:
+        command = next(one for one in self.records if one.id == name)
         command.run()
         self.refresh()
-        self._show(command)  # Qt has toggled a switch, whether or not the command did anything
+        # Qt has toggled a switch, whether or not the command did anything; and the words may have changed
+        self._show(next(one for one in self.records if one.id == name))
 
     def insert_menu(self, before: str, menu: QMenu) -> None:
         """Put a menu of menus before a command."""
         command = next(one for one in self.records if one.id == before)
         self._menus[command.menu].insertMenu(self.actions[before], menu)
+
+    def append_menu(self, after: str, menu: QMenu) -> None:
+        """Put a menu at the end of the menu that a command stands in."""
+        command = next(one for one in self.records if one.id == after)
+        self._menus[command.menu].addMenu(menu)
+
+    def reword(self, commands: Iterable[Command]) -> None:
+        """Show the same commands in the words of another language."""
+        records = tuple(commands)
+        menus = {new.menu: self._menus[old.menu] for old, new in zip(self.records, records, strict=True)}
+        for title, menu in menus.items():
+            menu.setTitle(title)
+        self.records, self._menus = records, menus
+        self._worded.clear()
+        for command in records:
+            self._show(command)
 
     def refresh(self, *_: object) -> None:
         """Enable, check and name all commands as the window is now; takes whatever a signal carries."""
@@ -81,4 +99,8 @@ class CommandActions:
         self._worded[command.id] = wording
         action.setText(wording.text)
         action.setStatusTip(wording.tip)
-        action.setToolTip(f"{wording.tip} ({command.shortcuts[0]})" if command.shortcuts else wording.tip)
+        if command.shortcuts:
+            keys = QKeySequence(command.shortcuts[0]).toString(QKeySequence.SequenceFormat.NativeText)
+            action.setToolTip(f"{wording.tip} ({keys})")
+        else:
+            action.setToolTip(wording.tip)

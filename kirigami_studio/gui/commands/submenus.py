@@ -1,4 +1,4 @@
-"""Submenus of the File menu that are filled when they open: recent files, and pictures of the views."""
+"""Submenus: recent files, pictures of the views, the language of the window."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from pathlib import Path
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import languages, tr
+from kirigami_studio.gui.commands.view import Appearance
 from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
+from kirigami_studio.gui.language import NAMES, SYSTEM
 from kirigami_studio.project.recent import Recent
 
 
@@ -119,3 +121,31 @@ class RecentMenu(QMenu):
 
     def _open(self, path: str, _: bool = False) -> None:
         self._take(path)
+
+
+class LanguageMenu(QMenu):
+    """The window's language: the desktop's, or one of those there are."""
+
+    def __init__(self, parent: QWidget, appearance: Appearance) -> None:
+        super().__init__(tr("La&nguage"), parent)
+        self._appearance = appearance
+        self.choices: dict[str, QAction] = {}
+        self.menuAction().setStatusTip(tr("Change the language of the window at once"))
+        group = QActionGroup(self)
+        for code in (SYSTEM, *languages()):
+            name = tr("&System") if code == SYSTEM else NAMES.get(code, code)
+            each = self.choices[code] = self.addAction(name)
+            each.setCheckable(True)
+            each.triggered.connect(partial(self._choose, code))
+            group.addAction(each)
+        self.aboutToShow.connect(self.refresh)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Check the preferred language."""
+        chosen = self.choices.get(self._appearance.language)
+        if chosen is not None:
+            chosen.setChecked(True)
+
+    def _choose(self, code: str, _: bool = False) -> None:
+        self._appearance.choose_language(code)

@@ -37,7 +37,7 @@ OVERLAY_COMMANDS = {
 
 
 class Appearance(QObject):
-    """The window's theme: the desktop's until the user chooses light or dark, and again when asked to."""
+    """The window's theme and language: the desktop's until the user chooses, and again when asked to."""
 
     def __init__(self, window: MainWindow, preferences: UserPreferences) -> None:
         super().__init__(window)
@@ -48,6 +48,16 @@ class Appearance(QObject):
     def follows_system(self) -> bool:
         """Whether the window has the desktop's theme."""
         return self._preferences.present.theme == SYSTEM
+
+    @property
+    def language(self) -> str:
+        """The preferred language, "system" or a code."""
+        return self._preferences.present.language
+
+    def choose_language(self, language: str) -> None:
+        """Say everything in another language, from now on and at the next start."""
+        self._preferences.choose_language(language)
+        self._window.speak(language)
 
     def listen(self) -> None:
         """Change the theme whenever the desktop changes its own, if that is wanted."""

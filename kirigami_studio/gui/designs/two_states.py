@@ -15,7 +15,7 @@ from kirigami_studio.evaluate.opened_size import opened_size
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.laying import start_match
 from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points
 from kirigami_studio.outlines.outline import Outline
@@ -23,20 +23,20 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
 #: Starts that are no silhouettes, by what their names begin with.
 START_NAMES = {
-    "rectangle": tr("rectangle"),
-    "square": tr("square"),
-    "circle": tr("circle"),
-    "ellipse": tr("ellipse"),
-    "triangle": tr("triangle"),
-    "hexagon": tr("hexagon"),
-    "polygon": tr("polygon"),
+    "rectangle": mark("rectangle"),
+    "square": mark("square"),
+    "circle": mark("circle"),
+    "ellipse": mark("ellipse"),
+    "triangle": mark("triangle"),
+    "hexagon": mark("hexagon"),
+    "polygon": mark("polygon"),
 }
 
 
 def start_words(name: str) -> str:
     """A start's name as people read it: "ellipse 3:2" for "ellipse:3:2"."""
     kind, _, numbers = name.partition(":")
-    return f"{START_NAMES[kind]} {numbers}".strip() if kind in START_NAMES else name
+    return f"{tr(START_NAMES[kind])} {numbers}".strip() if kind in START_NAMES else name
 
 
 def start_of(candidate: Candidate) -> str:

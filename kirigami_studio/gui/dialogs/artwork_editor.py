@@ -18,7 +18,7 @@ from kirigami_studio.export.artwork import (
     Fitting,
     State,
 )
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import muted_label
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 
@@ -27,14 +27,14 @@ WIDTH = 330
 #: Farthest a picture is shifted, in sides of the box.
 FARTHEST = 5.0
 STATES = (
-    (State.TARGET, tr("Opened sheet"), tr("Seen whole when the sheet is open, cut up while it is flat")),
-    (State.FLAT, tr("Flat sheet"), tr("Seen whole while the sheet is flat, cut up when it is open")),
+    (State.TARGET, mark("Opened sheet"), mark("Seen whole when the sheet is open, cut up while it is flat")),
+    (State.FLAT, mark("Flat sheet"), mark("Seen whole while the sheet is flat, cut up when it is open")),
 )
 FITTINGS = (
-    (Fitting.FILL, tr("Fill"), tr("Cover all of the sheet")),
-    (Fitting.FIT, tr("Fit"), tr("Show all of the picture")),
+    (Fitting.FILL, mark("Fill"), mark("Cover all of the sheet")),
+    (Fitting.FIT, mark("Fit"), mark("Show all of the picture")),
 )
-NO_PICTURE = tr("No picture yet. Choose a photo, a PNG or an SVG: it is printed in register with the cuts.")
+NO_PICTURE = mark("No picture yet. Choose a photo, a PNG or an SVG: it is printed in register with the cuts.")
 
 
 class ArtworkEditor(QWidget):
@@ -53,7 +53,7 @@ class ArtworkEditor(QWidget):
         super().__init__(parent, Qt.WindowType.Tool)
         self.setWindowTitle(tr("Artwork"))
         self.setObjectName("artworkEditor")
-        self.about = QLabel(NO_PICTURE)
+        self.about = QLabel(tr(NO_PICTURE))
         self.about.setWordWrap(True)
         self.choose = QPushButton(tr("&Choose picture …"))
         self.choose.setToolTip(tr("Lay a picture on the sheet: PNG, JPG, BMP, TIFF, WebP or SVG"))
@@ -91,8 +91,8 @@ class ArtworkEditor(QWidget):
     def _choices(table: tuple[tuple[State | Fitting, str, str], ...]) -> QComboBox:
         box = QComboBox()
         for row, (value, text, tip) in enumerate(table):
-            box.addItem(text, value)
-            box.setItemData(row, tip, Qt.ItemDataRole.ToolTipRole)
+            box.addItem(tr(text), value)
+            box.setItemData(row, tr(tip), Qt.ItemDataRole.ToolTipRole)
         return box
 
     @staticmethod
@@ -177,7 +177,7 @@ class ArtworkEditor(QWidget):
             part.setEnabled(second is not None)
         self.about_second.setText("" if second is None else _described(second))
         if artwork is None:
-            self.about.setText(NO_PICTURE)
+            self.about.setText(tr(NO_PICTURE))
             return
         laid = artwork.first
         self.about.setText(_described(laid.picture))

@@ -7,13 +7,13 @@ from typing import Protocol
 
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
 
-TARGET_FILTER = tr("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
-START_FILTER = tr("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
-ARTWORK_FILTER = tr("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)")
-PROJECT_FILTER = tr("Kirigami Studio projects (*.kiri)")
+TARGET_FILTER = mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+START_FILTER = mark("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+ARTWORK_FILTER = mark("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)")
+PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
 
 
 class FileDialogs(Protocol):
@@ -52,23 +52,23 @@ class SystemFileDialogs:
         self._folder = ""
 
     def target(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, TARGET_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, tr(TARGET_FILTER))
         return self._remembered(name)
 
     def start(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, START_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, tr(START_FILTER))
         return self._remembered(name)
 
     def artwork(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Choose picture"), self._folder, ARTWORK_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Choose picture"), self._folder, tr(ARTWORK_FILTER))
         return self._remembered(name)
 
     def project(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, PROJECT_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, tr(PROJECT_FILTER))
         return self._remembered(name)
 
     def save(self, proposal: str) -> Path | None:
-        dialog = self._saver(tr("Save project"), proposal, [PROJECT_FILTER])
+        dialog = self._saver(tr("Save project"), proposal, [tr(PROJECT_FILTER)])
         return self._answer(dialog)
 
     def export(self, proposal: str) -> Path | None:

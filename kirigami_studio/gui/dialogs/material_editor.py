@@ -24,11 +24,11 @@ from PySide6.QtWidgets import (
 from kirigami_studio.fabricate import material_copies
 from kirigami_studio.fabricate.material import Library, Material, library
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.dialogs.material_form import TEXTS, GapRow, MaterialForm
 
 SIZE = QSize(760, 560)
-NEW = tr("Presets are read-only. Copy one to change it.")
+NEW = mark("Presets are read-only. Copy one to change it.")
 
 
 class MaterialEditor(QDialog):
@@ -51,7 +51,7 @@ class MaterialEditor(QDialog):
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.form = MaterialForm()
-        self.state, self.status = QLabel(), QLabel(NEW)
+        self.state, self.status = QLabel(), QLabel(tr(NEW))
         for label in (self.state, self.status):
             label.setWordWrap(True)
         self.status.setObjectName("muted")
@@ -195,7 +195,7 @@ class MaterialEditor(QDialog):
             item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
             self.list.addItem(item)
         self.choose(key)
-        self.status.setText("\n".join(fault.text for fault in self._library.faults) or NEW)
+        self.status.setText("\n".join(fault.text for fault in self._library.faults) or tr(NEW))
 
     def _show(self) -> None:
         if self.list.currentItem() is None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QLineEdit, QPush
 from kirigami_studio.fabricate.coupon import kerf_from_gaps
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.number_field import DecimalField, LengthField, number_field
 
 
@@ -31,77 +31,92 @@ class Number:
 
 
 NUMBERS = (
-    Number("thickness_mm", tr("Thickness"), "mm", 0.005, 50.0, 0.05, 3, tr("Sheet thickness.")),
-    Number("kerf_mm", tr("Kerf"), "mm", 0.0, 5.0, 0.01, 3, tr("Full width of the cut; 0 for a blade.")),
-    Number("connector_mm", tr("Connector"), "mm", 0.02, 20.0, 0.05, 3, tr("Default finished connector width.")),
+    Number("thickness_mm", mark("Thickness"), "mm", 0.005, 50.0, 0.05, 3, mark("Sheet thickness.")),
+    Number("kerf_mm", mark("Kerf"), "mm", 0.0, 5.0, 0.01, 3, mark("Full width of the cut; 0 for a blade.")),
+    Number("connector_mm", mark("Connector"), "mm", 0.02, 20.0, 0.05, 3, mark("Default finished connector width.")),
     Number(
         "min_ligament_mm",
-        tr("Smallest ligament"),
+        mark("Smallest ligament"),
         "mm",
         0.005,
         20.0,
         0.01,
         3,
-        tr("Warn about ligaments narrower than this."),
+        mark("Warn about ligaments narrower than this."),
     ),
-    Number("min_slit_mm", tr("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, tr("Shortest slit for this material.")),
-    Number("min_panel_mm", tr("Smallest panel"), "mm", 0.0, 100.0, 0.5, 3, tr("Warn about panels narrower than this.")),
+    Number("min_slit_mm", mark("Shortest slit"), "mm", 0.005, 20.0, 0.05, 3, mark("Shortest slit for this material.")),
+    Number(
+        "min_panel_mm", mark("Smallest panel"), "mm", 0.0, 100.0, 0.5, 3, mark("Warn about panels narrower than this.")
+    ),
     Number(
         "relief_radius_mm",
-        tr("Relief radius"),
+        mark("Relief radius"),
         "mm",
         0.0,
         5.0,
         0.05,
         3,
-        tr("Radius of the relief hole at a slit's end."),
+        mark("Radius of the relief hole at a slit's end."),
     ),
     Number(
         "strain_limit",
-        tr("Breaking strain"),
+        mark("Breaking strain"),
         "%",
         0.01,
         500.0,
         0.5,
         2,
-        tr("Strain at which the material breaks."),
+        mark("Strain at which the material breaks."),
         100.0,
     ),
-    Number("young_gpa", tr("Stiffness"), "GPa", 0.0001, 1000.0, 0.5, 4, tr("Young's modulus of the material.")),
-    Number("speed_mm_s", tr("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, tr("Speed with the beam on.")),
-    Number("power_percent", tr("Power"), "%", 0.0, 100.0, 5.0, 1, tr("Laser power while cutting; 0 for a blade.")),
-    Number("travel_mm_s", tr("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, tr("Speed between cuts.")),
+    Number("young_gpa", mark("Stiffness"), "GPa", 0.0001, 1000.0, 0.5, 4, mark("Young's modulus of the material.")),
+    Number("speed_mm_s", mark("Cutting speed"), "mm/s", 0.01, 10_000.0, 5.0, 2, mark("Speed with the beam on.")),
+    Number("power_percent", mark("Power"), "%", 0.0, 100.0, 5.0, 1, mark("Laser power while cutting; 0 for a blade.")),
+    Number("travel_mm_s", mark("Travel speed"), "mm/s", 0.01, 20_000.0, 20.0, 2, mark("Speed between cuts.")),
     Number(
         "acceleration_mm_s2",
-        tr("Acceleration"),
+        mark("Acceleration"),
         "mm/s²",
         0.1,
         200_000.0,
         100.0,
         1,
-        tr("How fast the head accelerates."),
+        mark("How fast the head accelerates."),
     ),
-    Number("on_delay_s", tr("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause before each cut."), 1000.0),
-    Number("off_delay_s", tr("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, tr("Pause after each cut."), 1000.0),
-    Number("bed_width_mm", tr("Bed width"), "mm", 0.0, 5000.0, 10.0, 1, tr("Width that the machine reaches; 0: any.")),
     Number(
-        "bed_height_mm", tr("Bed height"), "mm", 0.0, 5000.0, 10.0, 1, tr("Height that the machine reaches; 0: any.")
+        "on_delay_s", mark("Delay before a cut"), "ms", 0.0, 10_000.0, 5.0, 1, mark("Pause before each cut."), 1000.0
+    ),
+    Number(
+        "off_delay_s", mark("Delay after a cut"), "ms", 0.0, 10_000.0, 5.0, 1, mark("Pause after each cut."), 1000.0
+    ),
+    Number(
+        "bed_width_mm", mark("Bed width"), "mm", 0.0, 5000.0, 10.0, 1, mark("Width that the machine reaches; 0: any.")
+    ),
+    Number(
+        "bed_height_mm",
+        mark("Bed height"),
+        "mm",
+        0.0,
+        5000.0,
+        10.0,
+        1,
+        mark("Height that the machine reaches; 0: any."),
     ),
     Number(
         "join_tolerance_mm",
-        tr("Joins gaps below"),
+        mark("Joins gaps below"),
         "mm",
         0.0,
         2.0,
         0.01,
         3,
-        tr("Gaps that the machine software may close."),
+        mark("Gaps that the machine software may close."),
     ),
 )
 TEXTS = (
-    ("name", tr("Name"), tr("Name shown in the material list.")),
-    ("machine", tr("Machine"), tr("Machine these values were measured on.")),
-    ("note", tr("Note"), tr("Anything worth knowing.")),
+    ("name", mark("Name"), mark("Name shown in the material list.")),
+    ("machine", mark("Machine"), mark("Machine these values were measured on.")),
+    ("note", mark("Note"), mark("Anything worth knowing.")),
 )
 
 
@@ -126,10 +141,10 @@ class MaterialForm(QWidget):
         form.setVerticalSpacing(5)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         for field, label, _ in TEXTS:
-            form.addRow(_caption(label), self.texts[field])
+            form.addRow(_caption(tr(label)), self.texts[field])
             self.texts[field].textEdited.connect(self.changed)
         for number in NUMBERS:
-            form.addRow(_caption(number.label), self.numbers[number.field])
+            form.addRow(_caption(tr(number.label)), self.numbers[number.field])
             self.numbers[number.field].valueChanged.connect(self.changed)
         form.addRow(_caption(tr("Passes")), self.passes)
         self.passes.valueChanged.connect(self.changed)
@@ -177,8 +192,8 @@ def _caption(text: str) -> QLabel:
 def _text(field: str, label: str, tip: str) -> QLineEdit:
     line = QLineEdit()
     line.setObjectName(f"material_{field}")
-    line.setAccessibleName(label)
-    line.setAccessibleDescription(tip)
+    line.setAccessibleName(tr(label))
+    line.setAccessibleDescription(tr(tip))
     return line
 
 
@@ -191,11 +206,11 @@ def _number(number: Number) -> DecimalField:
     box.setSuffix(f" {number.unit}")
     number_field(box)
     box.setKeyboardTracking(False)
-    box.setAccessibleName(f"{number.label}, {number.unit}")
+    box.setAccessibleName(f"{tr(number.label)}, {number.unit}")
     box.setToolTip(
         tr(
             "{tip} Unit: {unit}, {low:g} to {high:g}.",
-            tip=number.tip,
+            tip=tr(number.tip),
             unit=number.unit,
             low=number.low,
             high=number.high,

@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import ToolButton, muted_label
 from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
 from kirigami_studio.gui.sketching.sketch_context import Change
@@ -55,11 +55,11 @@ class BoardWords:
 
 
 SECOND_WORDS = BoardWords(
-    tr("Draw the second target"),
-    tr("Draw what the sheet should also show on its way. Size and rotation do not matter."),
-    tr("It can be the second target; size and rotation do not matter."),
-    tr("&Use as second target"),
-    tr("The next designs pass this shape on their way."),
+    mark("Draw the second target"),
+    mark("Draw what the sheet should also show on its way. Size and rotation do not matter."),
+    mark("It can be the second target; size and rotation do not matter."),
+    mark("&Use as second target"),
+    mark("The next designs pass this shape on their way."),
 )
 
 
@@ -70,7 +70,7 @@ class OutlineBoard(QDialog):
 
     def __init__(self, parent: QWidget, words: BoardWords, view: TargetView | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle(words.title)
+        self.setWindowTitle(tr(words.title))
         self.setModal(False)
         self.resize(SIZE)
         self._words = words
@@ -84,12 +84,12 @@ class OutlineBoard(QDialog):
             part.hide()
         self.undo = ToolButton("undoBoard", "undo", tr("Undo on this board (Ctrl+Z)."))
         self.redo = ToolButton("redoBoard", "redo", tr("Redo on this board (Ctrl+Shift+Z)."))
-        self.about = QLabel(words.empty)
+        self.about = QLabel(tr(words.empty))
         self.about.setWordWrap(True)
         self.hint = muted_label()
-        self.take = QPushButton(words.take)
+        self.take = QPushButton(tr(words.take))
         self.take.setObjectName("primary")
-        self.take.setToolTip(words.taken)
+        self.take.setToolTip(tr(words.taken))
         self.take.setAutoDefault(False)
         self.cancel = QPushButton(tr("Cancel"))
         self.cancel.setToolTip(tr("Leave everything as it is (Esc)."))
@@ -192,7 +192,7 @@ class OutlineBoard(QDialog):
         refusal = None if placed is None else self.refusal(placed.outline)
         self.take.setEnabled(placed is not None and refusal is None)
         if placed is None:
-            self.say(self._words.empty)
+            self.say(tr(self._words.empty))
         else:
             self.say(refusal or self.ready(placed.outline), wrong=refusal is not None)
 
@@ -202,7 +202,7 @@ class OutlineBoard(QDialog):
 
     def ready(self, outline: Outline) -> str:
         """What is said of a shape that can be taken."""
-        return self._words.ready
+        return tr(self._words.ready)
 
     def say(self, sentence: str, wrong: bool = False) -> None:
         """Show a sentence below the board."""

@@ -8,7 +8,7 @@ from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QDialog, QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.designs.two_states import TwoStates
 from kirigami_studio.gui.jobs.project_jobs import Pair, reading_pairs
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
@@ -17,7 +17,7 @@ from kirigami_studio.gui.scene.layout_items import states_pixmap
 
 #: Pixels: the picture of a pair, its card, and the window.
 PICTURE, CARD, SIZE = QSize(294, 98), QSize(308, 141), QSize(968, 632)
-ABOUT = tr("Each is a finished design. Choose one, drag the slider, then change target or start and press Generate.")
+ABOUT = mark("Each is a finished design. Choose one, drag the slider, then change target or start and press Generate.")
 
 
 class PairGallery(QDialog):
@@ -46,7 +46,7 @@ class PairGallery(QDialog):
         self.list.setIconSize(PICTURE)
         self.list.setGridSize(CARD)
         self.list.setWordWrap(True)
-        self.about = QLabel(ABOUT)
+        self.about = QLabel(tr(ABOUT))
         self.about.setObjectName("muted")
         self.about.setWordWrap(True)
         column = QVBoxLayout(self)

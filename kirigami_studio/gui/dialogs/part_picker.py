@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.jobs.part_jobs import PartsRead, merging_parts
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.look.theme import LIGHT, Palette
@@ -39,15 +39,19 @@ AT_ONCE = 12
 #: Sentences on what was left out that are shown; the others are in the tooltip.
 SHOWN_NOTES = 3
 JOINS = (
-    (Join.BRIDGE, tr("Bridges"), tr("Pieces that do not touch are joined by bridges between their nearest places.")),
-    (Join.UNION, tr("No bridges"), tr("What touches becomes one shape; of several pieces the largest is taken.")),
-    (Join.HULL, tr("Hull"), tr("The outline of a rubber band around all chosen parts.")),
-    (Join.TIGHT, tr("Tight hull"), tr("An outline around all chosen parts that follows them into hollows.")),
+    (
+        Join.BRIDGE,
+        mark("Bridges"),
+        mark("Pieces that do not touch are joined by bridges between their nearest places."),
+    ),
+    (Join.UNION, mark("No bridges"), mark("What touches becomes one shape; of several pieces the largest is taken.")),
+    (Join.HULL, mark("Hull"), mark("The outline of a rubber band around all chosen parts.")),
+    (Join.TIGHT, mark("Tight hull"), mark("An outline around all chosen parts that follows them into hollows.")),
 )
 KINDS = {
-    PartKind.FILLED: tr("filled"),
-    PartKind.CLOSED: tr("closed line"),
-    PartKind.STROKED: tr("open line"),
+    PartKind.FILLED: mark("filled"),
+    PartKind.CLOSED: mark("closed line"),
+    PartKind.STROKED: mark("open line"),
 }
 
 

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import SheetError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.dialogs.outline_board import BoardWords, OutlineBoard
 from kirigami_studio.gui.scene.target_items import paint_reach, paint_start_shape
 from kirigami_studio.gui.scene.view_transform import ViewTransform
@@ -19,11 +19,11 @@ from kirigami_studio.outlines.starts import check_hollows, hollows
 #: Tools whose shapes have large hollows.
 LEFT_OUT = (Tool.STAR, Tool.TEXT)
 WORDS = BoardWords(
-    tr("Draw the start"),
-    tr("Draw what the sheet looks like while it is flat. Its size is the sheet's width."),
-    tr("It can be the start; its size is the sheet's width."),
-    tr("&Use as start"),
-    tr("Sheets start as this shape from now on."),
+    mark("Draw the start"),
+    mark("Draw what the sheet looks like while it is flat. Its size is the sheet's width."),
+    mark("It can be the start; its size is the sheet's width."),
+    mark("&Use as start"),
+    mark("Sheets start as this shape from now on."),
 )
 
 

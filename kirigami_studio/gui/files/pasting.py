@@ -11,7 +11,7 @@ from xml.sax.saxutils import quoteattr
 from PySide6.QtCore import QMimeData, QObject, Signal
 from PySide6.QtGui import QImage
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
 
@@ -19,7 +19,7 @@ from kirigami_studio.gui.session import Session
 PATH_BEGINS = re.compile(r"[Mm]\s*[-+.\d]")
 #: How the names of the folders with pasted content begin.
 PASTED = "kirigami-pasted-"
-NOTHING = tr("Nothing to paste. Copy a picture, file, SVG or path first.")
+NOTHING = mark("Nothing to paste. Copy a picture, file, SVG or path first.")
 
 
 class PasteReader(QObject):
@@ -52,7 +52,7 @@ class PasteReader(QObject):
             return
         found = recognised(svg_of(content))
         if found is None:
-            self._session.post(Message(NOTHING, Tone.HINT))
+            self._session.post(Message(tr(NOTHING), Tone.HINT))
             return
         extension, text = found
         path = self._place(extension)

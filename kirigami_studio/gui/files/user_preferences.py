@@ -55,6 +55,10 @@ class UserPreferences:
         """These hold from now on."""
         self._save(wanted)
 
+    def choose_language(self, language: str) -> None:
+        """The window is to speak this language from now on: "system" or a code such as "de"."""
+        self._save(replace(self.present, language=language))
+
     def note_tour(self) -> None:
         """The guided tour was taken."""
         self._save(replace(self.present, tour_seen=True))

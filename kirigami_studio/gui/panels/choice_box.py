@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
+
+from kirigami_studio.foundation.words import again, tr
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
@@ -23,7 +25,21 @@ class ChoiceBox(QComboBox):
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(accessible)
         self.add_choices(choices)
-        self.setToolTip(f"{accessible}: {', '.join(label.lower() for _, label, _ in choices)}.")
+        self._names = tuple(self.itemText(row) for row in range(self.count()))
+        self.setToolTip(self._list_choices())
+
+    def _list_choices(self) -> str:
+        """What it is about, and what there was to choose from the start."""
+        choices = ", ".join(self._names)
+        return tr("{name}: {choices}.", name=self.accessibleName(), choices=choices) if choices else ""
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.LanguageChange:
+            lists_choices = self.toolTip() == self._list_choices()
+            self._names = tuple(again(name) for name in self._names)
+            if lists_choices:
+                self.setToolTip(self._list_choices())
 
     def add_choices(self, choices: Choices) -> None:
         """Offer values below those that are there."""
@@ -32,8 +48,8 @@ class ChoiceBox(QComboBox):
 
     def insert_choice(self, row: int, value: object, label: str, about: str) -> None:
         """Offer one more value in a row."""
-        self.insertItem(row, label, value)
-        self.setItemData(row, about or label, TOOLTIP)
+        self.insertItem(row, tr(label), value)
+        self.setItemData(row, tr(about or label), TOOLTIP)
 
     def choose(self, value: object, label: str = "") -> None:
         """Choose a value; one that is not on offer, as from a newer project, is added, under its own name without

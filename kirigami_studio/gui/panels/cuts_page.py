@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.findings import Problem, Severity
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.look.theme import LIGHT, Palette
@@ -37,13 +37,13 @@ FRAME_MS = 16
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
 OVERLAYS = (
-    (CutOverlay.TRAVEL, "travel", tr("Show travel moves between cuts, dashed.")),
+    (CutOverlay.TRAVEL, "travel", mark("Show travel moves between cuts, dashed.")),
     (
         CutOverlay.CONNECTORS,
         "connector",
-        tr("Show connectors. Dark is narrow, light is wide (reversed in the dark theme)."),
+        mark("Show connectors. Dark is narrow, light is wide (reversed in the dark theme)."),
     ),
-    (CutOverlay.PROBLEMS, "fault", tr("Mark problems found by the cut check.")),
+    (CutOverlay.PROBLEMS, "fault", mark("Mark problems found by the cut check.")),
 )
 
 
@@ -64,7 +64,7 @@ class CutsPage(QWidget):
         self.bar = CutBar()
         self.toggles: dict[CutOverlay, ToolButton] = {}
         for overlay, icon, tip in OVERLAYS:
-            button = ToolButton(f"cut{overlay.value.capitalize()}", icon, tip, checkable=True)
+            button = ToolButton(f"cut{overlay.value.capitalize()}", icon, tr(tip), checkable=True)
             button.setChecked(overlay in self.view.overlays)
             button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look import icons
-from kirigami_studio.gui.look.readable import TIMES
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
@@ -222,7 +221,7 @@ class PlayOptions(QToolButton):
     def _add_speeds(self, menu: QMenu) -> None:
         group = QActionGroup(self)
         for speed in SPEEDS:
-            action = menu.addAction(f"{speed:g}{TIMES}")
+            action = menu.addAction(tr("{speed:g}\N{MULTIPLICATION SIGN}", speed=speed))
             action.setToolTip(tr("{speed:g}\N{MULTIPLICATION SIGN} normal speed", speed=speed))
             action.setCheckable(True)
             action.setActionGroup(group)
@@ -276,7 +275,7 @@ class PlayOptions(QToolButton):
         if not on and self.sender() is not self.to_target:
             return  # of two choices that trade places only the new one counts
         usual = self.speed == 1.0
-        self.setText("" if usual else f"{self.speed:g}{TIMES}")
+        self.setText("" if usual else tr("{speed:g}\N{MULTIPLICATION SIGN}", speed=self.speed))
         beside, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
         self.setToolButtonStyle(only if usual else beside)
         self.setIcon(icons.icon(MODE_ICONS[self.mode], self._palette))

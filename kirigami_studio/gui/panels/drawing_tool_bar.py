@@ -13,7 +13,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import ToolButton
 from kirigami_studio.gui.panels.tool_options import AxisButton, ToolOptions
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
@@ -22,30 +22,30 @@ from kirigami_studio.outlines.combining import Combine
 
 #: Tool, icon, tooltip; None for a gap.
 TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
-    (Tool.POINTS, "points", tr("Move points (N). Select, drag, Delete; handles bend the lines.")),
-    (Tool.POSE, "pose", tr("Move, resize and rotate (V). Drag the shape or the handles around it.")),
+    (Tool.POINTS, "points", mark("Move points (N). Select, drag, Delete; handles bend the lines.")),
+    (Tool.POSE, "pose", mark("Move, resize and rotate (V). Drag the shape or the handles around it.")),
     None,
-    (Tool.FREEHAND, "draw", tr("Draw freehand (D). One stroke, smoothed and closed.")),
-    (Tool.POLYGON, "polygon", tr("Draw a polygon (P). Click corners; Enter closes it.")),
-    (Tool.RECTANGLE, "rectangle", tr("Draw a rectangle (R). Shift makes a square.")),
-    (Tool.ELLIPSE, "ellipse", tr("Draw an ellipse (O). Shift makes a circle.")),
-    (Tool.REGULAR, "regular", tr("Draw a regular polygon (G). Shift keeps it regular.")),
-    (Tool.STAR, "star", tr("Draw a star (S). Shift keeps it regular.")),
-    (Tool.TEXT, "text", tr("Draw text (X). Letters are moved together into one piece.")),
+    (Tool.FREEHAND, "draw", mark("Draw freehand (D). One stroke, smoothed and closed.")),
+    (Tool.POLYGON, "polygon", mark("Draw a polygon (P). Click corners; Enter closes it.")),
+    (Tool.RECTANGLE, "rectangle", mark("Draw a rectangle (R). Shift makes a square.")),
+    (Tool.ELLIPSE, "ellipse", mark("Draw an ellipse (O). Shift makes a circle.")),
+    (Tool.REGULAR, "regular", mark("Draw a regular polygon (G). Shift keeps it regular.")),
+    (Tool.STAR, "star", mark("Draw a star (S). Shift keeps it regular.")),
+    (Tool.TEXT, "text", mark("Draw text (X). Letters are moved together into one piece.")),
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", tr("New (=). What you draw replaces the shape.")),
-    (Combine.ADD, "add", tr("Add (+). What you draw is added to the shape.")),
-    (Combine.SUBTRACT, "subtract", tr("Subtract (-). What you draw is cut out of the shape.")),
+    (Combine.REPLACE, "replace", mark("New (=). What you draw replaces the shape.")),
+    (Combine.ADD, "add", mark("Add (+). What you draw is added to the shape.")),
+    (Combine.SUBTRACT, "subtract", mark("Subtract (-). What you draw is cut out of the shape.")),
 )
 MIRRORS = (
-    ("left", tr("Keep &left half")),
-    ("right", tr("Keep &right half")),
-    ("top", tr("Keep &top half")),
-    ("bottom", tr("Keep &bottom half")),
-    ("across", tr("Flip horizontally")),
-    ("over", tr("Flip vertically")),
+    ("left", mark("Keep &left half")),
+    ("right", mark("Keep &right half")),
+    ("top", mark("Keep &top half")),
+    ("bottom", mark("Keep &bottom half")),
+    ("across", mark("Flip horizontally")),
+    ("over", mark("Flip vertically")),
 )
 
 
@@ -73,7 +73,7 @@ class DrawingToolBar(QWidget):
         self.mirror.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self)
         for how, text in MIRRORS:
-            menu.addAction(text).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
+            menu.addAction(tr(text)).triggered.connect(lambda _=False, how=how: self.mirror_wanted.emit(how))
         self.mirror.setMenu(menu)
         self.grid = ToolButton("grid", "grid", tr("Snap to the grid (Ctrl+Shift+G). Hold Ctrl to ignore it."), True)
         self.grid.setChecked(context.snapping)
@@ -98,7 +98,7 @@ class DrawingToolBar(QWidget):
                 row.addWidget(_rule())
                 continue
             tool, icon, tip = entry
-            button = ToolButton(tool.value, icon, tip, True)
+            button = ToolButton(tool.value, icon, tr(tip), True)
             button.clicked.connect(lambda down, tool=tool: self.tool_wanted.emit(tool if down else Tool.LOOK))
             self.buttons[tool] = button
             row.addWidget(button)
@@ -106,7 +106,7 @@ class DrawingToolBar(QWidget):
     def _add_modes(self, row: QHBoxLayout) -> None:
         group = QButtonGroup(self)
         for mode, icon, tip in MODES:
-            button = ToolButton(mode.value, icon, tip, True)
+            button = ToolButton(mode.value, icon, tr(tip), True)
             button.clicked.connect(lambda _=False, mode=mode: self.set_mode(mode))
             group.addButton(button)
             self.modes[mode] = button

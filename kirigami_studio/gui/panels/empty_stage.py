@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.material import BY_HAND, Material
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.deployment_bar import phi_at
 from kirigami_studio.gui.views.layout_view import LayoutView, Overlay
 from kirigami_studio.outlines.outline import Outline
@@ -41,10 +41,10 @@ ACTS = frozenset(
 )
 #: Machines in the words of the question, by those of the materials, in the order in which they are offered.
 MACHINES = (
-    (BY_HAND, tr("Paper and scissors"), tr("Print a PDF on paper or thin card and cut along its lines.")),
-    ("cutting plotter", tr("Cutting plotter"), tr("A blade, as in Cricut and Silhouette machines.")),
-    ("CO2 laser", tr("CO2 laser"), tr("Card, plastics, felt, leather.")),
-    ("UV or green pulsed laser", tr("UV laser"), tr("Thin films and foils.")),
+    (BY_HAND, mark("Paper and scissors"), mark("Print a PDF on paper or thin card and cut along its lines.")),
+    ("cutting plotter", mark("Cutting plotter"), mark("A blade, as in Cricut and Silhouette machines.")),
+    ("CO2 laser", mark("CO2 laser"), mark("Card, plastics, felt, leather.")),
+    ("UV or green pulsed laser", mark("UV laser"), mark("Thin films and foils.")),
 )
 
 
@@ -190,9 +190,9 @@ class MachineQuestion(QFrame):
                 self._add(machine, name, about, found)
 
     def _add(self, machine: str, name: str, about: str, materials: Mapping[str, Material]) -> None:
-        button = QPushButton(name)
+        button = QPushButton(tr(name))
         button.setObjectName("machineChoice")
-        button.setToolTip(about)
+        button.setToolTip(tr(about))
         button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         if len(materials) == 1:
             (key,) = materials

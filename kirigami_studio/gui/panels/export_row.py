@@ -6,13 +6,13 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QToolButton, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.file_kinds import FILE_KINDS
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import Palette
 
 #: What the button says, by the extension of the cut file that suits the material.
-EXPORT = {".dxf": tr("Export DXF"), ".pdf": tr("Export PDF")}
+EXPORT = {".dxf": mark("Export DXF"), ".pdf": mark("Export PDF")}
 
 
 class ExportRow(QWidget):
@@ -26,7 +26,7 @@ class ExportRow(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.extension = ".dxf"  #: of the file that the button writes
-        self.export = QPushButton(EXPORT[self.extension])
+        self.export = QPushButton(tr(EXPORT[self.extension]))
         self.export.setObjectName("primary")
         self.export.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.export.setIconSize(QSize(18, 18))
@@ -41,8 +41,8 @@ class ExportRow(QWidget):
         self.menu.setToolTipsVisible(True)
         self.kinds: dict[str, QAction] = {}
         for kind in FILE_KINDS:
-            action = self.menu.addAction(f"{kind.title} …")
-            action.setToolTip(kind.tip)
+            action = self.menu.addAction(tr("{kind} …", kind=tr(kind.title)))
+            action.setToolTip(tr(kind.tip))
             action.triggered.connect(lambda _=False, kind=kind: self.export_wanted.emit(kind.extension))
             self.kinds[kind.extension] = action
             if kind.extension == ".gif":
@@ -68,7 +68,7 @@ class ExportRow(QWidget):
     def show_goal(self, profile: str, version: str, extension: str) -> None:
         """Offer the cut file with this extension first, and say in the tooltip what it is written for."""
         self.extension = extension
-        self.export.setText(EXPORT[extension])
+        self.export.setText(tr(EXPORT[extension]))
         if extension == ".pdf":
             self.export.setToolTip(tr("Export the cut sheet at 1:1, to print and to cut by hand (Ctrl+E)."))
             return

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.material import library
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.designs.verdict import VerdictState
 from kirigami_studio.gui.look.readable import (
     TIMES,
@@ -53,36 +53,36 @@ if TYPE_CHECKING:
 LENGTHS = (
     (
         "width_mm",
-        tr("Flat &width, mm"),
-        tr("Width of the flat sheet in millimetres"),
+        mark("Flat &width, mm"),
+        mark("Width of the flat sheet in millimetres"),
         5.0,
         3000.0,
         5.0,
         1,
-        tr(
+        mark(
             "Width of the flat sheet, mm (5 to 3000). It follows the opened size, beside the target; a width typed "
             "here stays. The grid sets the height."
         ),
     ),
     (
         "connector_mm",
-        tr("&Connector, mm"),
-        tr("Connector in millimetres"),
+        mark("&Connector, mm"),
+        mark("Connector in millimetres"),
         0.02,
         20.0,
         0.05,
         2,
-        tr("Finished width of the material left at each hinge, mm."),
+        mark("Finished width of the material left at each hinge, mm."),
     ),
     (
         "kerf_mm",
-        tr("&Kerf, mm"),
-        tr("Kerf in millimetres"),
+        mark("&Kerf, mm"),
+        mark("Kerf in millimetres"),
         0.0,
         5.0,
         0.01,
         3,
-        tr("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
+        mark("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
     ),
 )
 #: Lengths of slots and of open cuts differ by much more than this share.
@@ -91,12 +91,12 @@ SAME_LENGTH = 1e-3
 LEAST_DETAILS = 150
 #: Key and label of the live numbers, in reading order.
 NUMBERS = (
-    ("size", tr("Sheet")),
-    ("slits", tr("Cuts")),
-    ("length", tr("Cut length")),
-    ("time", tr("Time")),
-    ("pieces", tr("Pieces")),
-    ("ligament", tr("Min. ligament")),
+    ("size", mark("Sheet")),
+    ("slits", mark("Cuts")),
+    ("length", mark("Cut length")),
+    ("time", mark("Time")),
+    ("pieces", mark("Pieces")),
+    ("ligament", mark("Min. ligament")),
 )
 
 
@@ -110,9 +110,9 @@ class Extent(Enum):
 
 #: What the button does next, in the words of its tooltip.
 NEXT = {
-    Extent.EXPORT: (Extent.CHOICES, tr("Show widths.")),
-    Extent.CHOICES: (Extent.ALL, tr("Show cutting numbers and more options.")),
-    Extent.ALL: (Extent.EXPORT, tr("Hide widths and numbers.")),
+    Extent.EXPORT: (Extent.CHOICES, mark("Show widths.")),
+    Extent.CHOICES: (Extent.ALL, mark("Show cutting numbers and more options.")),
+    Extent.ALL: (Extent.EXPORT, mark("Hide widths and numbers.")),
 }
 
 
@@ -192,7 +192,7 @@ class FabricationPanel(Card):
 
     def _show_extent(self, extent: Extent) -> None:
         self._extent = extent
-        self.fold.setToolTip(NEXT[extent][1])
+        self.fold.setToolTip(tr(NEXT[extent][1]))
         self.scrolled.setVisible(extent is not Extent.EXPORT)
         self.table.setVisible(extent is Extent.ALL)
         self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
@@ -219,8 +219,8 @@ class FabricationPanel(Card):
         box.setRange(low, high)
         box.setSingleStep(step)
         box.setDecimals(digits)
-        box.setToolTip(tip)
-        box.setAccessibleName(accessible)
+        box.setToolTip(tr(tip))
+        box.setAccessibleName(tr(accessible))
         box.setKeyboardTracking(False)
         compact(box, 82)
         box.valueChanged.connect(lambda value: self.changed.emit({field: value}))
@@ -250,7 +250,7 @@ class FabricationPanel(Card):
         row = QHBoxLayout()
         row.setSpacing(8)
         for field, label, *_ in LENGTHS:
-            row.addLayout(captioned(label, self.lengths[field], self.lengths[field]), 1)
+            row.addLayout(captioned(tr(label), self.lengths[field], self.lengths[field]), 1)
         rows.addLayout(row)
         self.table = QWidget()
         self.table.setObjectName("plain")
@@ -260,10 +260,10 @@ class FabricationPanel(Card):
         table.setVerticalSpacing(1)
         for place, (key, label) in enumerate(NUMBERS):
             line, column = divmod(place, 3)
-            caption = QLabel(label)
+            caption = QLabel(tr(label))
             caption.setObjectName("muted")
             self.numbers[key].setObjectName("number")
-            self.numbers[key].setAccessibleName(label)
+            self.numbers[key].setAccessibleName(tr(label))
             table.addWidget(caption, 3 * line, column)
             table.addWidget(self.numbers[key], 3 * line + 1, column)
             for part in (caption, self.numbers[key]):

@@ -171,7 +171,7 @@ def _check(name: str, text: str, tip: str) -> QCheckBox:
     box.setObjectName(name)
     box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     box.setToolTip(tip)
-    box.setAccessibleName(tip.rstrip("."))
+    box.setAccessibleName(tip)
     return box
 
 

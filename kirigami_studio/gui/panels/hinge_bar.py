@@ -12,13 +12,13 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.panels.card import FittingLabel, ToolButton
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 
 #: Which connectors of a plan are meant.
 Rule = Callable[[CutPlan], frozenset[int]]
-WIDTH_TIP = tr("Finished width of the selected connectors, mm (0.02 to 20).")
+WIDTH_TIP = mark("Finished width of the selected connectors, mm (0.02 to 20).")
 #: The part of all connectors that counts as being at short or at long cuts.
 QUARTER = 0.25
 
@@ -63,10 +63,10 @@ def _numbers(chosen: BoolArray) -> frozenset[int]:
 
 #: Menu text, tooltip, rule.
 RULES: tuple[tuple[str, str, Rule], ...] = (
-    (tr("&All connectors"), tr("Select every connector of the sheet"), every_hinge),
-    (tr("&Edge connectors"), tr("Select the connectors along the sheet's edge"), edge_hinges),
-    (tr("On &short cuts"), tr("Select the quarter of connectors on the shortest cuts"), hinges_of_short_cuts),
-    (tr("On &long cuts"), tr("Select the quarter of connectors on the longest cuts"), hinges_of_long_cuts),
+    (mark("&All connectors"), mark("Select every connector of the sheet"), every_hinge),
+    (mark("&Edge connectors"), mark("Select the connectors along the sheet's edge"), edge_hinges),
+    (mark("On &short cuts"), mark("Select the quarter of connectors on the shortest cuts"), hinges_of_short_cuts),
+    (mark("On &long cuts"), mark("Select the quarter of connectors on the longest cuts"), hinges_of_long_cuts),
 )
 
 
@@ -93,8 +93,8 @@ class HingeBar(QWidget):
         menu.setToolTipsVisible(True)
         self.choices = []
         for text, tip, rule in RULES:
-            action = menu.addAction(text)
-            action.setToolTip(tip)
+            action = menu.addAction(tr(text))
+            action.setToolTip(tr(tip))
             action.triggered.connect(lambda _=False, rule=rule: self._apply(rule))
             self.choices.append(action)
         self.rules.setMenu(menu)
@@ -106,7 +106,7 @@ class HingeBar(QWidget):
         self.width_mm.setDecimals(3)
         self.width_mm.setSuffix(tr(" mm"))
         self.width_mm.setKeyboardTracking(False)
-        self.width_mm.setToolTip(WIDTH_TIP)
+        self.width_mm.setToolTip(tr(WIDTH_TIP))
         self.width_mm.setAccessibleName(tr("Width of the selected connectors in millimetres"))
         self.width_mm.setFixedWidth(108)
         number_field(self.width_mm)

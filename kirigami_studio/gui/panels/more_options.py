@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QCheckBox, QGridLayout, QSpinBox, QVBoxLayout, QWi
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, MOST_TABS, ConnectorStyle, CutOrder
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import ElidedLabel, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.choice_box import ChoiceBox
 from kirigami_studio.gui.panels.number_field import LengthField
@@ -18,35 +18,35 @@ from kirigami_studio.project.settings import FabricationSettings
 STYLES = (
     (
         ConnectorStyle.CENTRED,
-        tr("Centred"),
-        tr("The cut that a slit ends on makes way, so that the connector turns exactly on its corner."),
+        mark("Centred"),
+        mark("The cut that a slit ends on makes way, so that the connector turns exactly on its corner."),
     ),
-    (ConnectorStyle.STRAIGHT, tr("Straight"), tr("The slit ends in a plain tip.")),
-    (ConnectorStyle.ROUND, tr("Round"), tr("A round hole at the slit's end relieves stress.")),
-    (ConnectorStyle.TEARDROP, tr("Teardrop"), tr("A drop-shaped hole at the slit's end: rounded, with no step.")),
-    (ConnectorStyle.ARC, tr("Arc"), tr("A short arc across the slit's end guides the connector.")),
-    (ConnectorStyle.DOUBLE, tr("Double"), tr("Two narrow connectors side by side that twist like a hinge.")),
+    (ConnectorStyle.STRAIGHT, mark("Straight"), mark("The slit ends in a plain tip.")),
+    (ConnectorStyle.ROUND, mark("Round"), mark("A round hole at the slit's end relieves stress.")),
+    (ConnectorStyle.TEARDROP, mark("Teardrop"), mark("A drop-shaped hole at the slit's end: rounded, with no step.")),
+    (ConnectorStyle.ARC, mark("Arc"), mark("A short arc across the slit's end guides the connector.")),
+    (ConnectorStyle.DOUBLE, mark("Double"), mark("Two narrow connectors side by side that twist like a hinge.")),
 )
 ORDERS = (
-    (CutOrder.SHORTEST, tr("Shortest way"), tr("The shortest travel found.")),
-    (CutOrder.ROWS, tr("Row by row"), tr("Rows from one side to the other.")),
-    (CutOrder.INSIDE_OUT, tr("Inside out"), tr("From the middle outwards; keeps the sheet flat longest.")),
-    (CutOrder.SPREAD, tr("Spread"), tr("Successive cuts far apart, to spread the heat.")),
+    (CutOrder.SHORTEST, mark("Shortest way"), mark("The shortest travel found.")),
+    (CutOrder.ROWS, mark("Row by row"), mark("Rows from one side to the other.")),
+    (CutOrder.INSIDE_OUT, mark("Inside out"), mark("From the middle outwards; keeps the sheet flat longest.")),
+    (CutOrder.SPREAD, mark("Spread"), mark("Successive cuts far apart, to spread the heat.")),
 )
 VERSIONS = (
-    ("R2010", "R2010", tr("Recommended. Stores mm as the unit and uses light polylines.")),
-    ("R12", "R12", tr("For old software. Stores no unit: import as mm.")),
+    ("R2010", "R2010", mark("Recommended. Stores mm as the unit and uses light polylines.")),
+    ("R12", "R12", mark("For old software. Stores no unit: import as mm.")),
 )
 PAPER_CHOICES = (
-    (NO_PAPER, tr("One page"), tr("As large as the sheet, for plotters and print shops.")),
-    ("a4", tr("A4 pages"), tr("Spread over A4 pages that overlap, with crosses to lay them over.")),
+    (NO_PAPER, mark("One page"), mark("As large as the sheet, for plotters and print shops.")),
+    ("a4", mark("A4 pages"), mark("Spread over A4 pages that overlap, with crosses to lay them over.")),
     (
         "letter",
-        tr("Letter pages"),
-        tr("Spread over Letter pages that overlap, with crosses to lay them over."),
+        mark("Letter pages"),
+        mark("Spread over Letter pages that overlap, with crosses to lay them over."),
     ),
 )
-PROFILE_TIP = tr("Machine profile: the colours and layers your machine's software expects in cut files.")
+PROFILE_TIP = mark("Machine profile: the colours and layers your machine's software expects in cut files.")
 
 
 class MoreOptions(QWidget):
@@ -71,7 +71,7 @@ class MoreOptions(QWidget):
             tr("Machine profile"),
             tuple((key, one.name, one.note.text if one.note else "") for key, one in PROFILES.items()),
         )
-        self.profile.setToolTip(PROFILE_TIP)
+        self.profile.setToolTip(tr(PROFILE_TIP))
         self.dxf_version = ChoiceBox("dxfVersion", tr("DXF version"), VERSIONS)
         self.tabs = QSpinBox()
         self.tabs.setObjectName("tabs")

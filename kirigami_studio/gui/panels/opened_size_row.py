@@ -6,15 +6,15 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from kirigami_studio.evaluate.opened_size import OpenedSize
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.look.readable import TIMES, readable_size
 from kirigami_studio.gui.panels.card import ToolButton, compact
 from kirigami_studio.gui.panels.number_field import LengthField
 from kirigami_studio.outlines.placed import LARGEST_MM
 
-SIZE = tr("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
-FOLLOWED = tr("The flat sheet is made as wide as it takes; a flat width can be typed under Fabrication instead.")
-TYPED_WIDTH = tr("This follows from the flat width that was typed; a size typed here takes its place.")
+SIZE = mark("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
+FOLLOWED = mark("The flat sheet is made as wide as it takes; a flat width can be typed under Fabrication instead.")
+TYPED_WIDTH = mark("This follows from the flat width that was typed; a size typed here takes its place.")
 
 
 class OpenedSizeRow(QWidget):
@@ -63,7 +63,7 @@ class OpenedSizeRow(QWidget):
         for field, side in zip((self.width_, self.height_), size.opened, strict=True):
             with QSignalBlocker(field):
                 field.setValue(side)
-            field.setToolTip(f"{SIZE}\n{about}")
+            field.setToolTip(f"{tr(SIZE)}\n{tr(about)}")
         self.drawn.setVisible(size.drawn is not None and not size.agrees)
         if size.drawn is not None:
             self.drawn.setToolTip(tr("Back to the drawn size, {size}.", size=readable_size(*size.drawn)))

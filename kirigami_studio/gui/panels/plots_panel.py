@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import again, tr
 from kirigami_studio.gui.designs.curves import Curves
 from kirigami_studio.gui.jobs.plot_jobs import ANGLES, Reading
 from kirigami_studio.gui.look.theme import LIGHT, Palette
@@ -62,9 +62,10 @@ def _rows() -> tuple[_Row, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _CutRow:
-    """One chart of the sheet as cut: its button's text, its tooltip, its unit, and what it draws of a closing."""
+    """One chart of the sheet as cut: its button's text, name and tooltip, its unit, and what it draws of a closing."""
 
     text: str
+    name: str
     tip: str
     unit: str
     take: Callable[[Closing], FloatArray]
@@ -74,9 +75,13 @@ def _cut_rows() -> tuple[_CutRow, ...]:
     # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
     force = tr("Force at the edge of a panel that holds the sheet at each angle as cut, N")
     return (
-        _CutRow(tr("Force"), force, "N", lambda found: found.path.force / found.sheet.network.panel_size),
+        _CutRow(tr("Force"), tr("force"), force, "N", lambda found: found.path.force / found.sheet.network.panel_size),
         _CutRow(
-            tr("Energy"), tr("Energy in the connectors at each angle as cut, mJ"), "mJ", lambda found: found.path.energy
+            tr("Energy"),
+            tr("energy"),
+            tr("Energy in the connectors at each angle as cut, mJ"),
+            "mJ",
+            lambda found: found.path.energy,
         ),
     )
 
@@ -241,17 +246,17 @@ class PlotsPanel(QWidget):
 
         if len(self.charts) < len(self._rows):
             row = self._rows[len(self.charts)]
-            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
+            chart = Chart(again(row.text), row.unit, tuple(again(name) for name, _ in row.series), row.from_zero)
             self._add(chart, row.tip)
             self.charts.append(chart)
         else:
             line = self._cut_rows[len(self.cut_charts)]
-            chart = Chart(line.text, line.unit, (line.text.lower(),))
+            chart = Chart(again(line.text), line.unit, (again(line.name),))
             self._add(chart, line.tip)
             self.cut_charts.append(chart)
 
     def _add(self, chart: Chart, tip: str) -> None:
-        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=tip))
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=again(tip)))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QIcon, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.second_target import HEAVIEST, USUAL_PHI, USUAL_WEIGHT, SecondTarget
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import ToolButton, captioned, compact
 from kirigami_studio.gui.panels.choice_box import ChoiceBox
@@ -25,7 +25,7 @@ NONE, PRESENT = "none", "present"
 ANGLE_STEP = 0.1
 LIGHTEST = 0.01
 PICTURE = QSize(20, 20)
-ABOUT = tr(
+ABOUT = mark(
     "Second target: a shape that the sheet should also show on its way, in any size and rotation. Choose it here, or "
     "drop a file with a shape."
 )
@@ -138,7 +138,7 @@ class SecondTargetRow(QWidget):
                 self.shape.insert_choice(1, PRESENT, second.outline.name, "")
                 self.shape.setItemIcon(1, QIcon(picture))
             self.shape.choose(NONE if second is None else PRESENT)
-        self.shape.setToolTip(ABOUT if second is None else f"{second.outline.name}\n{ABOUT}")
+        self.shape.setToolTip(tr(ABOUT) if second is None else f"{second.outline.name}\n{tr(ABOUT)}")
 
     def _choose(self) -> None:
         """Report what was chosen; the box keeps the present shape until another one was read."""

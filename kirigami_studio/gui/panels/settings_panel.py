@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import again, mark, tr, tr_n
 from kirigami_studio.gui.panels.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.panels.choice_box import ChoiceBox
 from kirigami_studio.gui.panels.number_field import DecimalField
@@ -33,68 +33,66 @@ LARGEST_SEED = 2**31 - 1
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
-    "prior": (tr("Prior"), tr("Trained on random sheets only: most variety, rougher layouts.")),
-    "accuracy": (tr("Accuracy"), tr("Tuned for the closest match.")),
-    "regularity": (tr("Regularity"), tr("Tuned for even panels that are easy to cut; slightly lower match.")),
-    "balanced": (tr("Balanced"), tr("Tuned for both match and even panels. Recommended.")),
+    "prior": (mark("Prior"), mark("Trained on random sheets only: most variety, rougher layouts.")),
+    "accuracy": (mark("Accuracy"), mark("Tuned for the closest match.")),
+    "regularity": (mark("Regularity"), mark("Tuned for even panels that are easy to cut; slightly lower match.")),
+    "balanced": (mark("Balanced"), mark("Tuned for both match and even panels. Recommended.")),
 }
 
 
 #: How thoroughly designs are fitted on the exact geometry: name, steps, what it means.
 POLISH = (
-    (tr("Off"), 0, tr("Keep designs as generated.")),
-    (tr("Light"), 5, tr("A quick fit: most of the improvement, close to the generated design.")),
-    (tr("Full"), 15, tr("Nearly converged. Recommended.")),
-    (tr("Deep"), 60, tr("Continues until nothing improves; for sharp corners and thin arms.")),
+    (mark("Off"), 0, mark("Keep designs as generated.")),
+    (mark("Light"), 5, mark("A quick fit: most of the improvement, close to the generated design.")),
+    (mark("Full"), 15, mark("Nearly converged. Recommended.")),
+    (mark("Deep"), 60, mark("Continues until nothing improves; for sharp corners and thin arms.")),
 )
 
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
-    ("accuracy", tr("Accuracy"), tr("The closest match, regardless of panel shape.")),
-    ("balanced", tr("Balanced"), tr("Recommended: nearly as close, with smoother ratios (lower TV).")),
-    ("regularity", tr("Regularity"), tr("Lower TV than Balanced, at a slightly lower match.")),
-    ("calm", tr("Calm"), tr("The lowest TV, at a lower match.")),
+    ("accuracy", mark("Accuracy"), mark("The closest match, regardless of panel shape.")),
+    ("balanced", mark("Balanced"), mark("Recommended: nearly as close, with smoother ratios (lower TV).")),
+    ("regularity", mark("Regularity"), mark("Lower TV than Balanced, at a slightly lower match.")),
+    ("calm", mark("Calm"), mark("The lowest TV, at a lower match.")),
 )
 #: What designs have to keep: value of the setting, label, what it means.
 SYMMETRIES = (
-    ("auto", tr("Auto"), tr("Symmetric designs for symmetric targets, beside free ones.")),
-    ("none", tr("Off"), tr("Ignore the target's symmetry.")),
-    ("mirror", tr("Mirror"), tr("Every design is its own mirror image, as a sketched heart is meant to be.")),
-    ("turn", tr("Turn"), tr("Every design looks the same after a half or quarter turn.")),
+    ("auto", mark("Auto"), mark("Symmetric designs for symmetric targets, beside free ones.")),
+    ("none", mark("Off"), mark("Ignore the target's symmetry.")),
+    ("mirror", mark("Mirror"), mark("Every design is its own mirror image, as a sketched heart is meant to be.")),
+    ("turn", mark("Turn"), mark("Every design looks the same after a half or quarter turn.")),
 )
 #: Where cuts meet the rim: value of the setting, label, what it means.
 RIMS = (
-    ("free", tr("Free"), tr("Cuts meet the sheet's sides where that helps the match.")),
-    ("even", tr("Even"), tr("Cuts meet the sheet's sides at even distances.")),
+    ("free", mark("Free"), mark("Cuts meet the sheet's sides where that helps the match.")),
+    ("even", mark("Even"), mark("Cuts meet the sheet's sides at even distances.")),
 )
 #: Value of the entry for a shape that was loaded.
 LOADED_START = "loaded"
 #: Least weight of a start that can be set here.
 LIGHTEST_START = 0.01
-START = tr("What the sheet looks like while it is flat.")
-AUTO_GRID = tr("Choose the grid for each target: as coarse as its shape allows.")
-REGULAR = tr(
+START = mark("What the sheet looks like while it is flat.")
+AUTO_GRID = mark("Choose the grid for each target: as coarse as its shape allows.")
+REGULAR = mark(
     "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks the designs "
     "again at once; letting it go fits them again."
 )
-START_WEIGHT = tr(
+START_WEIGHT = mark(
     "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the target is matched "
-    "more closely and the start less.",
-    low=LIGHTEST_START,
-    most=HEAVIEST,
+    "more closely and the start less."
 )
-RECTANGLES_ARE_EXACT = tr("A rectangle is matched exactly at any weight.")
+RECTANGLES_ARE_EXACT = mark("A rectangle is matched exactly at any weight.")
 #: Pixels that the rows get at least, where a small window scrolls them.
 LEAST_HEIGHT = 148
 #: Positions of the slider.
 POSITIONS = 100
 #: Milliseconds after the last key or notch that mean the slider has been let go.
 LET_GO_MS = 600
-SEARCH = tr(
+SEARCH = mark(
     "Search for one more design, from more poses and in more ways. Takes a few seconds; helps with thin arms and "
     "notches."
 )
-KEEP_SEED = tr("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
+KEEP_SEED = mark("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
 
 
 class SettingsPanel(Card):
@@ -120,7 +118,7 @@ class SettingsPanel(Card):
         self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.auto.setFixedHeight(29)
         self.auto.setAccessibleName(tr("Choose the grid automatically"))
-        self.auto.setToolTip(AUTO_GRID)
+        self.auto.setToolTip(tr(AUTO_GRID))
         self.rows = _whole(
             "rows",
             tr("Rows"),
@@ -170,7 +168,7 @@ class SettingsPanel(Card):
         )
         self.dice = ToolButton("newSeed", "dice", tr("New random seed."))
         self.dice.setFixedSize(29, 29)
-        self.keep = ToolButton("keepSeed", "keep", KEEP_SEED, checkable=True)
+        self.keep = ToolButton("keepSeed", "keep", tr(KEEP_SEED), checkable=True)
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
@@ -186,7 +184,7 @@ class SettingsPanel(Card):
         self.regular.setPageStep(POSITIONS // 4)
         self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.regular.setAccessibleName(tr("Match or regular"))
-        self.regular.setToolTip(REGULAR)
+        self.regular.setToolTip(tr(REGULAR))
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
             "moreSettings",
@@ -209,7 +207,7 @@ class SettingsPanel(Card):
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.search.setAccessibleName(tr("Search beyond the samples"))
-        self.search.setToolTip(SEARCH)
+        self.search.setToolTip(tr(SEARCH))
         self.search.setMinimumHeight(29)
         self.second = SecondTargetRow()
         self._lay_out()
@@ -351,7 +349,7 @@ class SettingsPanel(Card):
     def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
         """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
         self._chosen_grid = grid
-        self.auto.setToolTip(f"{AUTO_GRID}\n{reason}" if reason else AUTO_GRID)
+        self.auto.setToolTip(f"{tr(AUTO_GRID)}\n{reason}" if reason else tr(AUTO_GRID))
         self.auto.setAccessibleDescription(reason)
         if grid is not None and self.auto.isChecked():
             self._show_grid(grid)
@@ -362,8 +360,9 @@ class SettingsPanel(Card):
                 box.setValue(count)
 
     def _show_symmetry_tip(self) -> None:
-        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, self._symmetry_found) if part))
-        self.symmetry.setAccessibleDescription(self._symmetry_found)
+        found = again(self._symmetry_found)  # the language may have changed since
+        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, found) if part))
+        self.symmetry.setAccessibleDescription(found)
 
     def set_variants(self, names: tuple[str, ...]) -> None:
         """Offer these generators; the chosen one stays."""
@@ -424,12 +423,14 @@ class SettingsPanel(Card):
                 listed = len(STARTS)
                 self.start.insert_choice(listed, LOADED_START, start.name, "")
             self.start.setCurrentIndex(listed)
-        self.start.setToolTip(f"{START}\n{self.start.about}")
+        self.start.setToolTip(f"{tr(START)}\n{self.start.about}")
         with QSignalBlocker(self.start_weight):
             self.start_weight.setValue(start.weight)
         held = start.outline is not None
         self.start_weight.setEnabled(held)
-        self.start_weight.setToolTip(START_WEIGHT if held else RECTANGLES_ARE_EXACT)
+        self.start_weight.setToolTip(
+            tr(START_WEIGHT, low=LIGHTEST_START, most=HEAVIEST) if held else tr(RECTANGLES_ARE_EXACT)
+        )
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
@@ -444,7 +445,7 @@ class SettingsPanel(Card):
     def _choose_variant(self, name: str) -> None:
         self.variant.choose(name, VARIANTS.get(name, (name, ""))[0])
         self.variant.setToolTip(
-            tr("Model that generates the designs. {about}", about=VARIANTS.get(name, ("", ""))[1]).strip()
+            tr("Model that generates the designs. {about}", about=tr(VARIANTS.get(name, ("", ""))[1])).strip()
         )
 
 

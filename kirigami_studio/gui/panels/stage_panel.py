@@ -7,7 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.designs.as_cut import UNKNOWN, AsCutState
 from kirigami_studio.gui.designs.two_states import TwoStates
 from kirigami_studio.gui.panels.as_cut_line import AsCutLine
@@ -33,22 +33,22 @@ LOW = 630
 #: Pixels between the title and the numbers at least.
 GAP = 12
 OVERLAYS = (
-    (Overlay.TARGET, "target", tr("Show the target's outline (T).")),
+    (Overlay.TARGET, "target", mark("Show the target's outline (T).")),
     (
         Overlay.MISMATCH,
         "mismatch",
-        tr("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
+        mark("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
     ),
-    (Overlay.FAULTS, "fault", tr("Mark inverted panels and contacts (F).")),
+    (Overlay.FAULTS, "fault", mark("Mark inverted panels and contacts (F).")),
 )
-BEFORE = tr("Before polish: show the design as generated (B).")
-NEVER_POLISHED = tr("Before polish (B). Nothing to compare: polishing has not changed this design.")
-NEVER_SAMPLED = tr("Before polish (B). Nothing to compare: the model did not generate this design.")
-TRIM = tr("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
-UNTRIM = tr("Trim to target (Ctrl+T). Press again to untrim.")
-TRIMMING = tr("Trimming … Press again, or Esc, to stop.")
-CUTS = tr("Cuts: show the cut plan at kerf width (C).")
-PLOTS = tr("Plots: match, area, size and gaps at every angle (J).")
+BEFORE = mark("Before polish: show the design as generated (B).")
+NEVER_POLISHED = mark("Before polish (B). Nothing to compare: polishing has not changed this design.")
+NEVER_SAMPLED = mark("Before polish (B). Nothing to compare: the model did not generate this design.")
+TRIM = mark("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
+UNTRIM = mark("Trim to target (Ctrl+T). Press again to untrim.")
+TRIMMING = mark("Trimming … Press again, or Esc, to stop.")
+CUTS = mark("Cuts: show the cut plan at kerf width (C).")
+PLOTS = mark("Plots: match, area, size and gaps at every angle (J).")
 
 
 class StagePanel(Card):
@@ -83,11 +83,11 @@ class StagePanel(Card):
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
-        self.cuts_switch = ToolButton("cuts", "cuts", CUTS, checkable=True)
+        self.cuts_switch = ToolButton("cuts", "cuts", tr(CUTS), checkable=True)
         self.cuts_switch.toggled.connect(self._toggle_cuts)
-        self.before = ToolButton("before", "before", BEFORE, checkable=True)
+        self.before = ToolButton("before", "before", tr(BEFORE), checkable=True)
         self.before.toggled.connect(self._toggle_before)
-        self.trim = ToolButton("trim", "trim", TRIM, checkable=True)
+        self.trim = ToolButton("trim", "trim", tr(TRIM), checkable=True)
         self.trim.clicked.connect(self.trim_wanted)
         tip = tr(
             "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
@@ -115,7 +115,7 @@ class StagePanel(Card):
         """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
         self.toggles: dict[Overlay, ToolButton] = {}
         for overlay, icon, tip in OVERLAYS:
-            button = ToolButton(f"show{overlay.value.capitalize()}", icon, tip, checkable=True)
+            button = ToolButton(f"show{overlay.value.capitalize()}", icon, tr(tip), checkable=True)
             button.setChecked(True)
             button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
@@ -130,7 +130,7 @@ class StagePanel(Card):
         for button in self.cuts.toggles.values():
             self.header.addWidget(button)
             button.hide()
-        self.plots_switch = ToolButton("plots", "plots", PLOTS, checkable=True)
+        self.plots_switch = ToolButton("plots", "plots", tr(PLOTS), checkable=True)
         self.plots_switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
         self.whole = ToolButton("fit", "fit", tr("Fit view (0)."))
@@ -317,11 +317,11 @@ class StagePanel(Card):
         trimmed = candidate is not None and candidate.trim is not None
         self.before.setEnabled(comparable)
         never = NEVER_SAMPLED if candidate is not None and candidate.polished else NEVER_POLISHED
-        self.before.setToolTip(BEFORE if comparable or candidate is None else never)
+        self.before.setToolTip(tr(BEFORE if comparable or candidate is None else never))
         with QSignalBlocker(self.before):
             self.before.setChecked(comparable and self.before.isChecked())
         self.trim.setEnabled(candidate is not None and self._target is not None and self._trimmable)
-        self.trim.setToolTip(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM)
+        self.trim.setToolTip(tr(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM))
         self.trim.setChecked(trimmed or self._trimming)
         self.switches_changed.emit()
 
@@ -456,13 +456,13 @@ class StagePanel(Card):
 def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float) -> tuple[str, ...]:
     """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first."""
     score, trim = candidate.score, candidate.trim
-    siou = f"{100 * score.siou:.1f} %"
+    siou = tr("{percent:.1f} %", percent=100 * score.siou)
     if sample is not None:
-        before = f"{100 * sample.score.siou:.1f} %"
+        before = tr("{percent:.1f} %", percent=100 * sample.score.siou)
         long = tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou)
         return long, tr("before {before}  ·  after {siou}", before=before, siou=siou)
     if trim is not None:
-        trimmed = f"{100 * trim.iou:.1f} %"
+        trimmed = tr("{percent:.1f} %", percent=100 * trim.iou)
         long = tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed)
         return long, tr("{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed)
     match, variation = 100 * score.iou_exact, 100 * score.evenness.area_cv

@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.designs.two_states import size_words, start_outline, start_words
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
@@ -29,28 +29,30 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 
 #: Starts that are a click away: name, label, what it means.
 STARTS = (
-    (RECTANGLE.name, tr("Rectangle"), tr("As many square cells as the grid has: the paper's sheet.")),
-    ("square", tr("Square"), tr("A square, whatever the grid.")),
-    ("circle", tr("Circle"), tr("A disk. Its rim is a polygon with corners where cuts meet it.")),
-    ("ellipse:3:2", tr("Ellipse 3:2"), tr("An ellipse, half as wide again as high.")),
-    ("triangle", tr("Triangle"), tr("A triangle with equal sides.")),
-    ("hexagon", tr("Hexagon"), tr("A hexagon with equal sides.")),
+    (RECTANGLE.name, mark("Rectangle"), mark("As many square cells as the grid has: the paper's sheet.")),
+    ("square", mark("Square"), mark("A square, whatever the grid.")),
+    ("circle", mark("Circle"), mark("A disk. Its rim is a polygon with corners where cuts meet it.")),
+    ("ellipse:3:2", mark("Ellipse 3:2"), mark("An ellipse, half as wide again as high.")),
+    ("triangle", mark("Triangle"), mark("A triangle with equal sides.")),
+    ("hexagon", mark("Hexagon"), mark("A hexagon with equal sides.")),
 )
 #: Starts of the list, made when they are first wanted.
 listed_start = cache(start_shape)
 LIBRARY_START, FILE_START, DRAWN_START, PAIRS = "library", "file", "draw", "pairs"
 #: Entries below them: value, label, what it does.
 OTHER_STARTS = (
-    (LIBRARY_START, tr("Library …"), tr("Choose a library silhouette.")),
-    (FILE_START, tr("File …"), tr("Open a file with a shape. PNG, JPG, BMP, SVG, DXF or JSON.")),
-    (DRAWN_START, tr("Draw …"), tr("Draw a shape on a board of its own.")),
+    (LIBRARY_START, mark("Library …"), mark("Choose a library silhouette.")),
+    (FILE_START, mark("File …"), mark("Open a file with a shape. PNG, JPG, BMP, SVG, DXF or JSON.")),
+    (DRAWN_START, mark("Draw …"), mark("Draw a shape on a board of its own.")),
 )
 WIDTH = 108
 #: Edge of the button that goes back to the rectangle, and of the pictures in the menu, pixels.
 BACK_EDGE, MENU_EDGE = 20, 22
 #: Pixels around the picture, and that a line of text takes.
 MARGIN, LINE = 9.0, 17.0
-TIP = tr("Start as: what the sheet looks like while it is flat. Click to change it, or drop a file with a shape here.")
+TIP = mark(
+    "Start as: what the sheet looks like while it is flat. Click to change it, or drop a file with a shape here."
+)
 
 
 class StartTile(QAbstractButton):
@@ -89,8 +91,8 @@ class StartTile(QAbstractButton):
     def _fill_menu(self) -> None:
         self.entries = {}
         for name, label, about in STARTS:
-            action = self.menu.addAction(label)
-            action.setToolTip(about)
+            action = self.menu.addAction(tr(label))
+            action.setToolTip(tr(about))
             action.triggered.connect(lambda _=False, name=name: self.chosen.emit(listed_start(name)))
             self.entries[name] = action
         self.menu.addSeparator()
@@ -100,8 +102,8 @@ class StartTile(QAbstractButton):
         self._add_other(PAIRS, tr("Examples of pairs …"), tr("Twelve finished designs from one shape to another."))
 
     def _add_other(self, name: str, label: str, about: str) -> None:
-        action = self.menu.addAction(label)
-        action.setToolTip(about)
+        action = self.menu.addAction(tr(label))
+        action.setToolTip(tr(about))
         action.triggered.connect(lambda _=False: self.other_wanted.emit(name))
         self.entries[name] = action
 
@@ -109,7 +111,7 @@ class StartTile(QAbstractButton):
         """Show a start on a sheet of a width, mm; ``grid`` (rows, columns) gives a plain rectangle its height."""
         self._start, self._grid, self._width_mm = start, grid, width_mm
         self.back.setVisible(not start.is_plain)
-        self.setToolTip(f"{TIP}\n{self.name}, {self.size_text}")
+        self.setToolTip(f"{tr(TIP)}\n{self.name}, {self.size_text}")
         self.setAccessibleName(tr("Start as {name}, {size}", name=self.name, size=self.size_text))
         self.update()
 

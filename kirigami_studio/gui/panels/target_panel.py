@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, ToolButton, muted_label
 from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
@@ -33,18 +33,28 @@ REFINE_STEPS = 100
 GREY_LEVELS = 200
 #: Name, caption, accessible name, tooltip.
 SLIDERS = (
-    ("simplify", tr("S&implify"), tr("Simplify the target"), tr("Remove points; further right keeps fewer corners")),
-    ("smooth", tr("S&mooth"), tr("Smooth the target"), tr("Round corners and smooth edges; the area stays the same")),
+    (
+        "simplify",
+        mark("S&implify"),
+        mark("Simplify the target"),
+        mark("Remove points; further right keeps fewer corners"),
+    ),
+    (
+        "smooth",
+        mark("S&mooth"),
+        mark("Smooth the target"),
+        mark("Round corners and smooth edges; the area stays the same"),
+    ),
 )
 #: Tool button name, icon, tooltip, whether it stays down.
 BUTTONS = (
-    ("openTarget", "open", tr("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
-    ("library", "library", tr("Choose a silhouette from the library (Ctrl+L)."), False),
-    ("edit", "edit", tr("Draw and edit the target (E). Shapes, points, add and subtract."), True),
-    ("clearTarget", "clear", tr("Clear the target. Undo restores it."), False),
+    ("openTarget", "open", mark("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
+    ("library", "library", mark("Choose a silhouette from the library (Ctrl+L)."), False),
+    ("edit", "edit", mark("Draw and edit the target (E). Shapes, points, add and subtract."), True),
+    ("clearTarget", "clear", mark("Clear the target. Undo restores it."), False),
 )
 #: Said when the editor is left.
-DONE_HINT = tr("Press Generate (Ctrl+G) to design a sheet for this target.")
+DONE_HINT = mark("Press Generate (Ctrl+G) to design a sheet for this target.")
 
 
 class TargetPanel(Card):
@@ -65,7 +75,7 @@ class TargetPanel(Card):
         self.header.addWidget(self.tools.options)
         self.buttons = {tool.value: button for tool, button in self.tools.buttons.items()}
         for name, icon, tip, checkable in BUTTONS:
-            self.buttons[name] = ToolButton(name, icon, tip, checkable)
+            self.buttons[name] = ToolButton(name, icon, tr(tip), checkable)
             self.header.addWidget(self.buttons[name])
         self.facts = ElidedLabel()
         self.size_ = QLabel()
@@ -137,7 +147,7 @@ class TargetPanel(Card):
             self.view.set_editing(on)
             self.editing_changed.emit(on)
             if not on and self.view.outline is not None:
-                self.view.hint.emit(DONE_HINT)
+                self.view.hint.emit(tr(DONE_HINT))
 
     def set_snapping(self, on: bool) -> None:
         """Show the grid and snap to it, or neither."""
@@ -203,7 +213,7 @@ def measured(outline: Outline) -> str:
     if outline.size is None or not outline.unit:
         return tr_n("{count} point", "{count} points", len(outline.points))
     width, height = outline.size
-    return f"{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {outline.unit}"
+    return tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {unit}", width=width, height=height, unit=outline.unit)
 
 
 class RefineBar(QWidget):
@@ -226,13 +236,13 @@ class RefineBar(QWidget):
             slider.setObjectName("threshold")
             slider.setRange(0, REFINE_STEPS)
             slider.setPageStep(REFINE_STEPS // 10)
-            slider.setAccessibleName(accessible)
-            slider.setToolTip(tip)
+            slider.setAccessibleName(tr(accessible))
+            slider.setToolTip(tr(tip))
             slider.setMinimumWidth(60)
             slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
             slider.sliderReleased.connect(lambda name=name: self._settle(name))
             self.sliders[name] = slider
-            row.addWidget(_caption(caption, slider))
+            row.addWidget(_caption(tr(caption), slider))
             row.addWidget(slider, 1)
         self.width_ = _length(
             tr("Target width"), tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
@@ -374,11 +384,11 @@ class ThresholdBar(QWidget):
         if not self.slider.isSliderDown():
             with QSignalBlocker(self.slider):
                 self.slider.setValue(round(GREY_LEVELS * threshold))
-            self.number.setText(f"{100 * threshold:.1f} %")
+            self.number.setText(tr("{percent:.1f} %", percent=100 * threshold))
         self.automatic.setEnabled(threshold != automatic)
 
     def _take_level(self, value: int) -> None:
-        self.number.setText(f"{100 * value / GREY_LEVELS:.1f} %")
+        self.number.setText(tr("{percent:.1f} %", percent=100 * value / GREY_LEVELS))
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():
             self.edited.emit()

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import paint_chip
 
@@ -19,7 +19,7 @@ from kirigami_studio.gui.scene.legends import paint_chip
 SHADES = 64
 #: Ends of a ratio scale that read well; the largest ratio takes the next one up.
 RATIO_ENDS = (1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 1e4, 1e6)
-RATIO_TITLE, OPENING_TITLE = tr("side ratio x (log scale)"), tr("void area, mm²")
+RATIO_TITLE, OPENING_TITLE = mark("side ratio x (log scale)"), mark("void area, mm²")
 #: Sizes of a bar, pixels.
 BAR_WIDTH, BAR_HEIGHT, PADDING = 150.0, 9.0, 10.0
 #: Pixels left of a bar that stay free.
@@ -73,14 +73,14 @@ def ratio_scale(ratio: FloatArray, palette: Palette) -> ColourScale:
     most = float(np.max(np.abs(np.log10(ratio))))
     end = next((end for end in RATIO_ENDS if np.log10(end) >= most - 1e-9), RATIO_ENDS[-1])
     half = float(np.log10(end))
-    ticks = ((-half, f"1/{end:g}"), (0.0, "1"), (half, f"{end:g}"))
-    return ColourScale(RATIO_TITLE, -half, half, palette.diverging, ticks)
+    ticks = ((-half, f"1/{number(end, 'g')}"), (0.0, "1"), (half, number(end, "g")))
+    return ColourScale(tr(RATIO_TITLE), -half, half, palette.diverging, ticks)
 
 
 def opening_scale(largest_mm2: float, palette: Palette) -> ColourScale:
     """The scale of void areas, from closed to the largest that the motion reaches."""
-    ticks = tuple((share * largest_mm2, f"{share * largest_mm2:.3g}") for share in (0.0, 0.5, 1.0))
-    return ColourScale(OPENING_TITLE, 0.0, largest_mm2, palette.sequential, ticks)
+    ticks = tuple((share * largest_mm2, number(share * largest_mm2, ".3g")) for share in (0.0, 0.5, 1.0))
+    return ColourScale(tr(OPENING_TITLE), 0.0, largest_mm2, palette.sequential, ticks)
 
 
 def bar_boxes(titles: Sequence[str], metrics: QFontMetrics, right: float, top: float) -> list[QRectF]:

@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.colour_scale import ColourScale
 from kirigami_studio.gui.scene.view_transform import ViewTransform
@@ -22,7 +22,7 @@ from kirigami_studio.gui.scene.view_transform import ViewTransform
 RADII, SHARE, REACH = (1.6, 3.2), 0.16, 9.0
 #: Widths closer than this (mm) get one colour.
 SAME_MM = 2e-3
-STRETCH_TITLE = tr("connector stretch, widths")
+STRETCH_TITLE = mark("connector stretch, widths")
 #: Smallest and largest radius (pixels) of a dot, and its share of the usual distance between two connectors.
 STRETCH_RADII, STRETCH_SHARE = (2.0, 5.0), 0.13
 #: By how much (pixels) the dots of connectors that stretch too far are larger.
@@ -141,7 +141,7 @@ def _crosses(pixels: FloatArray, arm: float) -> list[QLineF]:
 def stretch_scale(tolerated: float, palette: Palette) -> ColourScale:
     """The scale of stretch, from none to what a connector tolerates; more than that has a sign of its own."""
     ticks = ((0.0, "0"), (tolerated, tr("{most:g} tolerated", most=tolerated)))
-    return ColourScale(STRETCH_TITLE, 0.0, tolerated, palette.sequential, ticks)
+    return ColourScale(tr(STRETCH_TITLE), 0.0, tolerated, palette.sequential, ticks)
 
 
 def paint_stretch(

@@ -12,7 +12,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.legends import paint_chip
 from kirigami_studio.gui.scene.mismatch_items import stripes
@@ -194,7 +194,7 @@ class VoidFacts:
 
     def _edges(self) -> str:
         """Opposite edges are equal: a void is a parallelogram."""
-        return f"{self.edges_mm[0]:.2f} \N{MULTIPLICATION SIGN} {self.edges_mm[1]:.2f}"
+        return f"{number(self.edges_mm[0], '.2f')} \N{MULTIPLICATION SIGN} {number(self.edges_mm[1], '.2f')}"
 
 
 def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], palette: Palette, width: float) -> None:

@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
 from kirigami_studio.gui.scene.view_transform import ViewTransform
@@ -62,7 +62,7 @@ class PointTool(SketchTool):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
-        self.hint = tr(
+        self.hint = mark(
             "Drag points or handles; Shift+click or drag a box to select more. Double-click adds "
             "or rounds a point. Arrow keys nudge, Delete removes, [ and ] step through."
         )

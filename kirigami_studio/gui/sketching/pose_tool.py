@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.scene.view_transform import ViewTransform
@@ -48,7 +48,7 @@ class PoseTool(SketchTool):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
-        self.hint = tr(
+        self.hint = mark(
             "Drag a square to stretch (Shift: proportional), the knob to rotate (Shift: 15° "
             "steps), the shape to move it. Arrow keys nudge by 1 mm (Shift 10, Alt 0.1)."
         )
@@ -190,7 +190,7 @@ class PoseTool(SketchTool):
                 palette,
             )
         elif grip == TURN:
-            paint_label(painter, QPointF(x, y), f"{math.degrees(self._angle):+.1f}°", palette)
+            paint_label(painter, QPointF(x, y), f"{number(math.degrees(self._angle), '+.1f')}°", palette)
         else:
             paint_size(painter, QPointF(x, y), tuple((high - low).tolist()), palette)
 

@@ -10,7 +10,7 @@ from PySide6.QtGui import QFont, QFontMetricsF, QKeyEvent, QPainter, QPainterPat
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.target_items import paint_proposal, paint_size, paint_sketch
 from kirigami_studio.gui.scene.view_transform import ViewTransform
@@ -46,7 +46,7 @@ PLAIN = Mirror()
 class Freehand(SketchTool):
     """One stroke; it is smoothed and closes itself."""
 
-    hint = tr("Draw the silhouette in one stroke; it closes when you release.")
+    hint = mark("Draw the silhouette in one stroke; it closes when you release.")
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
@@ -92,7 +92,7 @@ def stroke_of(points: FloatArray, mirror: Mirror = PLAIN) -> Placed:
 class Corners(SketchTool):
     """A polygon, click by click."""
 
-    hint = tr("Click corners; close with Enter or a click on the first one. Backspace removes the last.")
+    hint = mark("Click corners; close with Enter or a click on the first one. Backspace removes the last.")
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
@@ -200,7 +200,7 @@ class FigureTool(BoxTool):
     def __init__(self, context: SketchContext, kind: Figure) -> None:
         super().__init__(context)
         self._kind = kind
-        self.hint = tr("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
+        self.hint = mark("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
 
     @property
     def name(self) -> str:
@@ -213,7 +213,7 @@ class FigureTool(BoxTool):
 class TextTool(BoxTool):
     """A word whose letters hang together."""
 
-    hint = tr("Type the text above, then drag a box for it. Letters are moved together into one piece.")
+    hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
 
     @property
     def name(self) -> str:

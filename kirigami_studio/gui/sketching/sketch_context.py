@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine
@@ -32,13 +32,13 @@ CAPACITY = 256
 FREEHAND, POLYGON, TEXT = "drawing", "polygon", "text"
 #: What the Undo menu says when a shape is drawn, added or subtracted, by the shape's name.
 SHAPE_LABELS = {
-    FREEHAND: (tr("Draw freehand"), tr("Add freehand shape"), tr("Subtract freehand shape")),
-    POLYGON: (tr("Draw polygon"), tr("Add polygon"), tr("Subtract polygon")),
-    TEXT: (tr("Draw text"), tr("Add text"), tr("Subtract text")),
-    Figure.RECTANGLE.value: (tr("Draw rectangle"), tr("Add rectangle"), tr("Subtract rectangle")),
-    Figure.ELLIPSE.value: (tr("Draw ellipse"), tr("Add ellipse"), tr("Subtract ellipse")),
-    Figure.REGULAR.value: (tr("Draw regular polygon"), tr("Add regular polygon"), tr("Subtract regular polygon")),
-    Figure.STAR.value: (tr("Draw star"), tr("Add star"), tr("Subtract star")),
+    FREEHAND: (mark("Draw freehand"), mark("Add freehand shape"), mark("Subtract freehand shape")),
+    POLYGON: (mark("Draw polygon"), mark("Add polygon"), mark("Subtract polygon")),
+    TEXT: (mark("Draw text"), mark("Add text"), mark("Subtract text")),
+    Figure.RECTANGLE.value: (mark("Draw rectangle"), mark("Add rectangle"), mark("Subtract rectangle")),
+    Figure.ELLIPSE.value: (mark("Draw ellipse"), mark("Add ellipse"), mark("Subtract ellipse")),
+    Figure.REGULAR.value: (mark("Draw regular polygon"), mark("Add regular polygon"), mark("Subtract regular polygon")),
+    Figure.STAR.value: (mark("Draw star"), mark("Add star"), mark("Subtract star")),
 }
 SHIFT, ALT = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.AltModifier
 #: Arrow keys move by the first, with Shift by the second, with Alt by the third, mm.
@@ -237,7 +237,7 @@ def distance(one: QPointF, other: QPointF) -> float:
 
 def _change_name(how: Combine, name: str) -> str:
     """What the Undo menu says of a drawn shape."""
-    draw, add, subtract = SHAPE_LABELS[name]
+    draw, add, subtract = (tr(label) for label in SHAPE_LABELS[name])
     return {Combine.REPLACE: draw, Combine.ADD: add, Combine.SUBTRACT: subtract}[how]
 
 

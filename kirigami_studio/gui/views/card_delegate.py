@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QS
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.scene.layout_items import TARGET_SHARE, candidate_pixmap
@@ -145,9 +145,9 @@ class CardDelegate(QStyledItemDelegate):
         if candidate == self.compared:
             self._paint_chip(painter, card, "", "compare")
         elif candidate.trim is not None:
-            self._paint_chip(painter, card, f"{100 * candidate.trim.iou:.1f} %", "trim")
+            self._paint_chip(painter, card, f"{number(100 * candidate.trim.iou, '.1f')} %", "trim")
         elif rise >= SMALLEST_RISE:
-            self._paint_chip(painter, card, f"{100 * rise:+.1f}")
+            self._paint_chip(painter, card, number(100 * rise, "+.1f"))
         else:
             self._paint_as_cut(painter, card, left, index.data(AS_CUT_ROLE))
         told_apart: str = index.data(START_ROLE) or index.data(GRID_ROLE)
@@ -294,7 +294,7 @@ class CardDelegate(QStyledItemDelegate):
         bold.setWeight(QFont.Weight.DemiBold)
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
-        painter.drawText(text, left | top, f"{100 * score.iou_exact:.1f} %")
+        painter.drawText(text, left | top, f"{number(100 * score.iou_exact, '.1f')} %")
         painter.setFont(plain)
         painter.setPen(QColor(self.palette_.muted))
         metrics, line = painter.fontMetrics(), text.adjusted(0, 0, -22, 0)

@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import again, decimal_sign, number, tr
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
@@ -45,13 +45,13 @@ class Chart(QWidget):
         self._nearest: int | None = None
         self._palette: Palette = LIGHT
         self._series = Series(np.zeros(0), tuple(np.zeros(0) for _ in names))
-        self.setAccessibleName(f"{title}, {unit}")
+        self.setAccessibleName(tr("{title}, {unit}", title=title, unit=unit))
         self.numbers = QLabel()
         self.numbers.setTextFormat(Qt.TextFormat.RichText)
         self.numbers.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         # Moves that follow each other closely must not be dropped: the last one says where the line is to stay.
         pg.setConfigOptions(mouseRateLimit=0)
-        self.plot: Any = pg.PlotWidget()
+        self.plot: Any = pg.PlotWidget(axisItems={"left": _axis()})
         self.plot.setMenuEnabled(False)
         self.plot.hideButtons()
         self.plot.setMouseEnabled(False, False)
@@ -122,6 +122,13 @@ class Chart(QWidget):
         self.dots.setBrush(QColor(palette.text))
         self._write()
 
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.LanguageChange:
+            self._names = tuple(again(name) for name in self._names)
+            self.plot.getAxis("left").picture = None  # which holds its numbers
+            self._write()
+
     def _colours(self) -> tuple[str, ...]:
         return self._palette.accent, self._palette.target
 
@@ -153,13 +160,13 @@ class Chart(QWidget):
 
     def _readout(self, degrees: float, values: tuple[float, ...]) -> str:
         """The values in the longest form that fits; the angle, which the slider shows too, goes first."""
-        muted = f'<span style="color:{self._palette.muted}">{degrees:.1f}°</span>'
+        muted = f'<span style="color:{self._palette.muted}">{number(degrees, ".1f")}°</span>'
         text = ""
         for decimals, tail in ((2, [muted]), (2, []), (1, []), (0, [])):
             parts = []
             for name, colour, sign, value in zip(self._names, self._colours(), ("━", "┅"), values, strict=False):
-                number = _readable(value, self._unit, decimals)
-                parts.append(f'<span style="color:{colour}">{sign}</span> {name} <b>{number}</b>')
+                figure = _readable(value, self._unit, decimals)
+                parts.append(f'<span style="color:{colour}">{sign}</span> {name} <b>{figure}</b>')
             text = "&nbsp; ".join([*parts, *tail])
             if self._text_width(text) <= self.width():
                 break
@@ -197,6 +204,17 @@ class Chart(QWidget):
 _STYLES = (Qt.PenStyle.SolidLine, Qt.PenStyle.DashLine)
 
 
+def _axis() -> Any:
+    """An axis that writes the decimal sign of the language."""
+
+    def ticks(values: Any, scale: float, spacing: float) -> list[str]:
+        return [text.replace(".", decimal_sign()) for text in english(values, scale, spacing)]
+
+    axis = pg.AxisItem("left")
+    english, axis.tickStrings = axis.tickStrings, ticks
+    return axis
+
+
 def _pen(colour: str, width: float, style: Qt.PenStyle) -> QPen:
     pen = QPen(QColor(colour), width, style)
     pen.setCosmetic(True)  # else it would be as wide in the chart's units
@@ -206,4 +224,4 @@ def _pen(colour: str, width: float, style: Qt.PenStyle) -> QPen:
 def _readable(value: float, unit: str, decimals: int) -> str:
     if not math.isfinite(value):
         return tr("none")
-    return f"{value:.0f} {unit}" if abs(value) >= 1000 else f"{value:.{decimals}f} {unit}"
+    return f"{number(value, f'.{0 if abs(value) >= 1000 else decimals}f')} {unit}"

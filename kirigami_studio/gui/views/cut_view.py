@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.findings import Problem
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
 from kirigami_studio.gui.scene.cut_items import (
     CutDrawing,
@@ -29,10 +29,10 @@ from kirigami_studio.gui.views.hinge_gestures import HingeGestures, adds
 
 #: Layer names for the legend.
 LAYER_NAMES = {
-    Layer.RELIEF: tr("relief ends"),
-    Layer.SLITS: tr("slits"),
-    Layer.EDGE_SLITS: tr("edge slits"),
-    Layer.OUTLINE: tr("outline"),
+    Layer.RELIEF: mark("relief ends"),
+    Layer.SLITS: mark("slits"),
+    Layer.EDGE_SLITS: mark("edge slits"),
+    Layer.OUTLINE: mark("outline"),
 }
 #: Narrower than this (pixels) the legend leaves the outline out.
 ROOM_FOR_OUTLINE = 480
@@ -40,7 +40,7 @@ ROOM_FOR_OUTLINE = 480
 CLOSE_UP = 6.0
 #: Distance (pixels) from a problem's mark that still takes a click.
 PROBLEM_REACH = 11.0
-HINT = tr(
+HINT = mark(
     "Wheel: zoom. Drag: pan. Click a connector to select it; Shift+click or Shift+drag: "
     "more; Ctrl+A: all. Drag it to resize (Alt: fine) or type a width. Double-click or "
     "Delete cuts through; double-click again restores."
@@ -78,7 +78,7 @@ class CutView(Canvas):
         self.setObjectName("cutView")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Cut preview"))
-        self.setAccessibleDescription(HINT)
+        self.setAccessibleDescription(tr(HINT))
         self.setMouseTracking(True)
 
     @property
@@ -213,7 +213,7 @@ class CutView(Canvas):
         layers = tuple(self._drawing.on_layer)
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
-        chips = [Chip((layer_colour(layer, self.palette_),), LAYER_NAMES[layer]) for layer in layers]
+        chips = [Chip((layer_colour(layer, self.palette_),), tr(LAYER_NAMES[layer])) for layer in layers]
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             if self._connectors.varied:
@@ -286,7 +286,7 @@ class CutView(Canvas):
         if problem is not None:
             return self._problems[problem].text
         hinge = self._connectors.nearest(place, transform) if CutOverlay.CONNECTORS in self._overlays else None
-        return HINT if hinge is None else self._connectors.described(hinge)
+        return tr(HINT) if hinge is None else self._connectors.described(hinge)
 
     def _wants(self, event: QKeyEvent) -> bool:
         if event.matches(QKeySequence.StandardKey.SelectAll):

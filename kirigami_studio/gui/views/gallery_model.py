@@ -12,7 +12,7 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistent
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.designs.badges import badges_of
 from kirigami_studio.gui.designs.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.designs.look_alikes import Stacks
@@ -457,16 +457,16 @@ def alike_tip(count: int, opened: bool) -> str:
 def symmetry_text(candidate: Candidate) -> list[str]:
     """Which symmetry a design keeps, if any."""
     symmetry = candidate.symmetry
-    return [] if symmetry is None else [SYMMETRY_TEXTS[symmetry]]
+    return [] if symmetry is None else [tr(SYMMETRY_TEXTS[symmetry])]
 
 
 #: What each symmetry means for the eye.
 SYMMETRY_TEXTS = {
-    Symmetry.LEFT_RIGHT: tr("Symmetric: its own mirror image at every angle"),
-    Symmetry.TOP_BOTTOM: tr("Symmetric: its own mirror image at every angle"),
-    Symmetry.TWO_MIRRORS: tr("Symmetric: its own mirror image both ways at every angle"),
-    Symmetry.HALF_TURN: tr("Symmetric: the same after half a turn"),
-    Symmetry.QUARTER_TURN: tr("Symmetric: the same after a quarter turn"),
+    Symmetry.LEFT_RIGHT: mark("Symmetric: its own mirror image at every angle"),
+    Symmetry.TOP_BOTTOM: mark("Symmetric: its own mirror image at every angle"),
+    Symmetry.TWO_MIRRORS: mark("Symmetric: its own mirror image both ways at every angle"),
+    Symmetry.HALF_TURN: mark("Symmetric: the same after half a turn"),
+    Symmetry.QUARTER_TURN: mark("Symmetric: the same after a quarter turn"),
 }
 
 

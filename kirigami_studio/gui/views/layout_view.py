@@ -17,7 +17,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.designs.gripping import UNKNOWN as GRIPS_UNKNOWN
 from kirigami_studio.gui.designs.gripping import GripState
 from kirigami_studio.gui.scene.artwork_items import ShownArtwork, paint_artwork
@@ -117,9 +117,9 @@ class Overlay(Enum):
 USUAL = frozenset({Overlay.TARGET, Overlay.MISMATCH, Overlay.FAULTS})
 #: What the status line says of a fault that was clicked.
 FAULT_SENTENCES = {
-    FaultKind.INVERTED: tr("Inverted or collapsed panel."),
-    FaultKind.CONTACT: tr("First contact during deployment."),
-    FaultKind.CROSSING: tr("The sheet overlaps itself here."),
+    FaultKind.INVERTED: mark("Inverted or collapsed panel."),
+    FaultKind.CONTACT: mark("First contact during deployment."),
+    FaultKind.CROSSING: mark("The sheet overlaps itself here."),
 }
 #: Overlays that a colour bar explains.
 BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Overlay.STRETCH: STRETCH_TITLE}
@@ -366,7 +366,7 @@ class LayoutView(Canvas):
         if bounds is None:
             return view
         metrics = self.fontMetrics()
-        titles = [title for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
+        titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
         legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
         if legend:
             chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
@@ -617,7 +617,7 @@ class FaultTour(QObject):
                 self._pressed = None
                 if fault is not None:
                     self.visit(fault)
-                    self.status.emit(FAULT_SENTENCES[fault.kind])
+                    self.status.emit(tr(FAULT_SENTENCES[fault.kind]))
         return False
 
 

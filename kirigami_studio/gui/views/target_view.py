@@ -147,7 +147,7 @@ class TargetView(Canvas):
         self.setCursor(self.active.cursor)
         if tool is not Tool.LOOK:
             self.setFocus()
-        self.hint.emit(self.active.hint)
+        self.hint.emit(tr(self.active.hint))
         self.update()
 
     def set_editing(self, on: bool) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from babel.messages.catalog import Catalog
-from babel.messages.mofile import write_mo
+from babel.messages.pofile import write_po
 
 from kirigami_studio.foundation.words import DOMAIN, FOLDER_VARIABLE, tr, tr_n
 
@@ -31,8 +31,8 @@ def test_that_a_catalogue_of_the_users_language_is_read(tmp_path: Path) -> None:
     catalogue.add(("One design", "{count} designs"), ("Ein Entwurf", "{count} Entwürfe"))
     folder = tmp_path / "de" / "LC_MESSAGES"
     folder.mkdir(parents=True)
-    with (folder / f"{DOMAIN}.mo").open("wb") as stream:
-        write_mo(stream, catalogue)
+    with (folder / f"{DOMAIN}.po").open("wb") as stream:
+        write_po(stream, catalogue)
     program = (
         "from kirigami_studio.foundation.words import tr, tr_n\n"
         "print(tr('Reading {name} …', name='x'), tr_n('One design', '{count} designs', 4), tr('Undo'))"
