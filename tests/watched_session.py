@@ -131,12 +131,54 @@ class WatchedSession:
         self.step("move the balance over it", self.balance)
         self.step("show every look-alike", lambda: self.window.gallery.bar.filters.grouped.setChecked(False))
         self.step("look through its gallery", self.look_through)
+        self.all_designs(MANY)
         self.step("scrub a large design", self.scrub)
         self.step("show its cuts", lambda: self.press("cuts"))
         self.step("save it", lambda: self.press("save_as"), self.places.saved.exists)
         self.step("export its DXF", lambda: self.press("export"), self.told)
         self.step("export everything", lambda: self.press("export_all"), self.told)
         self.step("switch the theme", lambda: self.press("theme"))
+
+    def all_designs(self, designs: int) -> None:
+        """The table of all designs: opened, walked through, scrolled, filtered, four of them compared."""
+        press = self.press
+        self.step(f"show all {designs} designs at once", lambda: press("all_designs"), self.pictured)
+        page = self.window.connections.all_designs.page
+        assert page is not None
+        table = page.table
+        self.step(
+            "walk through them", lambda: self.keys(table, *[Qt.Key.Key_Right] * 12, Qt.Key.Key_Down), self.pictured
+        )
+        self.step("scroll through them", self.scroll_all, self.pictured)
+        self.step("make the cards small", lambda: self.keys(table, Qt.Key.Key_Minus), self.pictured)
+        self.step("filter them", lambda: page.filters.least.setValue(1.0), self.pictured)
+        right, mark = Qt.Key.Key_Right, Qt.Key.Key_Space
+        self.step("mark four of them", lambda: self.keys(table, mark, right, mark, right, mark, right, mark))
+        self.step("compare the four", lambda: self.keys(table, Qt.Key.Key_C), lambda: page.comparing)
+        self.step("scrub the four", lambda: page.compare.bar.slider.setValue(900))
+        self.step(
+            "leave the table", lambda: press("all_designs"), lambda: not self.window.connections.all_designs.shown
+        )
+
+    def keys(self, widget: QWidget, *keys: Qt.Key) -> None:
+        """Press keys, one in each turn of the event loop."""
+        for key in keys:
+            QTest.keyClick(widget, key)
+            QApplication.processEvents()
+
+    def pictured(self) -> bool:
+        """Whether all cards in sight have their pictures."""
+        page = self.window.connections.all_designs.page
+        return page is not None and page.isVisible() and not page.table.cards.pending
+
+    def scroll_all(self) -> None:
+        """Scroll through the table, page by page."""
+        page = self.window.connections.all_designs.page
+        assert page is not None
+        bar = page.table.verticalScrollBar()
+        for value in range(0, bar.maximum() + 1, max(1, bar.pageStep())):
+            bar.setValue(value)
+            QApplication.processEvents()
 
     def step(self, name: str, act: Callable[[], object], happened: Callable[[], bool] = bool) -> None:
         """Do something from inside the event loop, wait until it has happened and note the longest turn."""

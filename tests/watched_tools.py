@@ -55,6 +55,8 @@ class WatchedTools(WatchedSession):
         self.drawing_board()
         self.photo()
         self.many_saved()
+        self.window.gallery.bar.filters.grouped.setChecked(False)
+        self.all_designs(MOST)
         self.beside()
 
     def large_gallery(self) -> None:

@@ -14,11 +14,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
-from PySide6.QtCore import QEvent, QPoint
+from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
-from kirigami_studio.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main
+from kirigami_studio.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.gui.designs.gallery_selection import SortOrder
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.messages import Message, Tone
@@ -214,11 +214,46 @@ class StateSheet(BoardStates):
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
         self.all_sizes("gallery-more")
         click(bar.alike)
+        self.all_designs()
         self.side_by_side()
         while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
             window.commands["undo"].trigger()
         self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def all_designs(self) -> None:
+        """The table of all designs with a renamed one and three that are marked, these compared, and nothing left."""
+        window, controller = self.window, self.window.controller
+        label = controller.document.label_of(window.gallery.view.model_.entries[0].candidate)
+        if label is not None:
+            controller.labels.set(label, LONG_NAME[:30], "The lobes are even; cut this one for the fair.")
+        window.commands["all_designs"].trigger()
+        page = window.connections.all_designs.page
+        if page is None:
+            raise SessionError("The table of all designs did not open.")
+        for key in (Qt.Key.Key_1, Qt.Key.Key_Right, Qt.Key.Key_2, Qt.Key.Key_Right, Qt.Key.Key_3):
+            press_key(page.table, key)
+        for palette in (LIGHT, DARK):
+            window.set_theme(palette)
+            for size in self.sizes("all-designs"):
+                window.resize(size)
+                page.table.viewport().repaint()
+                self.until(lambda: not page.table.cards.pending, "the cards got no pictures")
+                self.picture(f"all-designs-{size.width()}x{size.height()}-{palette.name}")
+        window.set_theme(LIGHT)
+        page.filters.least.setValue(100.0)
+        self.all_sizes("all-designs-nothing")
+        click(page.show_all)
+        press_key(page.table, Qt.Key.Key_C)
+        page.compare.bar.set_phi(math.radians(60.0))
+        self.all_sizes("all-designs-compared")
+        page.table.clear_compared()
+        window.commands["rename"].trigger()
+        if window.dialogs.label is not None:
+            self.picture("name-and-note", window.dialogs.label)
+            window.dialogs.label.close()
+        window.commands["all_designs"].trigger()
+        window.commands["undo"].trigger()
 
     def side_by_side(self) -> None:
         """Two designs at the target and half open, zoomed; the menu of a card."""

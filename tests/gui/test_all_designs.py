@@ -126,6 +126,7 @@ def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, t
     assert table.show_all.isVisible() and table.count.text().startswith("2 of 3 shown")
     designed.gallery.bar.filters.pinned.setChecked(True)
     assert table.filters.pinned.isChecked() and names(table) == []
+    assert table.table.hint()[0] == "No design matches the filter"
     QTest.mouseClick(table.show_all, LEFT)
     assert len(names(table)) == 3 and not table.show_all.isVisible() and not table.filters.pinned.isChecked()
     row = table.order.findData(SortOrder.MATCH)
@@ -327,7 +328,7 @@ def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns
 def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path) -> None:
     window.commands["all_designs"].trigger()
     page = window.connections.all_designs.page
-    assert page is not None and page.isVisible() and page.table.hint[0] == "No designs yet"
+    assert page is not None and page.isVisible() and page.table.hint()[0] == "No designs yet"
     assert not page.use.isEnabled() and not page.alike.isEnabled()
     press(page, KEY.Key_C, KEY.Key_Return, KEY.Key_1, KEY.Key_Escape)
     assert window.columns.isVisible()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -9,6 +12,9 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.gui.dialogs.label_editor import LabelEditor
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.gallery_model import NAME_ROLE
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import Label
 
@@ -85,3 +91,19 @@ def test_that_every_run_draws_from_a_seed_of_its_own_unless_it_is_kept(designed:
     seeds += [planner.more(document.target).request.seed, planner.alike(document.target, 0.5).request.seed]
     assert len(set(seeds)) == 5, "also where earlier runs were stopped or undone"
     assert designed.controller.document == document
+
+
+@pytest.mark.parametrize(("apart", "told"), [(1.001, True), (4.0, False)])
+def test_that_designs_that_came_too_near_are_told_with_the_way_out(
+    designed: MainWindow, apart: float, told: bool
+) -> None:
+    session, planner = designed.controller.session, designed.controller.generation.planner
+    before, origin = session.document, session.document.candidates[0]
+    assert before.target is not None
+    request = planner.alike(before.target, 0.9).request
+    fields = [RatioField(origin.sheet.field.ratio * apart ** (-1.0) ** k * (1.0 + 0.002 * k)) for k in range(4)]
+    found = tuple(replace(origin, seed=8, index=k, sheet=Sheet(field)) for k, field in enumerate(fields))
+    result = Result(request, found, 4, 1.0)
+    session.apply(planner.edit_for(result, {}, None))
+    sentence = planner.summary(result, before)
+    assert sentence.startswith("4 designs added") and ("4 look the same. Move the slider" in sentence) is told

@@ -25,7 +25,7 @@ SESSIONS = 3
 #: The sessions, how many steps each has at least, and for how long (seconds) none may hold the window up.  The second
 #: one fills 2560 x 1440 with up to 256 designs and paints the window four times as large: there one painting of all
 #: that is seen takes 0.04 to 0.1 s, as the machine's speed comes and goes.
-SCRIPTS = {"watched_session.py": (18, 0.1), "watched_tools.py": (39, 0.2)}
+SCRIPTS = {"watched_session.py": (27, 0.1), "watched_tools.py": (48, 0.2)}
 
 Turns = dict[str, tuple[float, float, float]]
 

@@ -16,6 +16,7 @@ from kirigami_studio.gui.session import Entry
 if TYPE_CHECKING:
     from kirigami_studio.gui.main_window import MainWindow
     from kirigami_studio.gui.panels.all_designs import AllDesigns
+    from kirigami_studio.gui.panels.compare_four import CompareFour
 
 
 class AllDesignsConnections(QObject):
@@ -74,8 +75,8 @@ class AllDesignsConnections(QObject):
         window, controller, bar = self._window, self._controller, self._window.gallery.bar
         page = AllDesigns(window.gallery.view.model_)
         window.center.addWidget(page)
-        for part in theme.themed((page, *page.findChildren(QWidget))):
-            part.set_palette(window.palette_)
+        self._colour(page)
+        page.compare_built.connect(self._connect_compare)
         page.closed.connect(lambda: self.show(False))
         page.selection_changed.connect(bar.take)
         page.order_wanted.connect(bar.sort_by)
@@ -87,8 +88,8 @@ class AllDesignsConnections(QObject):
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())
         page.comparing_changed.connect(self._show_compared)
-        page.compare.taken.connect(self._take_compared)
         table = page.table
+        table.hint = lambda: window.gallery.view.hint
         table.left.connect(lambda: self.show(False))
         table.taken.connect(self._take)
         table.pin_wanted.connect(controller.marks.pin)
@@ -109,11 +110,19 @@ class AllDesignsConnections(QObject):
         self._follow_run()
         return page
 
+    def _connect_compare(self, compare: CompareFour) -> None:
+        self._colour(compare)
+        compare.taken.connect(self._take_compared)
+
+    def _colour(self, part: QWidget) -> None:
+        """Give new parts the colours of the theme."""
+        for themed in theme.themed((part, *part.findChildren(QWidget))):
+            themed.set_palette(self._window.palette_)
+
     # what the window tells -----------------------------------------------------------------------------------------
 
     def _follow_document(self, _: object = None) -> None:
         page, document = self._page, self._controller.document
-        page.table.hint = self._window.gallery.view.hint
         page.table.set_target(document.target)
         self._follow_run()
         self._show_compared()

@@ -6,7 +6,7 @@ its result; :class:`DesignRun` runs at most one run at a time; :class:`StoppedRu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.hand_editor import HandEditor
+from kirigami_studio.gui.designs.look_alikes import COMPARED_AT_ONCE
 from kirigami_studio.gui.jobs.design_jobs import Decoded, GridChosen, ModelFound, RunReport, generating, sizes_of
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.messages import Message, Tone
@@ -27,7 +28,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
-from kirigami_studio.pipeline.variety import distinct
+from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
@@ -265,7 +266,12 @@ class RunPlanner:
                 variation=100 * score.evenness.area_cv,
             )
             return f"{told} {grid_reason}".strip()
-        added = len(set(document.candidates) - set(before.candidates))
+        known = set(before.candidates)
+        fresh = [one for one in document.candidates if one not in known]
+        added = len(fresh)
+        nearly = self._nearly_the_same(before, fresh)
+        if nearly:
+            return nearly
         if not added:
             return tr("No new designs; {count} already in the gallery.", count=result.repeats)
         if result.repeats:
@@ -281,6 +287,23 @@ class RunPlanner:
             "{count} designs added. Best new match: {match:.1f} %.",
             added,
             match=100 * result.best.score.iou_exact,
+        )
+
+    def _nearly_the_same(self, before: Document, fresh: Sequence[Candidate]) -> str:
+        """What is said where most designs that were drawn near another one look just like it, else ""."""
+        near = None if self.plan is None else self.plan.request.near
+        origin = next((one for one in before.candidates if one.sheet == near), None)
+        if origin is None or not fresh or len(fresh) > COMPARED_AT_ONCE:
+            return ""
+        groups = look_alikes((origin, *fresh))
+        alike = sum(group == groups[0] for group in groups[1:])
+        if 2 * alike <= len(fresh):
+            return ""
+        return tr_n(
+            "{count} design added; {alike} looks the same. Move the slider towards far for more variety.",
+            "{count} designs added; {alike} look the same. Move the slider towards far for more variety.",
+            len(fresh),
+            alike=alike,
         )
 
 

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QSlider, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder, count_texts
@@ -27,6 +37,7 @@ class AllDesigns(QFrame):
     alike_wanted = Signal()
     nearness_changed = Signal(int)  #: position of the slider
     comparing_changed = Signal(bool)
+    compare_built = Signal(CompareFour)
 
     def __init__(self, model: GalleryModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -34,12 +45,11 @@ class AllDesigns(QFrame):
         self._selection = model.selection
         self._model = model
         self.table = DesignTable(model)
-        self.compare = CompareFour()
+        self._compare: CompareFour | None = None
         self.filters = FilterControls(self, "all-")
         self.filters.changed.connect(lambda: self.selection_changed.emit(self.filters.apply(self._selection)))
         self.pages = QStackedWidget()
         self.pages.addWidget(self.table)
-        self.pages.addWidget(self.compare)
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 8, 8, 8)
         column.setSpacing(8)
@@ -52,7 +62,6 @@ class AllDesigns(QFrame):
         self.table.compare_wanted.connect(lambda: self.show_comparison(True))
         self.table.compared_changed.connect(self._show_compared)
         self.table.current_changed.connect(self._show_current)
-        self.compare.left.connect(lambda: self.show_comparison(False))
         model.arranged.connect(self._count)
         self._show_compared()
         self._count()
@@ -62,7 +71,8 @@ class AllDesigns(QFrame):
         title.setObjectName("cardTitle")
         self.count = FittingLabel()
         self.order = order_box("allOrder")
-        self.order.setFixedWidth(164)
+        self.order.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self.order.setFixedWidth(150)
         self.order.activated.connect(lambda _: self.order_wanted.emit(self.order.currentData()))
         self.card_size = QSlider(Qt.Orientation.Horizontal)
         self.card_size.setObjectName("cardSize")
@@ -152,12 +162,22 @@ class AllDesigns(QFrame):
         if self.table.current is not None:
             self.table.taken.emit(self.table.current)
 
+    @property
+    def compare(self) -> CompareFour:
+        """The comparison, built when it is first wanted: its drawings take longer than all the rest."""
+        if self._compare is None:
+            self._compare = CompareFour()
+            self._compare.left.connect(lambda: self.show_comparison(False))
+            self.pages.addWidget(self._compare)
+            self.compare_built.emit(self._compare)
+        return self._compare
+
     # what is shown -------------------------------------------------------------------------------------------------
 
     @property
     def comparing(self) -> bool:
         """Whether the comparison is shown in the place of the cards."""
-        return self.pages.currentWidget() is self.compare
+        return self._compare is not None and self.pages.currentWidget() is self._compare
 
     def show_comparison(self, on: bool) -> None:
         """Show the marked designs beside each other, or the cards; with one alone, the next card is beside it."""
@@ -167,8 +187,9 @@ class AllDesigns(QFrame):
         self.comparison.setChecked(on)
         if on == self.comparing:
             return
-        self.compare.bar.play.setChecked(False)
-        self.pages.setCurrentWidget(self.compare if on else self.table)
+        compare = self.compare
+        compare.bar.play.setChecked(False)
+        self.pages.setCurrentWidget(compare if on else self.table)
         self.filter_row.setVisible(not on)
         for part in (*self._grid_only, self.again, self.use):
             part.setVisible(not on)

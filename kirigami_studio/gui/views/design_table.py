@@ -6,6 +6,8 @@ that order, filters and groups are the same in both.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QColor,
@@ -57,7 +59,7 @@ class DesignTable(QListView):
         super().__init__(parent)
         self.model_ = model
         self.cards = TableCards(self)
-        self.hint = ("", "")
+        self.hint: Callable[[], tuple[str, str]] = lambda: ("", "")  #: what an empty table says
         self._size = 1
         self._compared: list[Candidate] = []
         self._current: Candidate | None = None
@@ -289,7 +291,7 @@ class DesignTable(QListView):
         painter = QPainter(self.viewport())
         painter.setPen(QColor(self.cards.palette_.muted))
         flags = int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap)
-        painter.drawText(self.viewport().rect().adjusted(20, 0, -20, 0), flags, "\n\n".join(self.hint))
+        painter.drawText(self.viewport().rect().adjusted(20, 0, -20, 0), flags, "\n\n".join(self.hint()))
         painter.end()
 
 
