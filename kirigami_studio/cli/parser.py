@@ -275,7 +275,8 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
             help=f"peak learning rate, reached after 200 steps (default {learning_rate:g})",
         ),
         option("--channels", default=channels, metavar="LIST", help=f"channels of each level (default {channels})"),
-        option("--latent", type=count, default=32, help="pixels each way into which fields are drawn (default 32)"),
+        option("--latent", type=count, default=32,
+               help="pixels each way into which fields are drawn; fewer than the grid's 10 lose detail (default 32)"),
         *more,
         *run_of_training(500),
     )
@@ -531,7 +532,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--channels", default=None, metavar="LIST",
                help="unet: channels of each level, separated by commas (default 64,128,256,384)"),
         option("--latent", type=count, default=None,
-               help="unet: pixels each way into which fields are drawn (default 32)"),
+               help="unet: pixels each way into which fields are drawn; fewer than the grid's 10 lose detail "
+                    "(default 32)"),
         option("--residuals", type=count, default=None, help="unet: residual blocks of each level (default 2)"),
         option("--batch", type=count, default=96, help="targets in each step (default 96)"),
         option("--noises", type=count, default=3, help="noise draws for each target (default 3)"),

@@ -1,0 +1,32 @@
+"""Bundle trained weights as variants of the generator: ``python packaging/bundle_models.py NAME=WEIGHTS ...``.
+
+``WEIGHTS`` are those of a run of ``train prior`` or ``train grpo``.  They are written into ``resources/models``, and how
+they were trained goes into the manifest there.  The paper's own way was bundled by::
+
+    python packaging/bundle_models.py paper=RUN/prior.safetensors paper-accuracy=RUN/grpo-accuracy.safetensors ...
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from kirigami_studio.generator.weights import load_weights, model_folder, store_model, variants_about
+
+
+def bundle(name: str, weights: Path) -> Path:
+    """Store the weights of a training run as the bundled variant ``name``.
+
+    Raises
+    ------
+    ModelError
+        They cannot be read.
+    """
+    model = load_weights(weights)
+    return store_model(name, model.network, model_folder(), variants_about(weights.parent)[model.variant])
+
+
+if __name__ == "__main__":
+    for word in sys.argv[1:]:
+        name, _, weights = word.partition("=")
+        print(bundle(name, Path(weights)))
