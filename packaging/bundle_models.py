@@ -1,7 +1,7 @@
 """Bundle trained weights as variants of the generator: ``python packaging/bundle_models.py NAME=WEIGHTS ...``.
 
-``WEIGHTS`` are those of a run of ``train prior`` or ``train grpo``.  They are written into ``resources/models``, and how
-they were trained goes into the manifest there.  The paper's own way was bundled by::
+``WEIGHTS`` are those of a run of ``train prior`` or ``train grpo``.  They are written into ``resources/models``, and
+how they were trained goes into the manifest there.  The paper's own way is bundled by::
 
     python packaging/bundle_models.py paper=RUN/prior.safetensors paper-accuracy=RUN/grpo-accuracy.safetensors ...
 """

@@ -275,8 +275,12 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
             help=f"peak learning rate, reached after 200 steps (default {learning_rate:g})",
         ),
         option("--channels", default=channels, metavar="LIST", help=f"channels of each level (default {channels})"),
-        option("--latent", type=count, default=32,
-               help="pixels each way into which fields are drawn; fewer than the grid's 10 lose detail (default 32)"),
+        option(
+            "--latent",
+            type=count,
+            default=32,
+            help="pixels each way into which fields are drawn; fewer than the grid's 10 lose detail (default 32)",
+        ),
         *more,
         *run_of_training(500),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QByteArray, QEvent, QObject, QSettings, QSize, Qt
+from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -49,6 +49,8 @@ SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)
 #: Allowance for the title bar and borders.
 FRAME = QSize(16, 48)
+#: Between a message and what is around it in the tool bar, pixels.
+MESSAGE_GAP = 4
 #: Least and largest first width (pixels) of the outer columns, and their share of the window in between.
 LEFT_WIDTH, RIGHT_WIDTH = (284, 340), (322, 372)
 LEFT_SHARE, RIGHT_SHARE = 0.225, 0.25
@@ -72,7 +74,7 @@ class MainWindow(QMainWindow):
         self.setMinimumSize(SMALLEST)
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.resize(FIRST.boundedTo(self.screen().availableSize() - FRAME))
-        self.messages = MessageBar()
+        self.messages = MessageBar(self)
         self.target = TargetPanel()
         self.settings = SettingsPanel()
         self.run = GenerateBar()
@@ -97,6 +99,7 @@ class MainWindow(QMainWindow):
         self.connections = Connections(self, controller)
         self._build_commands()
         self._build_toolbar()
+        self.messages.content_changed.connect(self._place_messages)
         self.tour = Tour(self, controller)
         self.set_theme(palette)
 
@@ -129,7 +132,6 @@ class MainWindow(QMainWindow):
         whole = QVBoxLayout(body)
         whole.setContentsMargins(10, 0, 10, 2)
         whole.setSpacing(8)
-        whole.addWidget(self.messages)
         self.center = QStackedWidget()
         self.center.addWidget(self.columns)
         whole.addWidget(self.center, 1)
@@ -226,6 +228,7 @@ class MainWindow(QMainWindow):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
         self._share_width()
+        self._place_messages()
         self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if self.height() >= height))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
@@ -235,6 +238,12 @@ class MainWindow(QMainWindow):
             event.ignore()
             return True
         return super().eventFilter(watched, event)
+
+    def _place_messages(self) -> None:
+        """Messages lie where the project's name is, between the buttons of the tool bar."""
+        corner = self.heading.mapTo(self, QPoint(MESSAGE_GAP, MESSAGE_GAP))
+        size = QSize(self.heading.width() - 2 * MESSAGE_GAP, self.heading.height() - 2 * MESSAGE_GAP)
+        self.messages.lay_over(QRect(corner, size))
 
     def _share_width(self) -> None:
         """Share the width among the columns, until the user has moved a border between them."""

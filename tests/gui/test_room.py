@@ -6,13 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QSettings, Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QPoint, QRect, QSettings, Qt
+from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.application import create_window
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.fabrication_panel import Extent
 from kirigami_studio.gui.panels.stage_panel import LOW
 
@@ -129,3 +130,46 @@ def test_that_a_low_stage_gives_both_lines_below_the_drawing_up_at_once(designed
     assert stage.height() == LOW and stage.ends.isVisible() and stage.verdict.sentence.height() > one_line
     resized(designed, 1000, LOW + above - 1)
     assert not stage.ends.isVisible() and stage.verdict.sentence.height() == one_line
+
+
+LONG = "Cannot read drawing.svg: it is damaged. " + "Save it again as plain SVG, with all text converted to paths. " * 3
+
+
+@pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900)])
+def test_that_messages_move_nothing_and_hide_no_button_of_the_tool_bar(
+    designed: MainWindow, width: int, height: int
+) -> None:
+    resized(designed, width, height)
+    parts = [part for part in designed.findChildren(QWidget) if not designed.messages.isAncestorOf(part)]
+
+    def places() -> list[QRect]:
+        return [QRect(part.mapTo(designed, QPoint(0, 0)), part.size()) for part in parts if part.isVisible()]
+
+    designed.messages.dismiss(*Tone)
+    resized(designed, width, height)
+    before = places()
+    designed.messages.add(Message("Saved heart.kiri.", Tone.WARNING))
+    designed.messages.add(Message(LONG, Tone.ERROR, "line\n" * 9, actions=(("Open another …", lambda: None),)))
+    designed.messages.details.click()
+    resized(designed, width, height)
+    assert designed.messages.isVisible() and places()[: len(before)] == before
+    buttons = [part for part in designed.findChildren(QToolButton) if isinstance(part.parent(), QToolBar)]
+    lying = designed.messages.geometry()
+    assert buttons and not any(
+        lying.intersects(QRect(button.mapTo(designed, QPoint(0, 0)), button.size()))
+        for button in buttons
+        if button.isVisible()
+    )
+    assert lying.top() > designed.menuBar().geometry().bottom() and designed.rect().contains(lying)
+    words = designed.messages.sentence
+    assert words.height() >= words.heightForWidth(words.width()), "all of the sentence is seen"
+
+
+def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWindow) -> None:
+    resized(designed, 1000, 640)
+    designed.messages.add(Message("Saved heart.kiri.", Tone.DONE))
+    resized(designed, 1000, 640)
+    short = designed.messages.height()
+    designed.messages.add(Message(LONG[:170], Tone.ERROR, "line", actions=(("Open another …", lambda: None),)))
+    resized(designed, 1000, 640)
+    assert short <= 48 and designed.messages.height() <= 96

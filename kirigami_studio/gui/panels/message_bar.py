@@ -1,12 +1,17 @@
-"""Messages that do not stop the work: one line, details on demand, none lost."""
+"""Messages that do not stop the work: one line, details on demand, none lost.
+
+The bar lies over the window's tool bar, where the project's name stands otherwise, and a long message hangs down over
+the page: nothing on the page moves when one comes or goes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QRect, Qt, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
+    QBoxLayout,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -28,7 +33,12 @@ MOST_LINES = 9
 
 
 class MessageBar(QFrame):
-    """Shows the newest message; earlier ones stay a click away until they are closed."""
+    """Shows the newest message; earlier ones stay a click away until they are closed.
+
+    Its owner says where it lies, by :meth:`lay_over`, whenever that changes or ``content_changed`` is told.
+    """
+
+    content_changed = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -58,6 +68,8 @@ class MessageBar(QFrame):
         self.trace = QPlainTextEdit()
         self.trace.setReadOnly(True)
         self.trace.setAccessibleName(tr("Message details"))
+        self._line = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._buttons = QHBoxLayout()
         self._actions = QHBoxLayout()
         self._actions.setSpacing(6)
         self._lay_out()
@@ -70,11 +82,13 @@ class MessageBar(QFrame):
         self.hide()
 
     def _lay_out(self) -> None:
-        line = QHBoxLayout()
-        line.setSpacing(8)
-        line.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
-        line.addWidget(self.sentence, 1)
-        line.addLayout(self._actions)
+        words = QHBoxLayout()
+        words.setSpacing(8)
+        words.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
+        words.addWidget(self.sentence, 1)
+        self._buttons.setSpacing(8)
+        self._buttons.addStretch(1)
+        self._buttons.addLayout(self._actions)
         for part in (
             self.details,
             self.previous,
@@ -84,11 +98,14 @@ class MessageBar(QFrame):
             self.copy,
             self.close_button,
         ):
-            line.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
+            self._buttons.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
+        self._line.setSpacing(8)
+        self._line.addLayout(words, 1)
+        self._line.addLayout(self._buttons)
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 5, 6, 5)
         column.setSpacing(4)
-        column.addLayout(line)
+        column.addLayout(self._line)
         column.addWidget(self.trace)
         self.trace.hide()
 
@@ -129,8 +146,33 @@ class MessageBar(QFrame):
         self._palette = palette
         self._go(self._at)
 
+    def lay_over(self, room: QRect) -> None:
+        """Lie over this part of the parent, from its top down as far as the message needs.
+
+        Buttons stand beside the sentence, or below it where that takes less height.
+        """
+        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        buttons = self._buttons.sizeHint()
+        # Room for the sentence below nothing but the icon, and what of it the buttons would take.
+        words = room.width() - self.icon.sizeHint().width() - 4 * self._line.spacing()
+        beside = self.sentence.heightForWidth(words - buttons.width() - self._line.spacing())
+        below = self.sentence.heightForWidth(words) + self._line.spacing() + buttons.height()
+        direction = across if max(beside, buttons.height()) <= below else down
+        if direction is not self._line.direction():
+            self._line.setDirection(direction)
+        layout = self.layout()
+        needed = 0 if layout is None else layout.totalHeightForWidth(room.width())
+        self.setGeometry(room.x(), room.y(), room.width(), max(needed, room.height()))
+
+    def event(self, event: QEvent) -> bool:
+        """A layout that has changed may need another height."""
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.content_changed.emit()
+        return super().event(event)
+
     def _go(self, index: int) -> None:
         self.setVisible(bool(self._messages))
+        self.raise_()
         if not self._messages:
             self._at = 0
             return
