@@ -180,7 +180,7 @@ class Controller(QObject):
 
     def start_with(self, source: str) -> None:
         """Read the first target; it is where the history starts, not a change to be undone or saved."""
-        self.targeting.start_with(source, self.preferences.new_document())
+        self.targeting.start_with(source)
 
     # settings ------------------------------------------------------------------------------------------------------
 

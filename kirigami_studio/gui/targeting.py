@@ -283,7 +283,6 @@ class Targeting(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._blank = Document()
         self.tracer = PictureTracer(session, self)
         self.reader = TargetReader(session, self.tracer, self)
         self.reader.read.connect(self._take_read)
@@ -312,9 +311,8 @@ class Targeting(QObject):
         """The parts of a drawing were not chosen: everything stays as it was."""
         self._session.set_status(tr("No part was taken; nothing changed."))
 
-    def start_with(self, source: str, blank: Document) -> None:
-        """Read the first target; into the ``blank`` document it is where the history starts, no change to be undone."""
-        self._blank = blank
+    def start_with(self, source: str) -> None:
+        """Read the first target; in an untouched project it is where the history starts, no change to be undone."""
         self.open(source, first=True)
 
     def change_threshold(self, threshold: float | None) -> None:
@@ -340,8 +338,9 @@ class Targeting(QObject):
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
     def _take_read(self, outline: Outline, first: bool) -> None:
-        document = self._session.document
-        if first and document == self._blank:
+        document, history = self._session.document, self._session.history
+        untouched = document.target is None and self._session.path is None and not history.steps
+        if first and untouched:
             self.begun.emit(replace(document, target=outline))
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
         else:
