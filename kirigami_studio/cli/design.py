@@ -45,7 +45,7 @@ from kirigami_studio.project.cutting import least_feature_mm, material_for, room
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.project.store import save
+from kirigami_studio.project.store import packed_design, save
 from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
 
 
@@ -361,7 +361,8 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path) 
     request, best = result.request, result.best
     plan, _ = checked_plan(best, fabrication)
     document = document_of(result, fabrication)
-    job = replace(ExportJob.of(best, request.target.points, plan), provenance=design_facts(document, best))
+    facts, record = design_facts(document, best), packed_design(document, best)
+    job = replace(ExportJob.of(best, request.target.points, plan), provenance=facts, record=record)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",

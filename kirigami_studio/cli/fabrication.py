@@ -41,7 +41,7 @@ from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.fixes import Advice, find_fixes
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.store import load
+from kirigami_studio.project.store import load, packed_design
 from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge, refused
 
 
@@ -332,7 +332,8 @@ def chosen_candidate(document: Document) -> Candidate:
 
 def design_job(document: Document, plan: CutPlan, settings: FabricationSettings) -> ExportJob:
     """What files of the chosen design are made of, cut by this plan."""
-    return replace(_job(document), plan=plan, dxf_version=settings.dxf_version, profile=settings.profile,
+    record = packed_design(replace(document, fabrication=settings), chosen_candidate(document))
+    return replace(_job(document), plan=plan, record=record, dxf_version=settings.dxf_version, profile=settings.profile,
                    paper=settings.paper, markers=settings.markers, artwork=document.artwork)  # fmt: skip
 
 

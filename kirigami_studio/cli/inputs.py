@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -30,11 +30,13 @@ from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target, target_files
 from kirigami_studio.outlines.read_image import outline_of_mask, read_image
 from kirigami_studio.outlines.silhouettes import names
+from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
-from kirigami_studio.project.store import load
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
+#: What has a chosen design.
+PROJECTS = (PROJECT, *CUT_FILES)
 
 #: Problems of drawings whose lines may be meant as they are painted.
 OPEN_LINES = ("lines.open_at", "lines.not_closed")
@@ -177,12 +179,26 @@ def _read_drawing(path: Path, choice: PartChoice | None) -> Outline:
     """The outline of a file: of its parts as chosen, or as it is read by itself."""
     if choice is not None and path.suffix.lower() in PART_READERS:
         return choice.outline(path)
+    if path.suffix.lower() in CUT_FILES and (target := _own_target(path)) is not None:
+        return target
     try:
         return read_target(path)
     except TargetError as error:
         if isinstance(error.__cause__, TargetError) and error.__cause__.code in OPEN_LINES:
             raise TargetError("parts.or_as_painted", reason=error) from error
         raise
+
+
+def _own_target(path: Path) -> Outline | None:
+    """The target of the design that a cut file of this program carries; None for any other file."""
+    try:
+        document = load(path)
+    except KirigamiError:
+        return None  # another program's drawing, or one that cannot be read: its reader says so
+    if document.target is None:
+        return None
+    said = tr("This is a cut file of Kirigami Studio: its design's target was taken.")
+    return replace(document.target, notes=(*document.target.notes, said))
 
 
 def read_sheets(sources: Sequence[str]) -> Iterator[Named[Sheet]]:
@@ -198,7 +214,7 @@ def read_sheets(sources: Sequence[str]) -> Iterator[Named[Sheet]]:
             if not files:
                 raise RatioError("ratios.none_in_folder", folder=path)
             yield from read_sheets([str(file) for file in files])
-        elif path.suffix.lower() == PROJECT:
+        elif path.suffix.lower() in PROJECTS:
             yield Named(source, partial(read_chosen_sheet, path))
         else:
             yield Named(source, partial(read_sheet, path))

@@ -11,7 +11,7 @@ import numpy as np
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
-from kirigami_studio.cli.inputs import read_sheets
+from kirigami_studio.cli.inputs import PROJECTS, read_sheets
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
@@ -28,7 +28,6 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.as_cut import CLOSE_TO, Overlap, believed_figure, overlap, planned_sheet
 from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.store import SUFFIX as PROJECT
 from kirigami_studio.project.store import load
 
 FLAT_DEG = 180.0
@@ -118,7 +117,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
 def _cut(arguments: argparse.Namespace) -> _Cut:
     """The sheet that the command line names, with the material, widths and kerf that apply."""
     path, target, phi, kept = Path(arguments.source), None, 0.0, None
-    if path.suffix.lower() == PROJECT:
+    if path.suffix.lower() in PROJECTS:
         document = load(path)
         candidate = _chosen(document.candidate, path)
         deployment, saved = deploy(candidate.final_sheet), document.fabrication

@@ -19,6 +19,7 @@ from ezdxf._options import options
 from ezdxf.document import Drawing
 from ezdxf.filemanagement import new
 
+from kirigami_studio.export.design_record import record_pieces
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_content import FileContent, bent_otherwise
 from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, Profile, find_profile
@@ -43,7 +44,11 @@ PROFILE = "lightburn"
 
 
 def write_dxf(
-    plan: CutPlan, path: str | Path, version: str = "R2010", profile: str | Profile = DEFAULT_PROFILE
+    plan: CutPlan,
+    path: str | Path,
+    version: str = "R2010",
+    profile: str | Profile = DEFAULT_PROFILE,
+    record: bytes = b"",
 ) -> None:
     """Write a plan as one file, read it back and compare.
 
@@ -55,6 +60,8 @@ def write_dxf(
         "R2010", or "R12" for old programs; an R12 file cannot say its unit: import it as mm.
     profile : str or Profile
         What the machine's program wants; see ``layer_files`` for one file per layer.
+    record : bytes
+        The design that the plan cuts, see ``design_record``.
 
     Raises
     ------
@@ -62,13 +69,13 @@ def write_dxf(
         Unknown version or profile, unwritable place, or a file that did not come back as it was meant.
     """
     chosen = find_profile(profile) if isinstance(profile, str) else profile
-    content = dxf_bytes(plan, version, chosen)
+    content = dxf_bytes(plan, version, chosen, record)
     strokes = strokes_of(plan, chosen)
     size = extent(strokes)
     write_atomically(Path(path), content, lambda written: check_written(written, strokes, size, version))
 
 
-def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
+def dxf_bytes(plan: CutPlan, version: str, profile: Profile, record: bytes = b"") -> bytes:
     """Return the DXF file's bytes.
 
     Raises
@@ -77,7 +84,7 @@ def dxf_bytes(plan: CutPlan, version: str, profile: Profile) -> bytes:
         Unknown version, or a plan that the profile cannot show.
     """
     strokes = strokes_of(plan, profile)
-    return strokes_dxf(strokes, extent(strokes), version, facts_of(plan, profile))
+    return strokes_dxf(strokes, extent(strokes), version, facts_of(plan, profile), record=record)
 
 
 def strokes_dxf(
@@ -86,6 +93,7 @@ def strokes_dxf(
     version: str,
     facts: dict[str, str],
     mark: Callable[[Drawing], None] | None = None,
+    record: bytes = b"",
 ) -> bytes:
     """Return a DXF of any strokes.
 
@@ -99,6 +107,8 @@ def strokes_dxf(
         About the making of the file.
     mark : function, optional
         Draws more; never for a cut file.
+    record : bytes
+        The design, see ``design_record``.
 
     Raises
     ------
@@ -118,6 +128,7 @@ def strokes_dxf(
             mark(document)
         _frame(document, size)
         _describe(document, facts, version)
+        _enclose(document, record, version)
         if version != "R12":
             _sort_classes(document)
         text = StringIO()
@@ -180,6 +191,16 @@ def _describe(document: Drawing, facts: dict[str, str], version: str) -> None:
         record[key] = value
         if version != "R12":
             document.header.custom_vars.append(key, value)
+
+
+def _enclose(document: Drawing, record: bytes, version: str) -> None:
+    """Put the design into the file, where its facts are."""
+    notes = document.ezdxf_metadata()
+    for name, piece in record_pieces(record).items() if record else ():
+        if version == "R12":
+            notes[name] = piece
+        else:
+            document.header.custom_vars.append(name, piece)
 
 
 def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, float], version: str) -> None:

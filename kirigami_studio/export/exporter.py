@@ -53,6 +53,8 @@ class ExportJob:
         What an animation shows: the sheet as cut; None for its ideal motion.
     artwork : Artwork or None
         What is printed on the sheet; only a whole set of files has it.
+    record : bytes
+        The design as a packed project, which DXF and SVG cut files carry; empty for none.
     """
 
     deployment: Deployment
@@ -68,6 +70,7 @@ class ExportJob:
     markers: bool = False
     motion: CutMotion | None = None
     artwork: Artwork | None = None
+    record: bytes = b""
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

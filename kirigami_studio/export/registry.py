@@ -31,7 +31,7 @@ class DxfExporter:
         if profile.file_per_layer:
             write_layer_files(job.required_plan, path, job.dxf_version, profile)
         else:
-            write_dxf(job.required_plan, path, job.dxf_version, profile)
+            write_dxf(job.required_plan, path, job.dxf_version, profile, job.record)
 
 
 def exporters() -> Mapping[str, Exporter]:

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from kirigami_studio.export import picture
+from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
@@ -38,10 +39,10 @@ class SvgExporter:
 
     def write(self, job: ExportJob, path: Path) -> None:
         """Write the job's cut plan."""
-        write_cut_svg(job.required_plan, path, find_profile(job.profile))
+        write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
 
 
-def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
+def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:
     """Write a plan as true-size SVG: one group for each layer, lines and true arcs in cutting order.
 
     Raises
@@ -49,7 +50,7 @@ def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile) -> None:
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    root, count, size = _cut_drawing(plan, profile)
+    root, count, size = _cut_drawing(plan, profile, record)
     _write(root, Path(path), count, size)
 
 
@@ -61,17 +62,21 @@ def cut_svg_bytes(job: ExportJob) -> bytes:
     ExportError
         The job has no plan, or names an unknown profile.
     """
-    root, _, _ = _cut_drawing(job.required_plan, find_profile(job.profile))
+    root, _, _ = _cut_drawing(job.required_plan, find_profile(job.profile), job.record)
     return svg_content(root)
 
 
-def _cut_drawing(plan: CutPlan, profile: Profile) -> tuple[ElementTree.Element, int, tuple[float, float]]:
+def _cut_drawing(
+    plan: CutPlan, profile: Profile, record: bytes
+) -> tuple[ElementTree.Element, int, tuple[float, float]]:
     """The drawing, the number of its paths and its size (mm)."""
     strokes = strokes_of(plan, profile)
     width, height = extent(strokes)
     root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
     facts = facts_of(plan, profile)
     _describe(root, facts)
+    if record:
+        ElementTree.SubElement(root, "metadata", {"id": NAME}).text = record_text(record)
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
         # A layer that comes back later in the cutting order needs a name of its own.
         again = any(element.get("id") == name for element in root)

@@ -76,7 +76,7 @@ def read_with_xml(path: Path) -> FileContent:
     others = tuple(
         element.tag.removeprefix(f"{{{NAMESPACE}}}")
         for element in root.iter()
-        if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc")}
+        if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc", "metadata")}
     )
     return FileContent("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
 

@@ -320,6 +320,13 @@ class Controller(QObject):
         """Read a project file."""
         self.filing.projects.open(path)
 
+    def open_design(self, document: Document, source: str) -> None:
+        """Take over the design that a cut file carries, as a project that is not saved yet."""
+        self._stop_all()
+        self.session.restart(document, None, saved=False)
+        self.targeting.source_read.emit(source)
+        self.session.set_status(tr("Opened the design that {name} was cut from.", name=Path(source).name))
+
     def new_project(self) -> None:
         """Forget everything and start empty."""
         self._stop_all()

@@ -83,6 +83,7 @@ class CutPlanner(QObject):
             document.fabrication,
             facts,
             artwork=document.artwork,
+            document=document,
         )
 
     def plan_soon(self) -> None:

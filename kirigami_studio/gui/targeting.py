@@ -15,7 +15,7 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.target_reader import next_run
-from kirigami_studio.gui.jobs.part_jobs import PartsRead, reading_parts, reading_source
+from kirigami_studio.gui.jobs.part_jobs import DesignRead, PartsRead, reading_parts, reading_source
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
     Picture,
@@ -120,12 +120,13 @@ class TargetReader(QObject):
 
     read = Signal(Outline, bool)  #: whether it is the first target of the session
     choice_wanted = Signal(PartsRead)
+    design_read = Signal(Document, str)  #: that a cut file came from, and the file
     failed = Signal(str, str)  #: sentence, trace
 
     def __init__(self, session: Session, tracer: PictureTracer, parent: QObject) -> None:
         super().__init__(parent)
         self._tracer = tracer
-        self._job = LatestJob[TargetRead | PartsRead](session.queue)
+        self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
         self._drawings: OrderedDict[Outline, str] = OrderedDict()
         self._asked = ("", False)
         self.source = ""  #: of the target that was read last
@@ -148,7 +149,7 @@ class TargetReader(QObject):
         """Take the outline that was made of chosen parts."""
         self._finish(*self._asked, TargetRead(outline))
 
-    def _start(self, source: str, first: bool, steps: Steps[TargetRead | PartsRead]) -> None:
+    def _start(self, source: str, first: bool, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
         callbacks = JobCallbacks(partial(self._take, source, first), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
@@ -156,10 +157,12 @@ class TargetReader(QObject):
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, first: bool, found: TargetRead | PartsRead) -> None:
+    def _take(self, source: str, first: bool, found: TargetRead | PartsRead | DesignRead) -> None:
         if isinstance(found, PartsRead):
             self._asked = (source, first)
             self.choice_wanted.emit(found)
+        elif isinstance(found, DesignRead):
+            self.design_read.emit(found.document, source)
         else:
             self._finish(source, first, found)
 

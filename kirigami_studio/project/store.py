@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kirigami_studio import __version__
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.design_record import record_in
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.project import migrations
@@ -22,6 +24,8 @@ from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
 
 SUFFIX = ".kiri"
+#: Kinds of cut file that carry the design they came from.
+CUT_FILES = (".dxf", ".svg")
 MANIFEST = "manifest.json"
 FORMAT = "kirigami-studio project"
 
@@ -80,13 +84,23 @@ def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
     return stream.getvalue()
 
 
+def packed_design(document: Document, candidate: Candidate) -> bytes:
+    """The project with this design alone, chosen, as a cut file carries it; without pictures."""
+    label = document.label_of(candidate)
+    labels = () if label is None else (label,)
+    alone = replace(document, candidates=(candidate,), chosen=0, marks=(), labels=labels, artwork=None)
+    return pack(with_stored_material(alone))
+
+
 def load(path: Path | str) -> Document:
     """Read a project file without its picture, see :func:`load_all`."""
     return load_all(path).document
 
 
 def load_all(path: Path | str) -> Opened:
-    """Read a project file; a picture or artwork that cannot be read is left out, and a note says so.
+    """Read a project file, or the design that a cut file of this program carries.
+
+    A picture or artwork that cannot be read is left out, and a note says so.
 
     Raises
     ------
@@ -95,6 +109,11 @@ def load_all(path: Path | str) -> Opened:
     """
     path = Path(path)
     content = _read_file(path)
+    if path.suffix.lower() in CUT_FILES:
+        record = record_in(content)
+        if record is None:
+            raise ProjectError("project.no_design_in_file", path=path)
+        content = record
     try:
         members = _unpack(content)
         version = _version(members)

@@ -169,3 +169,22 @@ def test_that_files_of_an_earlier_export_which_are_gone_are_told(
     told = [message.sentence for message in designed.messages.messages]
     assert any("files of an earlier export: cut.lbrn2. Delete" in sentence for sentence in told)
     assert (tmp_path / "cut.lbrn2").exists()
+
+
+@pytest.mark.parametrize("name", ["cut.dxf", "cut.svg"])
+def test_that_an_exported_cut_file_opens_as_its_design(
+    name: str, designed: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
+) -> None:
+    controller, path = designed.controller, tmp_path / name
+    chosen = controller.document.candidate
+    controller.export(path)
+    until(path.exists)
+    until(lambda: not controller.queue.busy)
+    controller.new_project()
+    designed.files.open(str(path))
+    until(lambda: controller.document.candidate is not None)
+    assert controller.document.candidate == chosen and controller.document.target is not None
+    assert controller.path is None and controller.history.unsaved
+    assert designed.status_text.text() == f"Opened the design that {name} was cut from."
+    controller.history.mark_saved()
+    until(lambda: not controller.queue.busy)

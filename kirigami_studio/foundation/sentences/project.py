@@ -31,6 +31,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "photo.too_large": mark("{name} has {size_mb:.0f} MB; the limit is {most_mb} MB."),
     "photo.not_read": mark("Cannot read {name}: {reason}."),
     # What a document cannot hold
+    "project.no_design_in_file": mark(
+        "{path} does not hold the design that it was cut from. Open the project, or a cut file that this program wrote."
+    ),
     "project.designs_without_target": mark("A project with designs also needs the target they were made for."),
     "project.grids_differ": mark(
         "All designs of a project must have the same grid, got {rows} x {columns} and {other_rows} x {other_columns}."

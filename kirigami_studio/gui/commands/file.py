@@ -17,6 +17,7 @@ from kirigami_studio.gui.jobs.cut_jobs import Motion
 from kirigami_studio.gui.jobs.project_jobs import Leftover
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import file_ending
 
 if TYPE_CHECKING:
@@ -68,6 +69,10 @@ class FileCommands(QObject):
             self._window.unsaved.guard(OTHER_PROJECT, lambda: self._controller.open_project(Path(name)))
         else:
             self._controller.targeting.open(name)
+
+    def open_design(self, document: Document, source: str) -> None:
+        """Open the design that a cut file of this program carries; it is saved elsewhere."""
+        self._window.unsaved.guard(OTHER_PROJECT, lambda: self._controller.open_design(document, source))
 
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""

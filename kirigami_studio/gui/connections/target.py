@@ -48,6 +48,7 @@ class TargetConnections(QObject):
         window.target.threshold.changed.connect(targeting.change_threshold)
         window.target.threshold.automatic_wanted.connect(lambda: targeting.change_threshold(None))
         window.target.threshold.edited.connect(targeting.tracer.end_drag)
+        targeting.reader.design_read.connect(window.files.open_design)
         targeting.reader.choice_wanted.connect(window.dialogs.show_parts)
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
     from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.project.document import Document
     from kirigami_studio.project.verdict import Verdict
 
 ANIMATION = ".gif"
@@ -122,6 +123,8 @@ class CutRequest:
         How it does as cut, if that is known already.
     artwork : Artwork or None
         What is printed on the sheet.
+    document : Document or None
+        The project of the design, which cut files carry with this design alone.
     """
 
     candidate: Candidate
@@ -131,6 +134,7 @@ class CutRequest:
     facts: Mapping[str, str] = field(default_factory=dict)
     as_cut: AsCut | None = None
     artwork: Artwork | None = None
+    document: Document | None = None
 
 
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
@@ -248,6 +252,7 @@ def _judging(request: CutRequest, made: Planned) -> Callable[[Sequence[Verificat
 def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     """What the exporters get about a design."""
     from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.project.store import packed_design
 
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
@@ -259,6 +264,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         markers=request.settings.markers,
         provenance=request.facts,
         artwork=request.artwork,
+        record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
 
 

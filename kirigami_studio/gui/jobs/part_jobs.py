@@ -10,11 +10,13 @@ import numpy as np
 import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.target_jobs import TargetRead, reading_target
 from kirigami_studio.outlines.merging import Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.read import PART_READERS, read_parts
+from kirigami_studio.project.document import Document
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
@@ -35,14 +37,34 @@ class PartsRead:
     sketches: tuple[tuple[FloatArray, ...], ...]
 
 
-def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
-    """Read a target, or the parts of a drawing that has several to choose from."""
+@dataclass(frozen=True, slots=True, eq=False)
+class DesignRead:
+    """The project of the design that a cut file of this program carries."""
+
+    document: Document
+
+
+def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead | DesignRead]:
+    """Read a target, the parts of a drawing that has several to choose from, or the design of a cut file."""
     if Path(source).suffix.lower() in PART_READERS:
+        if (document := _design_of(Path(source))) is not None:
+            yield DesignRead(document)
+            return
         found = read_parts(source)
         if found.is_ambiguous:
             yield sketched(found)
             return
     yield from reading_target(source, cancel)
+
+
+def _design_of(path: Path) -> Document | None:
+    """The design that a cut file carries; None for any other drawing."""
+    from kirigami_studio.project import store
+
+    try:
+        return store.load(path)
+    except KirigamiError:
+        return None  # another program's drawing, or one that cannot be read: its reader says so
 
 
 def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:
