@@ -22,6 +22,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Switch, WindowState
 from kirigami_studio.gui.commands import all_commands
 from kirigami_studio.gui.commands.actions import CommandActions
+from kirigami_studio.gui.commands.context_menus import offer_context_menus
 from kirigami_studio.gui.commands.file import FileCommands
 from kirigami_studio.gui.commands.submenus import LanguageMenu, PictureMenu, RecentMenu
 from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS, Appearance
@@ -157,6 +158,7 @@ class MainWindow(QMainWindow):
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
+        offer_context_menus(self)
         controller, refresh = self.controller, self.commands.refresh
         for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
             document_signal.connect(refresh)

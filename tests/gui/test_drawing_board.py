@@ -105,10 +105,10 @@ def test_that_the_editor_takes_the_place_of_the_stage_and_gives_it_back(heart: M
     assert abs(heart.target.view.width() - before) <= 2
 
 
-def test_that_escape_puts_the_tool_away_and_then_leaves_the_editor(board: MainWindow, qtbot: QtBot) -> None:
+def test_that_escape_takes_the_move_tool_and_then_leaves_the_editor(board: MainWindow, qtbot: QtBot) -> None:
     use(board, Tool.STAR)
     qtbot.keyClick(board.target.view, Qt.Key.Key_Escape)
-    assert board.target.view.tool is Tool.LOOK and board.target.editing
+    assert board.target.view.tool is Tool.POSE and board.target.editing
     qtbot.keyClick(board.target.view, Qt.Key.Key_Escape)
     assert not board.target.editing
 
@@ -122,10 +122,15 @@ def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbo
 
 
 def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: MainWindow, qtbot: QtBot) -> None:
-    for key in (Qt.Key.Key_Plus, Qt.Key.Key_Minus, Qt.Key.Key_Equal):
-        qtbot.keyClick(heart.stage.view, key)
-        assert not heart.target.editing
+    view, key = heart.target.view, Qt.Key.Key_Plus
+    before = view.transform()
+    qtbot.keyClick(heart.stage.view, key)
+    assert not heart.target.editing and view.transform() == before
     heart.commands["edit_target"].trigger()
+    opened = view.transform()
+    qtbot.keyClick(view, key)
+    zoomed = view.transform()
+    assert opened is not None and zoomed is not None and zoomed.scale == pytest.approx(1.2 * opened.scale)
     heart.commands["mode_add"].trigger()
     assert heart.target.tools.modes[Combine.ADD].isChecked()
 
@@ -167,7 +172,7 @@ def test_that_without_a_target_there_is_nothing_to_move_or_take_from(board: Main
     for button in (strip.buttons[Tool.POINTS], strip.modes[Combine.SUBTRACT], strip.mirror, board.target.refine):
         assert not button.isEnabled()
     board.commands["points"].trigger()
-    assert board.messages.messages[-1].tone is Tone.HINT and board.target.view.tool is Tool.LOOK
+    assert board.messages.messages[-1].tone is Tone.HINT and board.target.view.tool is Tool.POSE
 
 
 def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> None:
@@ -191,7 +196,7 @@ def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow
     width, height = target.size
     assert 20 < width <= 60.001 and 30 < height <= 40.001
     assert board.controller.history.undo_label is not None and board.controller.history.undo_label.startswith("Draw ")
-    assert board.target.view.tool is Tool.LOOK
+    assert board.target.view.tool is Tool.POSE
     board.commands["undo"].trigger()
     assert board.controller.document.target is None
 

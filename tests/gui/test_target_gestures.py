@@ -233,6 +233,8 @@ def test_that_escape_leaves_a_sketch_without_a_trace(heart: MainWindow, qtbot: Q
     qtbot.keyClick(heart, Qt.Key.Key_P)
     qtbot.mouseClick(view, LEFT, pos=at(60, 40))
     qtbot.keyClick(view, Qt.Key.Key_Escape)
+    assert not view.active.busy and heart.target.buttons["polygon"].isChecked()
+    qtbot.keyClick(view, Qt.Key.Key_Escape)
     assert not heart.target.buttons["polygon"].isChecked()
     assert heart.controller.document is before
 

@@ -53,7 +53,7 @@ def _tools(window: MainWindow) -> tuple[Command, ...]:
 
 
 def _modes(window: MainWindow) -> tuple[Command, ...]:
-    """How the next shape joins the target; only on the board, because + and - change a ratio elsewhere."""
+    """How the next shape joins the target; only on the board."""
 
     def mode(name: str, how: Combine, text: str, key: str, tip: str, icon: str) -> Command:
         return Command(
@@ -71,9 +71,9 @@ def _modes(window: MainWindow) -> tuple[Command, ...]:
     new, join = tr("Replace the target with the next shape"), tr("Add the next shape to the target")
     cut = tr("Cut the next shape out of the target")
     return (
-        mode("mode_new", Combine.REPLACE, tr("&New shape"), "=", new, "replace"),
-        mode("mode_add", Combine.ADD, tr("&Add shape"), "+", join, "add"),
-        mode("mode_subtract", Combine.SUBTRACT, tr("Su&btract shape"), "-", cut, "subtract"),
+        mode("mode_new", Combine.REPLACE, tr("&New shape"), "Alt+1", new, "replace"),
+        mode("mode_add", Combine.ADD, tr("&Add shape"), "Alt+2", join, "add"),
+        mode("mode_subtract", Combine.SUBTRACT, tr("Su&btract shape"), "Alt+3", cut, "subtract"),
     )
 
 

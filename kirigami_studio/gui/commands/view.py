@@ -14,6 +14,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Command, WindowState, Wording
 from kirigami_studio.gui.files.user_preferences import UserPreferences
 from kirigami_studio.gui.look import theme
+from kirigami_studio.gui.views.canvas import ZOOM_STEP
 from kirigami_studio.gui.views.layout_view import Overlay
 
 if TYPE_CHECKING:
@@ -83,7 +84,14 @@ class Appearance(QObject):
 
 def commands(window: MainWindow) -> tuple[Command, ...]:
     """Return the commands of the View menu."""
-    return (*_deployment(window), *_overlays(window), *_faults(window), *_pages(window), *_themes(window))
+    return (
+        *_deployment(window),
+        *_overlays(window),
+        *_faults(window),
+        *_pages(window),
+        *_zooms(window),
+        *_themes(window),
+    )
 
 
 def _deployment(window: MainWindow) -> tuple[Command, ...]:
@@ -275,15 +283,46 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             icon="swap",
             enabled_when=lambda now: now.comparing,
         ),
+    )
+
+
+def _zooms(window: MainWindow) -> tuple[Command, ...]:
+    """What is in sight is zoomed: the drawing board while it is open, else the stage."""
+    board, stage, menu = window.target, window.stage, tr("&View")
+
+    def zoom(factor: float) -> None:
+        board.view.zoom(factor) if board.editing else stage.zoom(factor)
+
+    return (
         Command(
             "fit",
             menu,
-            tr("Fit vi&ew"),
+            tr("Show &everything"),
             tr("Zoom to show everything"),
-            stage.fit,
-            shortcuts=("0",),
+            lambda: board.view.fit() if board.editing else stage.fit(),
+            shortcuts=("0", "Ctrl+0"),
             icon="fit",
             gap=True,
+        ),
+        Command("zoom_in", menu, tr("Zoom &in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), ("Ctrl++", "Ctrl+=")),
+        Command("zoom_out", menu, tr("Zoom ou&t"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), ("Ctrl+-",)),
+        Command(
+            "zoom_real",
+            menu,
+            tr("Actual size"),
+            tr("Show a millimetre as long as it is on paper"),
+            board.view.zoom_to_real_size,
+            shortcuts=("Ctrl+1",),
+            enabled_when=lambda now: now.editing_target,
+        ),
+        Command(
+            "zoom_selection",
+            menu,
+            tr("Zoom to selection"),
+            tr("Show what is selected as large as possible"),
+            board.view.zoom_to_selection,
+            shortcuts=("Ctrl+2",),
+            enabled_when=lambda now: now.editing_target,
         ),
     )
 
@@ -296,7 +335,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
             tr("Dark t&heme"),
             tr("Switch between light and dark"),
             window.appearance.switch,
-            shortcuts=("Ctrl+D",),
+            shortcuts=("Ctrl+Alt+D",),
             icon="moon",
             gap=True,
             worded=_theme_wording,

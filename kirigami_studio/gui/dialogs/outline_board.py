@@ -96,7 +96,7 @@ class OutlineBoard(QDialog):
         self.cancel.setAutoDefault(False)
         self._lay_out()
         self._connect()
-        self.set_tool(Tool.LOOK)
+        self.set_tool(Tool.POSE)
         self.view.set_editing(True)
         self._show()
 
@@ -122,7 +122,7 @@ class OutlineBoard(QDialog):
         context = self.view.context
         context.changed.connect(self._change)
         self.view.hint.connect(self.hint.setText)
-        self.view.tool_left.connect(lambda: self.set_tool(Tool.LOOK))
+        self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(self.reject)
         self.tools.tool_wanted.connect(self.set_tool)
         self.tools.grid_switched.connect(self._snap)
@@ -152,6 +152,7 @@ class OutlineBoard(QDialog):
 
     def set_tool(self, tool: Tool) -> None:
         """Change what the pointer does."""
+        tool = Tool.POSE if tool is Tool.LOOK else tool
         self.tools.show_tool(tool)
         self.view.set_tool(tool)
 

@@ -205,6 +205,10 @@ class ComparePage(QWidget):
         """Show everything of both."""
         self.left.view.fit()
 
+    def zoom(self, factor: float) -> None:
+        """Enlarge both."""
+        self.left.view.zoom(factor)
+
     def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show one part of both."""
         for side in self.sides:

@@ -35,9 +35,9 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", mark("New (=). What you draw replaces the shape.")),
-    (Combine.ADD, "add", mark("Add (+). What you draw is added to the shape.")),
-    (Combine.SUBTRACT, "subtract", mark("Subtract (-). What you draw is cut out of the shape.")),
+    (Combine.REPLACE, "replace", mark("New (Alt+1). What you draw replaces the shape.")),
+    (Combine.ADD, "add", mark("Add (Alt+2). What you draw is added to the shape.")),
+    (Combine.SUBTRACT, "subtract", mark("Subtract (Alt+3). What you draw is cut out of the shape.")),
 )
 MIRRORS = (
     ("left", mark("Keep &left half")),
@@ -87,7 +87,7 @@ class DrawingToolBar(QWidget):
         self.done_button = QPushButton(tr("Done"))
         self.done_button.setObjectName("small")
         self.done_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.done_button.setToolTip(tr("Leave the drawing board (E or Esc)"))
+        self.done_button.setToolTip(tr("Leave the drawing board (E)"))
         self.done_button.clicked.connect(self.done)
         row.addWidget(self.done_button)
         self.options = ToolOptions(context)

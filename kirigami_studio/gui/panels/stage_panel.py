@@ -210,6 +210,10 @@ class StagePanel(Card):
         """Show everything of what is in sight."""
         (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).fit()
 
+    def zoom(self, factor: float) -> None:
+        """Enlarge what is in sight."""
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
+
     def set_comparing(self, on: bool) -> None:
         """Show two designs side by side, or one alone."""
         if on != self.comparing:

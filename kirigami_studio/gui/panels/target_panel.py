@@ -117,15 +117,17 @@ class TargetPanel(Card):
         self.tools.tool_wanted.connect(self.set_tool)
         self.tools.grid_switched.connect(self.set_snapping)
         self.tools.done.connect(lambda: self.set_editing(False))
-        self.view.tool_left.connect(lambda: self.set_tool(Tool.LOOK))
+        self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(lambda: self.set_editing(False))
         self.set_editing(False)
         self.show_target(None)
 
     def set_tool(self, tool: Tool) -> None:
-        """Change what clicks on the target do; every tool but looking opens the editor."""
+        """Change what clicks on the target do; every tool but looking opens the editor, which stays with one."""
         if tool is not Tool.LOOK:
             self.set_editing(True)
+        elif self.editing:
+            tool = Tool.POSE
         self.tools.show_tool(tool)
         self.view.set_tool(tool)
         if tool is Tool.TEXT:  # so that typing comes first, then the box
@@ -134,8 +136,7 @@ class TargetPanel(Card):
 
     def set_editing(self, on: bool) -> None:
         """Show the tools and the board, or the target alone."""
-        if not on:
-            self.set_tool(Tool.LOOK)
+        opens = on and not self.editing
         self.buttons["edit"].setChecked(on)
         for part in (self.tools, self.refine):
             part.setVisible(on)
@@ -148,6 +149,8 @@ class TargetPanel(Card):
             self.editing_changed.emit(on)
             if not on and self.view.outline is not None:
                 self.view.hint.emit(tr(DONE_HINT))
+        if opens or not on:
+            self.set_tool(Tool.POSE if on else Tool.LOOK)
 
     def set_snapping(self, on: bool) -> None:
         """Show the grid and snap to it, or neither."""

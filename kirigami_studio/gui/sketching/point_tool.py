@@ -15,7 +15,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
-from kirigami_studio.gui.scene.view_transform import ViewTransform
+from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
 from kirigami_studio.outlines.nodes import Kind
@@ -303,6 +303,20 @@ class PointTool(SketchTool):
             side = (INTO + OUT - handle.side) if turned else handle.side
             bent = bent.with_handle(nearest, side, offset * factors, pointer.alt, pointer.shift)
         return bent
+
+    @property
+    def busy(self) -> bool:
+        return self._grip is not Grip.NOTHING
+
+    def deselect(self) -> bool:
+        selected = bool(self.selected)
+        self.select(())
+        return selected
+
+    def selected_box(self) -> Bounds | None:
+        if self._anchors is None or len(self.selected) < 2:
+            return super().selected_box()
+        return Bounds.of(self._anchors.places[sorted(self.selected)])
 
     def drop(self) -> None:
         self._dragged, self._field, self._handle, self._start = None, None, None, None

@@ -92,6 +92,10 @@ class PoseTool(SketchTool):
         self.context.changed.emit(Change(tr("Move target"), lambda: target.moved((x, y)), nudge[1]))
         return True
 
+    @property
+    def busy(self) -> bool:
+        return self._proposal is not None
+
     def drop(self) -> None:
         self._grip, self._proposal, self._start = None, None, None
 

@@ -65,6 +65,10 @@ class Freehand(SketchTool):
         if len(points) > 1:
             self.context.draw(lambda: stroke_of(points, mirror), FREEHAND)
 
+    @property
+    def busy(self) -> bool:
+        return bool(self._pointers)
+
     def drop(self) -> None:
         self._pointers = []
 
@@ -119,6 +123,10 @@ class Corners(SketchTool):
         else:
             return False
         return True
+
+    @property
+    def busy(self) -> bool:
+        return bool(self._pointers)
 
     def drop(self) -> None:
         self._pointers = []
@@ -177,6 +185,10 @@ class BoxTool(SketchTool, ABC):
         if start is not None and distance(start.pixel, pointer.pixel) >= LEAST_DRAG:
             box = Box.spanned(start.place, pointer.place, pointer.shift)
             self.context.draw(lambda: self.shape(box), self.name)
+
+    @property
+    def busy(self) -> bool:
+        return self._start is not None
 
     def drop(self) -> None:
         self._start = self._end = None

@@ -212,8 +212,21 @@ class SketchTool:
         """A key goes down; whether the tool had a use for it."""
         return False
 
+    @property
+    def busy(self) -> bool:
+        """Whether a gesture is under way that :meth:`drop` would cancel."""
+        return False
+
     def drop(self) -> None:
         """Cancel the gesture under way."""
+
+    def deselect(self) -> bool:
+        """Select nothing; whether anything was selected."""
+        return False
+
+    def selected_box(self) -> Bounds | None:
+        """The box around what is selected, else around the target, mm."""
+        return None if self.context.placed is None else Bounds.of(self.context.placed.ring)
 
     def sync(self) -> None:
         """The target is another one now."""

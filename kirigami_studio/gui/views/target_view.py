@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
+from functools import partial
 
-from PySide6.QtCore import QMimeData, QRectF, QSize, Qt, Signal
+import numpy as np
+from PySide6.QtCore import QEvent, QMimeData, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
+    QFocusEvent,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -31,7 +35,7 @@ from kirigami_studio.gui.sketching.pose_tool import PoseTool
 from kirigami_studio.gui.sketching.shape_tools import Corners, FigureTool, Freehand, TextTool
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.underlay import Underlay
-from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.views.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.views.file_drops import FileDrops
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import Figure
@@ -41,6 +45,8 @@ from kirigami_studio.outlines.reach import Reach
 
 #: Room around the target on the board while it is edited, as a share of its size.
 ROOM = 0.2
+#: Millimetres of an inch.
+INCH = 25.4
 
 
 class Tool(Enum):
@@ -74,6 +80,7 @@ class TargetView(Canvas):
         self.reach: Reach | None = None
         self.underlay: Underlay | None = None
         self._editing = False
+        self._panning = False
         self._board = BOARD
         self.context = SketchContext(self)
         self.context.repaint.connect(self.update)
@@ -156,6 +163,30 @@ class TargetView(Canvas):
         self._choose_board()
         self.fit()
 
+    def fit(self) -> None:
+        self._choose_board()
+        super().fit()
+
+    def zoom_to_selection(self) -> None:
+        """Show what is selected as large as possible."""
+        transform, chosen = self.transform(), self.active.selected_box()
+        if transform is None or chosen is None:
+            return
+        box = self.scene_box()
+        wanted = ViewTransform.fitting(chosen, box, 2 * self.margin()).scale
+        self.zoom(wanted / transform.scale)
+        now = self.transform() or transform
+        middle = np.array([0.5 * (chosen.left + chosen.right), 0.5 * (chosen.bottom + chosen.top)])
+        self._shift += box.center() - QPointF(*now.to_pixels(middle).tolist())
+        self._emit_view()
+        self.update()
+
+    def zoom_to_real_size(self) -> None:
+        """Show a millimetre as long as it is on paper."""
+        transform = self.transform()
+        if transform is not None:
+            self.zoom(self.screen().physicalDotsPerInch() / INCH / transform.scale)
+
     def _choose_board(self) -> None:
         """Room to draw in: around the target, or the empty board."""
         placed = self.context.placed
@@ -226,26 +257,53 @@ class TargetView(Canvas):
 
     # the pointer and the keys --------------------------------------------------------------------------------------
 
+    @property
+    def _looking(self) -> bool:
+        """Whether a drag moves the view."""
+        return self._panning or self._tool is Tool.LOOK
+
+    def event(self, event: QEvent) -> bool:
+        """Keys of the board come before the window's commands: Qt asks first whose key it is (ShortcutOverride)."""
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and self._wants(event):
+            event.accept()
+            return True
+        return super().event(event)
+
+    def _wants(self, event: QKeyEvent) -> bool:
+        plain = not event.modifiers() & ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
+        return self._editing and plain and (event.key() == Qt.Key.Key_Space or event.key() in self._zooms())
+
+    def _zooms(self) -> dict[int, Callable[[], None]]:
+        closer, away = partial(self.zoom, ZOOM_STEP), partial(self.zoom, 1.0 / ZOOM_STEP)
+        return {
+            Qt.Key.Key_Plus: closer,
+            Qt.Key.Key_Equal: closer,
+            Qt.Key.Key_Minus: away,
+            Qt.Key.Key_0: self.fit,
+            Qt.Key.Key_1: self.zoom_to_real_size,
+            Qt.Key.Key_2: self.zoom_to_selection,
+        }
+
     def _pointer_event(self, event: QMouseEvent) -> PointerEvent:
         self.context.transform = self.transform() or self.context.transform
         return self.context.pointer(event.position(), event.modifiers())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
+        if self._looking or event.button() is not Qt.MouseButton.LeftButton:
             super().mousePressEvent(event)
             return
         self.active.press(self._pointer_event(event))
         self.update()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self._tool is Tool.LOOK or event.buttons() & Qt.MouseButton.MiddleButton:
+        if self._looking or event.buttons() & Qt.MouseButton.MiddleButton:
             super().mouseMoveEvent(event)
             return
         self.active.move(self._pointer_event(event), bool(event.buttons() & Qt.MouseButton.LeftButton))
         self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self._tool is Tool.LOOK or event.button() is not Qt.MouseButton.LeftButton:
+        if self._looking or event.button() is not Qt.MouseButton.LeftButton:
             super().mouseReleaseEvent(event)
             self.setCursor(self.active.cursor)
             return
@@ -253,21 +311,49 @@ class TargetView(Canvas):
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self._tool is Tool.LOOK:
+        if self._looking:
             super().mouseDoubleClickEvent(event)
             return
         self.active.double_click(self._pointer_event(event))
         self.update()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        if event.key() == Qt.Key.Key_Escape and self._tool is not Tool.LOOK:
-            self.active.drop()
-            self.tool_left.emit()
-        elif event.key() == Qt.Key.Key_Escape and self._editing:
-            self.editing_left.emit()
+        if event.key() == Qt.Key.Key_Escape and self._editing:
+            self._step_back()
+        elif self._editing and event.key() == Qt.Key.Key_Space:
+            if not event.isAutoRepeat():
+                self._panning = True
+                self.setCursor(Qt.CursorShape.OpenHandCursor)
+        elif self._wants(event):
+            self._zooms()[event.key()]()
         elif not self.active.key(event):
             super().keyPressEvent(event)
         self.update()
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        if event.key() == Qt.Key.Key_Space and self._panning and not event.isAutoRepeat():
+            self._stop_panning()
+        else:
+            super().keyReleaseEvent(event)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
+        self._stop_panning()
+        super().focusOutEvent(event)
+
+    def _stop_panning(self) -> None:
+        self._panning = False
+        self.setCursor(self.active.cursor)
+
+    def _step_back(self) -> None:
+        """Esc takes back the least there is: a gesture, then the selection, then the tool, then the board."""
+        if self.active.busy:
+            self.active.drop()
+        elif self.active.deselect():
+            return
+        elif self._tool not in (Tool.POSE, Tool.LOOK):
+            self.tool_left.emit()
+        else:
+            self.editing_left.emit()
 
 
 #: Tools that make a new shape.
