@@ -304,8 +304,8 @@ def _zooms(window: MainWindow) -> tuple[Command, ...]:
             icon="fit",
             gap=True,
         ),
-        Command("zoom_in", menu, tr("Zoom &in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), ("Ctrl++", "Ctrl+=")),
-        Command("zoom_out", menu, tr("Zoom ou&t"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), ("Ctrl+-",)),
+        Command("zoom_in", menu, tr("Zoom in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), ("Ctrl++", "Ctrl+=")),
+        Command("zoom_out", menu, tr("Zoom out"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), ("Ctrl+-",)),
         Command(
             "zoom_real",
             menu,
