@@ -22,9 +22,8 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Switch, WindowState
 from kirigami_studio.gui.commands import all_commands
 from kirigami_studio.gui.commands.actions import CommandActions
-from kirigami_studio.gui.commands.context_menus import offer_context_menus
 from kirigami_studio.gui.commands.file import FileCommands
-from kirigami_studio.gui.commands.submenus import LanguageMenu, PictureMenu, RecentMenu
+from kirigami_studio.gui.commands.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
 from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS, Appearance
 from kirigami_studio.gui.connections.window import Connections
 from kirigami_studio.gui.controller import Controller

@@ -1,11 +1,13 @@
-"""Submenus: recent files, pictures of the views, the language of the window."""
+"""Submenus: recent files, pictures of the views, the language of the window; and the context menus of views."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
@@ -15,6 +17,23 @@ from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.language import NAMES, SYSTEM
 from kirigami_studio.project.recent import Recent
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.main_window import MainWindow
+
+#: Commands by id, "" for a gap.  Those that cannot be given now are grey.
+BOARD = (
+    *("undo", "redo", "", "points", "pose", "polygon", "freehand", "rectangle", "ellipse", "regular", "star", "text"),
+    *("", "paste", "copy_picture", "clear", "", "fit", "zoom_selection", "zoom_real", "zoom_in", "zoom_out"),
+    *("", "grid", "axis", "", "edit_target"),
+)
+TARGET = ("edit_target", "", "open_target", "library", "paste", "copy_picture", "clear")
+STAGE = (
+    *("play", "to_flat", "to_target", "", "show_target", "show_mismatch", "show_faults", "show_stretch", "show_grips"),
+    *("", "before", "hand", "cuts", "plots", "compare", "", "more_like", "refit", "pin", "reject"),
+    *("", "copy_picture", "fit", "zoom_in", "zoom_out"),
+)
+CUTS = ("undo", "redo", "", "cuts", "", "copy_picture", "copy_cuts", "export", "", "fit", "zoom_in", "zoom_out")
 
 
 class PictureMenu(QMenu):
@@ -149,3 +168,29 @@ class LanguageMenu(QMenu):
 
     def _choose(self, code: str, _: bool = False) -> None:
         self._appearance.choose_language(code)
+
+
+def offer_context_menus(window: MainWindow) -> None:
+    """Give the views of a window their menus."""
+    target, stage = window.target, window.stage
+    _offer(window, stage.view, lambda: STAGE)
+    _offer(window, stage.cuts.view, lambda: CUTS)
+    _offer(window, target.view, lambda: BOARD if target.editing else TARGET)
+
+
+def _offer(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...]]) -> None:
+    view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+    view.customContextMenuRequested.connect(partial(_open, window, view, names))
+
+
+def _open(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...]], place: QPoint) -> None:
+    window.commands.refresh()
+    menu = QMenu(view)
+    menu.setObjectName("contextMenu")
+    menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    for name in names():
+        if name:
+            menu.addAction(window.commands[name])
+        else:
+            menu.addSeparator()
+    menu.popup(view.mapToGlobal(place))
