@@ -262,7 +262,7 @@ class PartPicker(QDialog):
     def _row(self, part: Part) -> str:
         """Two lines: name, and size with kind."""
         assert self._read is not None
-        return f"{part.name}\n{_size(part.size, self._read.source.unit)}  \N{MIDDLE DOT}  {KINDS[part.kind]}"
+        return f"{part.name}\n{_size(part.size, self._read.source.unit)}  \N{MIDDLE DOT}  {tr(KINDS[part.kind])}"
 
     # choosing --------------------------------------------------------------------------------------------------------
 
