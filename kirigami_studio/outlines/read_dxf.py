@@ -15,6 +15,8 @@ from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.insert import Insert
 from ezdxf.entities.layer import Layer
+from ezdxf.entities.mtext import MText
+from ezdxf.entities.text import Text as DXFText
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import dxf_stream_info, read, readfile
 from ezdxf.lldxf.const import DXFError
@@ -32,6 +34,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import Part, PartKind, Pen, SourceParts, numbered, parts_of_lines
 from kirigami_studio.outlines.pieces import largest_piece
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.text_curves import MOST_LETTERS, Text, scaled, text_parts
 
 #: Entities that are lines of a contour; everything else in a drawing is text, measures and decoration.
 CURVES = frozenset({"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "CIRCLE", "ELLIPSE", "HELIX"})
@@ -50,6 +53,8 @@ DEEPEST_BLOCK = 16
 MOST_MEGABYTES = 50
 #: Share of the time for the text of a file; its entities take as long again.
 TEXT_TIME = 0.5
+#: Distance of two lines of a text, heights of its capitals.
+LINE = 5.0 / 3.0
 BINARY = b"AutoCAD Binary DXF"
 #: Such files are decoded at one go, which cannot be timed.
 MOST_BINARY_MEGABYTES = 4
@@ -79,6 +84,7 @@ class Read:
     to_mm: float
     unit: str
     facts: dict[str, str]
+    texts: tuple[Text, ...] = ()
 
 
 def read_dxf(path: str | Path) -> Outline:
@@ -118,7 +124,7 @@ def dxf_parts(path: str | Path) -> SourceParts:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path, content)
+        found = _read(path, content, with_texts=True)
         lines_of: dict[str, list[Line]] = {}
         for line in found.lines:
             lines_of.setdefault(line.layer, []).append(line)
@@ -132,13 +138,17 @@ def dxf_parts(path: str | Path) -> SourceParts:
             colours = {line.colour for line in lines}
             like = Part(0, "", layer, colours.pop() if len(colours) == 1 else "", PartKind.STROKED, Polygon(), (), pen)
             parts += parts_of_lines(net, like)
+        written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
+        parts += written
+        if not parts:
+            raise TargetError("dxf.no_lines_but_text")
         kept, too_many = numbered(parts, max(max(part.size) for part in parts))
-        left_out = (*found.notes, *gaps, *too_many)
+        left_out = (*found.notes, *fonts, *gaps, *too_many)
         return SourceParts(path.stem, kept, left_out, found.unit, MappingProxyType(found.facts))
 
 
-def _read(path: Path, content: bytes) -> Read:
-    """Everything visible in model space, flattened.
+def _read(path: Path, content: bytes, with_texts: bool = False) -> Read:
+    """Everything visible in model space, flattened; texts only where they are wanted.
 
     Raises
     ------
@@ -148,16 +158,17 @@ def _read(path: Path, content: bytes) -> Read:
     budget = TimeBudget()
     drawing, notes = _opened(path, content, budget)
     curves, texts, hidden = _visible(drawing, budget)
-    if not curves:
+    written = [text for entity in texts[:MOST_LETTERS] for text in _texts(entity)] if with_texts else []
+    if not curves and not written:
         raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
-    if texts:
+    if texts and not written:
         notes += (tr("Text was left out. Convert it to lines if it belongs to the shape."),)
     if hidden:
         notes += (tr("Hidden layers were left out: {names}.", names=", ".join(sorted(hidden))),)
     # A file that does not state its unit is given metres by ezdxf; here it stays without unit.
     has_unit = b"$INSUNITS" in content and drawing.units != InsertUnits.Unitless
     to_mm = units.conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if has_unit else 1.0
-    lines, unread = _flattened(curves, drawing, budget)
+    lines, unread = _flattened(curves, drawing, budget) if curves else ([], 0)
     refuse_scribbles([line.chain for line in lines])
     if unread:
         notes += (
@@ -168,7 +179,7 @@ def _read(path: Path, content: bytes) -> Read:
             ),
         )
     facts = {str(name): str(text) for name, text in drawing.header.custom_vars.properties}
-    return Read(lines, notes, to_mm, "mm" if has_unit else "", facts)
+    return Read(lines, notes, to_mm, "mm" if has_unit else "", facts, tuple(written))
 
 
 class _TimedBytes(io.BytesIO):
@@ -203,12 +214,12 @@ def _opened(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing, tu
         return drawing, (tr("The file was damaged and was repaired while reading. Check the shape."),)
 
 
-def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], int, set[str]]:
-    """Curves on visible layers of model space, blocks unfolded; the number of texts; hidden layers with curves."""
+def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], list[DXFGraphic], set[str]]:
+    """Curves on visible layers of model space, blocks unfolded; texts; hidden layers with curves."""
     off = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
     curves: list[DXFGraphic] = []
     hidden: set[str] = set()
-    texts = 0
+    texts: list[DXFGraphic] = []
     for count, entity in enumerate(_unfolded(drawing.modelspace(), 0, budget)):
         if count >= MOST_ENTITIES:
             raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
@@ -217,10 +228,39 @@ def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], in
         if entity.dxf.layer.lower() in off:
             hidden |= {entity.dxf.layer} if entity.dxftype() in CURVES else set()
             continue
-        texts += entity.dxftype() in TEXTS
+        if entity.dxftype() in TEXTS:
+            texts.append(entity)
         if entity.dxftype() in CURVES:
             curves.append(entity)
     return curves, texts, hidden
+
+
+def _texts(entity: DXFGraphic) -> Iterator[Text]:
+    """The lines of a text, in drawing units."""
+    if isinstance(entity, MText):
+        height, at, angle = float(entity.dxf.char_height), entity.dxf.insert, float(entity.get_rotation())
+        rows = entity.plain_text(split=True)
+        row, column = divmod(max(int(entity.dxf.attachment_point), 1) - 1, 3)
+        # Attached at the top, in the middle or at the bottom; lines are five thirds of a letter apart.
+        first = (-1.0, 0.5 * (len(rows) - 1) * LINE - 0.5, (len(rows) - 1) * LINE)[min(row, 2)]
+        anchor = 0.5 * column
+    elif isinstance(entity, DXFText):
+        kind, at, other = entity.get_placement()
+        height, angle, rows = float(entity.dxf.height), float(entity.dxf.rotation), [entity.plain_text()]
+        name = kind.name
+        anchor = 1.0 if name.endswith("RIGHT") else 0.5 if name.endswith("CENTER") or name == "MIDDLE" else 0.0
+        first = -1.0 if name.startswith("TOP") else -0.5 if name.startswith("MIDDLE") else 0.0
+        if other is not None:  # between two places
+            at, anchor = at.lerp(other), 0.5
+    else:
+        return
+    if not (np.isfinite([height, angle, at.x, at.y]).all() and height > 0):
+        return
+    cos, sin = height * np.cos(np.radians(angle)), height * np.sin(np.radians(angle))
+    for number, text in enumerate(rows):
+        up = first - number * LINE
+        matrix = ((cos, -sin, at.x - sin * up), (sin, cos, at.y + cos * up))
+        yield Text(text, matrix, anchor, layer=entity.dxf.layer, is_cap_height=True)
 
 
 def _unfolded(entities: Iterable[DXFEntity], depth: int, budget: TimeBudget) -> Iterator[DXFEntity]:

@@ -35,6 +35,7 @@ from kirigami_studio.outlines.parts import (
 from kirigami_studio.outlines.pieces import enclosed, largest_piece
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 from kirigami_studio.outlines.svg_safety import checked_svg
+from kirigami_studio.outlines.text_curves import Text, text_left_out, text_parts
 
 #: The library's calls carry no types; its values are checked here instead.
 svgelements: Any = untyped_svgelements
@@ -48,6 +49,7 @@ WIDEST_GAP = 0.02
 #: Deviation of flattened curves from the true ones, share of the shape's size.
 FLATNESS = 1.0 / 4000.0
 
+ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
 #: Names of SVG for the ends and corners of strokes, and ours.
 CAPS: Mapping[str, Cap] = {"butt": "flat", "round": "round", "square": "square"}
 JOINS: Mapping[str, Corner] = {"miter": "mitre", "round": "round", "bevel": "bevel"}
@@ -74,6 +76,7 @@ class Read:
     drawn: list[Drawn]
     left_out: tuple[str, ...]
     unit: str
+    texts: tuple[Text, ...] = ()
 
 
 def read_svg(path: str | Path) -> Outline:
@@ -116,7 +119,8 @@ def svg_parts(path: str | Path) -> SourceParts:
         read = _read(content)
         filled, notes = _without_paper([shape for shape in read.drawn if shape.is_filled])
         strokes = [shape for shape in read.drawn if not shape.is_filled]
-        if not filled and not strokes:
+        written, left_out = _written(read)
+        if not filled and not strokes and not written:
             raise _nothing_drawn(read.left_out)
         parts: list[Part] = []
         for shape in filled:
@@ -134,11 +138,17 @@ def svg_parts(path: str | Path) -> SourceParts:
             pen = max((shape.pen or Pen() for shape in shapes), key=lambda pen: pen.width)
             name = shapes[0].name if len(shapes) == 1 else ""
             parts += parts_of_lines(net, Part(0, name, layer, colour, PartKind.STROKED, Polygon(), (), pen))
+        parts = [_upright(part) for part in parts] + written
         if not parts:
             raise TargetError("drawing.no_area")
-        size = max(max(part.size) for part in parts)
-        kept, too_many = numbered([_upright(part) for part in parts], size)
-        return SourceParts(path.stem, kept, (*read.left_out, *notes, *gaps, *too_many), read.unit)
+        kept, too_many = numbered(parts, max(max(part.size) for part in parts))
+        return SourceParts(path.stem, kept, (*left_out, *notes, *gaps, *too_many), read.unit)
+
+
+def _written(read: Read) -> tuple[list[Part], tuple[str, ...]]:
+    """The letters of all texts as parts, y up; and what is left out of the drawing then."""
+    parts, fonts = text_parts(read.texts)
+    return parts, (*(note for note in read.left_out if note != text_left_out()), *fonts)
 
 
 def _upright(part: Part) -> Part:
@@ -162,7 +172,43 @@ def _read(content: bytes) -> Read:
     scale, unit = (width_mm / svg.width, "mm") if width_mm and svg.width else (1.0, "px")
     drawn = list(_drawn(_walk(svg, ""), scale, budget))
     refuse_scribbles([chain for shape in drawn for chain in shape.chains])
-    return Read(drawn, (*notes, *_left_out(svg)), unit)
+    return Read(drawn, (*notes, *_left_out(svg)), unit, tuple(_texts(_walk(svg, ""), scale)))
+
+
+def _texts(elements: Iterable[tuple[Any, str]], scale: float) -> Iterator[Text]:
+    """Visible texts, y up, pixels times ``scale``.  Parts of a text come before it and follow it on its line."""
+    waiting: list[Text] = []
+    for element, layer in elements:
+        if not isinstance(element, svgelements.Text) or not _is_visible(element) or not _is_painted(element, "fill"):
+            continue
+        own = element.values.get("attributes") or {}
+        line = _text(element, layer, scale)
+        if own.get("tag") == "tspan" and "x" not in own and "y" not in own:
+            waiting.append(line)
+            continue
+        yield replace(line, text=line.text + "".join(part.text for part in waiting))
+        waiting = []
+
+
+def _text(element: Any, layer: str, scale: float) -> Text:
+    to, size = element.transform, float(element.font_size or 16.0)
+    values = element.values
+    x, y = float(element.x or 0.0) + float(element.dx or 0.0), float(element.y or 0.0) + float(element.dy or 0.0)
+    across, down = to.point_in_matrix_space((x, y)), (to.c, to.d)
+    matrix = (
+        (to.a * size * scale, -down[0] * size * scale, float(across.x) * scale),
+        (-to.b * size * scale, down[1] * size * scale, -float(across.y) * scale),
+    )
+    weight = str(values.get("font-weight", "")).strip()
+    return Text(
+        " ".join(str(element.text or "").split(" ")).strip("\n\r\t"),
+        matrix,
+        ANCHORS.get(str(values.get("text-anchor", "start")).strip(), 0.0),
+        str(values.get("font-family", "")),
+        weight in ("bold", "bolder") or _number(weight, 400.0) >= 600.0,
+        str(values.get("font-style", "")).strip() in ("italic", "oblique"),
+        layer,
+    )
 
 
 def _walk(group: Any, layer: str) -> Iterator[tuple[Any, str]]:
@@ -390,7 +436,7 @@ def _left_out(svg: Any) -> tuple[str, ...]:
     elements = list(svg.elements())
     sentences = []
     if any(isinstance(element, svgelements.Text) and str(element.text or "").strip() for element in elements):
-        sentences.append(tr("Text was left out. Convert it to paths if it belongs to the shape."))
+        sentences.append(text_left_out())
     if any(isinstance(element, svgelements.Image) for element in elements):
         sentences.append(tr("An embedded picture was left out. Export it as PNG if it is the shape."))
     return tuple(sentences)

@@ -173,16 +173,47 @@ def test_that_layers_of_a_dxf_give_parts_in_mm_and_hidden_ones_are_told(dxf) -> 
         space.add_circle((2, 1), 0.5, dxfattribs={"layer": "Plate"})
         space.add_line((9, 9), (12, 9), dxfattribs={"layer": "Marks", "color": 3})
         space.add_line((9, 8), (12, 8), dxfattribs={"layer": "Guides"})
-        space.add_text("hello")
 
     source = read_parts(dxf(draw, units=1))
     told = [(part.layer, part.kind.value, part.colour) for part in source.parts]
     assert told == [("Plate", "closed", "#ff0000"), ("Plate", "closed", "#ff0000"), ("Marks", "stroked", "#00ff00")]
     assert source.parts[0].size == pytest.approx((4 * 25.4, 2 * 25.4))
-    assert source.left_out == (
-        "Text was left out. Convert it to lines if it belongs to the shape.",
-        "Hidden layers were left out: Guides.",
+    assert source.left_out == ("Hidden layers were left out: Guides.",)
+
+
+def test_that_texts_of_an_svg_are_letters_on_a_layer_of_their_own(svg) -> None:
+    body = '<text x="50" y="40" font-size="20" text-anchor="middle" font-family="No Such Family">HI</text>'
+    source = read_parts(svg(body, MM))
+    assert [(part.name, part.layer, part.kind) for part in source.parts] == [
+        ("H", "HI", PartKind.FILLED),
+        ("I", "HI", PartKind.FILLED),
+    ]
+    left, right = source.parts[0].bounds, source.parts[1].bounds
+    assert left[1] == pytest.approx(-40) and 12 < left[3] - left[1] < 17  # on the base line, as high as capitals are
+    assert (left[0] + right[2]) / 2 == pytest.approx(50, abs=2.5) and right[0] > left[2]
+    (note,) = source.left_out
+    assert note.startswith("The font No Such Family is not at hand")
+    assert merged(source, source.parts, Merging(Join.BRIDGE)).outline.size == pytest.approx(
+        (right[2] - left[0], left[3] - left[1]), rel=0.05
     )
+
+
+def test_that_turned_texts_of_a_dxf_lie_where_they_are_drawn(dxf) -> None:
+    def draw(space, _drawing) -> None:
+        space.add_text("H", height=10, rotation=90, dxfattribs={"insert": (50, 20)})
+        space.add_mtext("H\\PH", dxfattribs={"insert": (0, 100), "char_height": 6, "attachment_point": 1})
+
+    turned, upper, lower = read_parts(dxf(draw)).parts
+    assert turned.bounds[2] == pytest.approx(50, abs=0.3) and turned.bounds[0] == pytest.approx(40, abs=0.3)
+    assert turned.bounds[1] > 20
+    assert upper.bounds[3] == pytest.approx(100, abs=0.3) and upper.size[1] == pytest.approx(6, abs=0.3)
+    assert lower.bounds[3] == pytest.approx(90, abs=0.3)
+
+
+def test_that_an_empty_or_endless_text_is_left_out(svg) -> None:
+    body = f'<circle r="20"/><text x="5" y="5"> </text><text x="5" y="5">{"endless " * 5000}</text>'
+    source = read_parts(svg(body))
+    assert len(source.parts) == 1 and any("Text was left out" in note for note in source.left_out)
 
 
 AMBIGUOUS = (
