@@ -38,6 +38,7 @@ from kirigami_studio.gui.panels.fabrication_panel import Extent, FabricationPane
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
 from kirigami_studio.gui.panels.message_bar import MessageBar
+from kirigami_studio.gui.panels.number_field import leave_wheel
 from kirigami_studio.gui.panels.settings_panel import SettingsPanel
 from kirigami_studio.gui.panels.stage_panel import StagePanel
 from kirigami_studio.gui.panels.target_panel import TargetPanel
@@ -83,6 +84,7 @@ class MainWindow(QMainWindow):
         self.fabrication = FabricationPanel()
         self._build_columns()
         self._build_status()
+        leave_wheel(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
         self.file_dialogs: FileDialogs = SystemFileDialogs(self)

@@ -15,6 +15,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.look import theme
+from kirigami_studio.gui.panels.number_field import leave_wheel
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
@@ -259,6 +260,7 @@ class Dialogs(QObject):
 
 def bring_to_front(dialog: QWidget) -> None:
     """Show a dialog over the others and give it the keyboard."""
+    leave_wheel(dialog)
     dialog.show()
     dialog.raise_()
     dialog.activateWindow()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
 from kirigami_studio.foundation.words import again, tr
@@ -16,7 +15,7 @@ Choices = Sequence[tuple[object, str, str]]
 
 
 class ChoiceBox(QComboBox):
-    """Leaves the wheel to the page that scrolls unless it has the focus."""
+    """Each entry has a tooltip; the window leaves the wheel to the page that scrolls."""
 
     def __init__(self, name: str, accessible: str, choices: Choices = ()) -> None:
         super().__init__()
@@ -69,9 +68,3 @@ class ChoiceBox(QComboBox):
     def about(self) -> str:
         """What the chosen entry means."""
         return str(self.itemData(self.currentIndex(), TOOLTIP) or "")
-
-    def wheelEvent(self, event: QWheelEvent) -> None:  # noqa: N802 - Qt's name
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()

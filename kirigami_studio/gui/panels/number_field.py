@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QValidator
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QSlider, QWidget
 
 from kirigami_studio.foundation.units import MM_PER_INCH
 
@@ -25,6 +25,8 @@ LENGTH_UNITS: Mapping[str, float] = {
     '"': MM_PER_INCH,
     "thou": MM_PER_INCH / 1000,
 }
+#: Names of sliders that move a drawing.
+DRAWING_SLIDERS = frozenset({"phiSlider", "cutStep"})
 #: A number, a fraction of two, and what stands behind them.
 TYPED = re.compile(r"\s*([+-]?\d*[.,]?\d*)\s*(?:(/)\s*(\d*[.,]?\d*))?\s*([^\d\s.,+/-]*)\s*")
 #: What Qt wants back: whether the text is a number, the text, and where the cursor stands.
@@ -35,21 +37,41 @@ def number_field(box: QAbstractSpinBox) -> None:
     """Give a field its margin; the wheel changes it only while it has the focus, and the window keeps its keys."""
     box.lineEdit().setTextMargins(6, 0, 0, 0)
     box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-    box.installEventFilter(_WheelAndKeys(box))
+    box.installEventFilter(WheelStays(box))
+    box.installEventFilter(_FieldKeys(box))
 
 
-class _WheelAndKeys(QObject):
+class WheelStays(QObject):
+    """Leaves the wheel to the page that scrolls unless the control has the focus."""
+
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        if isinstance(watched, QAbstractSpinBox):
-            if event.type() == QEvent.Type.Wheel and not watched.hasFocus():
+        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
+            event.ignore()
+            return True
+        return super().eventFilter(watched, event)
+
+
+def leave_wheel(root: QWidget) -> None:
+    """Let the wheel change no value below a widget by accident: lists of choices, numbers, sliders in panels.
+
+    Sliders that move a drawing are left as they are: there the wheel is meant for them.
+    """
+    kinds = (QComboBox, QAbstractSpinBox, QSlider)
+    for control in (one for kind in kinds for one in root.findChildren(kind)):
+        moves_a_drawing = control.objectName() in DRAWING_SLIDERS
+        if not moves_a_drawing and control.findChild(WheelStays) is None:
+            control.installEventFilter(WheelStays(control))
+
+
+class _FieldKeys(QObject):
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        asked = event.type() == QEvent.Type.ShortcutOverride
+        if asked and isinstance(watched, QAbstractSpinBox) and isinstance(event, QKeyEvent):
+            typing = watched.lineEdit().isModified() and event.key() != Qt.Key.Key_E
+            ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            if ctrl and event.key() in WINDOW_KEYS and not typing:
                 event.ignore()
                 return True
-            if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
-                typing = watched.lineEdit().isModified() and event.key() != Qt.Key.Key_E
-                ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
-                if ctrl and event.key() in WINDOW_KEYS and not typing:
-                    event.ignore()
-                    return True
         return super().eventFilter(watched, event)
 
 

@@ -6,7 +6,7 @@ import math
 import secrets
 from dataclasses import replace
 
-from PySide6.QtCore import QEvent, QObject, QSettings, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
@@ -281,7 +281,6 @@ class SettingsPanel(Card):
         self.more.toggled.connect(self._fold)
         self.second.changed.connect(lambda second: self.changed.emit({"second": second}))
         self.second.edited.connect(self.edited)
-        self.regular.installEventFilter(_WheelStays(self.regular))
         self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
         self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
         self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
@@ -447,16 +446,6 @@ class SettingsPanel(Card):
         self.variant.setToolTip(
             tr("Model that generates the designs. {about}", about=tr(VARIANTS.get(name, ("", ""))[1])).strip()
         )
-
-
-class _WheelStays(QObject):
-    """Leaves the wheel to the page that scrolls unless the control has the focus."""
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        if event.type() == QEvent.Type.Wheel and isinstance(watched, QWidget) and not watched.hasFocus():
-            event.ignore()
-            return True
-        return super().eventFilter(watched, event)
 
 
 def _whole(name: str, accessible: str, low: int, high: int, tip: str) -> QSpinBox:
