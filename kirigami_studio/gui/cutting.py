@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.words import mark, number, tr
+from kirigami_studio.foundation.words import mark, number, tr, tr_n
 from kirigami_studio.gui.jobs.as_cut_jobs import animating
 from kirigami_studio.gui.jobs.cut_jobs import (
     ANIMATION,
@@ -166,10 +166,11 @@ class CutPlanner(QObject):
             message = Message(picture_sentence(exported), Tone.DONE, str(path))
         else:
             self._session.set_status(
-                tr(
+                tr_n(
+                    "Exported {path}: {count} cut, {cut_length_mm:.0f} mm.",
                     "Exported {path}: {count} cuts, {cut_length_mm:.0f} mm.",
+                    len(made.plan.copies) * len(made.plan.paths),
                     path=path,
-                    count=len(made.plan.copies) * len(made.plan.paths),
                     cut_length_mm=len(made.plan.copies) * made.plan.cut_length_mm,
                 )
             )
@@ -224,11 +225,21 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
     details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
     if check.ok:
         name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
-        values = {"name": name, "count": len(plan.copies) * len(plan.paths)}
+        count = len(plan.copies) * len(plan.paths)
         if made.removed_share:
-            sentence = tr("{name} exported and checked: {count} cuts, trimmed outline, no faults.", **values)
+            sentence = tr_n(
+                "{name} exported and checked: {count} cut, trimmed outline, no faults.",
+                "{name} exported and checked: {count} cuts, trimmed outline, no faults.",
+                count,
+                name=name,
+            )
         else:
-            sentence = tr("{name} exported and checked: {count} cuts, no faults.", **values)
+            sentence = tr_n(
+                "{name} exported and checked: {count} cut, no faults.",
+                "{name} exported and checked: {count} cuts, no faults.",
+                count,
+                name=name,
+            )
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)

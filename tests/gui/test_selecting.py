@@ -87,7 +87,7 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     assert model.data(model.index(0, 0), VALUE_ROLE) == f"panels ±{100 * first.evenness.area_cv:.0f} %"
     sort_by(designed, SortOrder.TV)
     told = [str(model.data(model.index(row, 0), VALUE_ROLE)) for row in range(3)]
-    assert told == [f"TV {one.score.tv:.2f}" for one in shown(designed)]
+    assert told == [f"roughness {one.score.tv:.2f}" for one in shown(designed)]
     sort_by(designed, SortOrder.PANEL)
     designed.controller.fabrication.change(width_mm=250.0)
     sizes = [250.0 * least_panel_share(deploy(one.sheet.field)) for one in shown(designed)]

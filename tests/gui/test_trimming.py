@@ -71,7 +71,7 @@ def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     assert studio.stage.view.grab().toImage() != after
     drawn, fitted = designs.candidates[0].score, studio.controller.document.candidates[0].score
     text = studio.stage.numbers.text()
-    assert text == f"before polish: sIoU {100 * drawn.siou:.1f} %  ·  after: {100 * fitted.siou:.1f} %"
+    assert text == f"before polish: match {100 * drawn.iou_exact:.1f} %  ·  after: {100 * fitted.iou_exact:.1f} %"
     studio.stage.view.grab()
     areas = studio.stage.view.areas
     assert areas is not None
@@ -112,17 +112,17 @@ def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off
 
 def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -> None:
     candidate = trimmed.controller.document.candidates[0]
-    trim, siou = candidate.trim, f"{100 * candidate.score.siou:.1f} %"
+    trim, whole = candidate.trim, f"{100 * candidate.score.iou_exact:.1f} %"
     assert trim is not None and trim.iou > candidate.score.iou_exact
-    assert trimmed.stage.numbers.text() == f"sIoU {siou}  ·  trimmed IoU {100 * trim.iou:.1f} %"
-    assert f"trimmed IoU {100 * trim.iou:.1f} %" in trimmed.facts.text() and "exact IoU" in trimmed.facts.text()
+    assert trimmed.stage.numbers.text() == f"match {100 * trim.iou:.1f} %  ·  {whole} untrimmed"
+    assert f"trimmed match {100 * trim.iou:.1f} %" in trimmed.facts.text() and f"match {whole}" in trimmed.facts.text()
     model = trimmed.gallery.view.model_
     assert [entry.candidate for entry in model.entries] == list(trimmed.controller.document.candidates)
     card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole))
     assert f"sIoU {100 * candidate.score.siou:.2f} %" in card and f"Trimmed: IoU {100 * trim.iou:.2f} %" in card
     trimmed.resize(1000, 640)
     QApplication.processEvents()
-    assert trimmed.stage.numbers.text() == "" and "trimmed IoU" in trimmed.stage.view.caption
+    assert trimmed.stage.numbers.text() == "" and "untrimmed" in trimmed.stage.view.caption
 
 
 def test_that_a_trimmed_design_is_drawn_and_compared_as_it_is_cut(trimmed: MainWindow) -> None:

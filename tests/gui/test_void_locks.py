@@ -265,7 +265,7 @@ def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_i
     sheets = (after.trim.sheet, before.trim.sheet, after.sheet)
     for void in ((0, 0), (2, 2)):
         assert len({float(sheet.field.ratio[void]) for sheet in sheets}) == 1
-    assert f"Trimmed again: IoU {100 * after.trim.iou:.1f} %" in by_hand.status_text.text()
+    assert f"Trimmed again: match {100 * after.trim.iou:.1f} %" in by_hand.status_text.text()
     assert by_hand.stage.view.design is not None and by_hand.stage.view.design.trim == after.trim
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before

@@ -112,7 +112,7 @@ def _facts(entry: Entry) -> list[str]:
     facts = [
         tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns),
         tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
-        tr("exact IoU {iou_exact:.1f} %", iou_exact=100 * score.iou_exact),
+        tr("match {match:.1f} %", match=100 * score.iou_exact),
     ]
     if entry.candidate.sheet.start is not None and trim is None:
         share = 100 * match_of_start(entry.candidate.sheet)
@@ -128,7 +128,7 @@ def _facts(entry: Entry) -> list[str]:
     if entry.candidate.symmetry is not None:
         facts.insert(1, tr("symmetric"))
     if trim is not None:
-        facts.append(tr("trimmed IoU {iou:.1f} %", iou=100 * trim.iou))
+        facts.append(tr("trimmed match {match:.1f} %", match=100 * trim.iou))
     return [*facts, tr("feasible") if score.feasible else tr("not feasible")]
 
 

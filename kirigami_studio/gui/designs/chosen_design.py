@@ -141,9 +141,9 @@ class TrimSwitch(QObject):
         self._replace(after, tr("Trim {design}", design=chosen_name(self._session.document)))
         self._session.set_status(
             tr(
-                "Trimmed IoU {iou:.1f} %, untrimmed sIoU {siou:.1f} %; {removed_share:.1f} % of the sheet is cut off.",
-                iou=100 * trim.iou,
-                siou=100 * after.score.siou,
+                "Trimmed: match {trimmed:.1f} %, untrimmed {match:.1f} %; {removed_share:.1f} % is cut off.",
+                trimmed=100 * trim.iou,
+                match=100 * after.score.iou_exact,
                 removed_share=100 * trim.removed_share,
             )
         )
@@ -231,7 +231,7 @@ class Refitter(QObject):
         session.apply(edit)
         sentences = [sentence]
         if after.trim is not None:
-            sentences.append(tr("Trimmed again: IoU {iou:.1f} %.", iou=100 * after.trim.iou))
+            sentences.append(tr("Trimmed again: match {match:.1f} %.", match=100 * after.trim.iou))
         elif report.untrimmed:
             sentences.append(tr("Trim removed: {reason}", reason=report.untrimmed))
         session.set_status(" ".join(sentences))

@@ -155,9 +155,9 @@ def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> st
     if selection.order is SortOrder.UNLIKE and selection.unlike is not None:
         return tr("differs {value:.2f}", value=differences([item.candidate], selection.unlike)[0])
     if selection.order is SortOrder.TV:
-        return tr("TV {value:.2f}", value=item.candidate.score.tv)
+        return tr("roughness {value:.2f}", value=item.candidate.score.tv)
     if selection.order is SortOrder.GAIN:
-        return tr("gain {value:+.1f}", value=100.0 * item.candidate.score.siou_gain)
+        return tr("gained {value:+.1f}", value=100.0 * item.candidate.score.siou_gain)
     return tr("panels ±{percent:.0f} %", percent=100.0 * item.candidate.score.evenness.area_cv)
 
 

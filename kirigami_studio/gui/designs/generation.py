@@ -176,7 +176,12 @@ class RunPlanner:
         settings = document.settings
         seed = settings.seed if self.keeps_seed else self._next_seed(document)
         request = request_of(target, replace(settings, seed=seed), document.fabrication)
-        status = tr("Generating {k} designs for {name} …", k=request.k, name=target.name)
+        status = tr_n(
+            "Generating {count} design for {name} …",
+            "Generating {count} designs for {name} …",
+            request.k,
+            name=target.name,
+        )
         kept = Ranking.of(request).ranked(_staying(document, request))
         self._drawn.add((self._session.project, seed))
         self.plan = RunPlan(request, kept, False, seed, status)
@@ -191,7 +196,12 @@ class RunPlanner:
             There are no designs to add to.
         """
         request = self._joining(target)
-        status = tr("Generating {count} more designs from seed {seed} …", count=request.k, seed=request.seed)
+        status = tr_n(
+            "Generating {count} more design from seed {seed} …",
+            "Generating {count} more designs from seed {seed} …",
+            request.k,
+            seed=request.seed,
+        )
         return self._joined(request, status)
 
     def alike(self, target: Outline, nearness: float) -> RunPlan:
@@ -209,7 +219,12 @@ class RunPlanner:
         start = own_start(chosen, document.settings.start)
         request = replace(self._joining(target), near=chosen.sheet, nearness=nearness, search=0, start=start)
         name = "" if document.label is None else document.label.text
-        status = tr("Generating {count} designs like design {name} …", count=request.k, name=name)
+        status = tr_n(
+            "Generating {count} design like design {name} …",
+            "Generating {count} designs like design {name} …",
+            request.k,
+            name=name,
+        )
         return self._joined(request, status)
 
     def _joining(self, target: Outline) -> Request:

@@ -62,10 +62,8 @@ def locked_sentence(count: int) -> str:
 
 def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     """What a change has done to the match, and what it has cost."""
-    gain = 100.0 * (after.score.siou - before.score.siou)
-    sentences = [
-        tr("{gesture}: sIoU {siou:.1f} % ({gain:+.2f}).", gesture=label, siou=100 * after.score.siou, gain=gain)
-    ]
+    match, gain = 100.0 * after.score.iou_exact, 100.0 * (after.score.iou_exact - before.score.iou_exact)
+    sentences = [tr("{gesture}: match {match:.1f} % ({gain:+.2f}).", gesture=label, match=match, gain=gain)]
     if not after.score.feasible:
         sentences.append(tr("The design is not feasible."))
     if before.trim is not None:

@@ -223,8 +223,11 @@ def _rows() -> tuple[tuple[str, str], ...]:
             tr("Evenness: how much panel sizes vary, % (coefficient of variation); then the difference, points."),
         ),
         (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
-        (tr("Gain"), tr("Gain in sIoU over the uniform sheet, points; then the difference from the other design.")),
-        (tr("TV"), tr("Total variation of the ratios, lower is smoother; then the difference from the other design.")),
+        (tr("Gained"), tr("Gain in sIoU over the uniform sheet, points; then the difference from the other design.")),
+        (
+            tr("Roughness"),
+            tr("Total variation (TV) of the ratios, lower is smoother; then the difference from the other design."),
+        ),
         (tr("Symmetric"), tr("Whether the sheet is its own mirror image, or the same after a turn.")),
         (tr("Rim"), tr("Where cuts meet the sheet's sides: free, or at even distances.")),
         (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),

@@ -33,10 +33,10 @@ LARGEST_SEED = 2**31 - 1
 
 #: What is known about a generator by its name; others are listed by name alone.
 VARIANTS = {
-    "prior": (mark("Prior"), mark("Trained on random sheets only: most variety, rougher layouts.")),
-    "accuracy": (mark("Accuracy"), mark("Tuned for the closest match.")),
-    "regularity": (mark("Regularity"), mark("Tuned for even panels that are easy to cut; slightly lower match.")),
-    "balanced": (mark("Balanced"), mark("Tuned for both match and even panels. Recommended.")),
+    "prior": (mark("Varied"), mark("Trained on random sheets only: most variety, rougher layouts.")),
+    "accuracy": (mark("For match"), mark("Tuned for the closest match.")),
+    "regularity": (mark("For evenness"), mark("Tuned for even panels that are easy to cut; slightly lower match.")),
+    "balanced": (mark("For both"), mark("Tuned for both match and even panels. Recommended.")),
 }
 
 
@@ -50,10 +50,10 @@ POLISH = (
 
 #: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
 PREFER = (
-    ("accuracy", mark("Accuracy"), mark("The closest match, regardless of panel shape.")),
+    ("accuracy", mark("Match"), mark("The closest match, regardless of panel shape.")),
     ("balanced", mark("Balanced"), mark("Recommended: nearly as close, with smoother ratios (lower TV).")),
-    ("regularity", mark("Regularity"), mark("Lower TV than Balanced, at a slightly lower match.")),
-    ("calm", mark("Calm"), mark("The lowest TV, at a lower match.")),
+    ("regularity", mark("Smooth"), mark("Lower TV than Balanced, at a slightly lower match.")),
+    ("calm", mark("Smoothest"), mark("The lowest TV, at a lower match.")),
 )
 #: What designs have to keep: value of the setting, label, what it means.
 SYMMETRIES = (
@@ -203,10 +203,10 @@ class SettingsPanel(Card):
         self.start_weight.setDecimals(2)
         self.start_weight.setSingleStep(0.1)
         self.start_weight.setAccessibleName(tr("Weight of the start"))
-        self.search = QCheckBox(tr("Se&arch"))
+        self.search = QCheckBox(tr("Try h&arder"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.search.setAccessibleName(tr("Search beyond the samples"))
+        self.search.setAccessibleName(tr("Try harder: search for one more design"))
         self.search.setToolTip(tr(SEARCH))
         self.search.setMinimumHeight(29)
         self.second = SecondTargetRow()

@@ -460,15 +460,15 @@ class StagePanel(Card):
 def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float) -> tuple[str, ...]:
     """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first."""
     score, trim = candidate.score, candidate.trim
-    siou = tr("{percent:.1f} %", percent=100 * score.siou)
+    whole = tr("{percent:.1f} %", percent=100 * score.iou_exact)
     if sample is not None:
-        before = tr("{percent:.1f} %", percent=100 * sample.score.siou)
-        long = tr("before polish: sIoU {before}  ·  after: {siou}", before=before, siou=siou)
-        return long, tr("before {before}  ·  after {siou}", before=before, siou=siou)
+        before = tr("{percent:.1f} %", percent=100 * sample.score.iou_exact)
+        long = tr("before polish: match {before}  ·  after: {match}", before=before, match=whole)
+        return long, tr("before {before}  ·  after {match}", before=before, match=whole)
     if trim is not None:
         trimmed = tr("{percent:.1f} %", percent=100 * trim.iou)
-        long = tr("sIoU {siou}  ·  trimmed IoU {trimmed}", siou=siou, trimmed=trimmed)
-        return long, tr("{siou}  ·  trimmed {trimmed}", siou=siou, trimmed=trimmed)
+        long = tr("match {trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
+        return long, tr("{trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
     match, variation = 100 * score.iou_exact, 100 * score.evenness.area_cv
     smallest_mm = score.evenness.least_feature_mm(width_mm)
     return (
