@@ -78,6 +78,13 @@ class Anchors:
         bare = cls(ring[chosen], kinds, np.zeros((len(chosen), 2, 2)), spans, curved)
         return bare._with_found_handles(range(len(chosen)))
 
+    @classmethod
+    def drawn(cls, places: FloatArray, kinds: tuple[Kind, ...], handles: FloatArray) -> Anchors:
+        """Anchors as a pen sets them: (K, 2) places and (K, 2, 2) handles, mm."""
+        count = len(places)
+        bare = cls(places, kinds, handles, (np.empty((0, 2)),) * count, np.zeros(count, dtype=np.bool_))
+        return bare._follow(range(count))
+
     def nodes_in(self, made: Placed) -> Nodes | None:
         """The anchors as nodes of the target that was made of their line; None when it had to be repaired."""
         ring, count = made.ring, len(made.outline.points)

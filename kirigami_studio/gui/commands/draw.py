@@ -43,7 +43,7 @@ def _tools(window: MainWindow) -> tuple[Command, ...]:
         tool(Tool.POINTS, tr("Move &points"), "N", tr("Drag the target's points"), gap=True),
         tool(Tool.POSE, tr("&Move, resize and rotate"), "V", tr("Move, resize and rotate the target")),
         tool(Tool.FREEHAND, tr("&Freehand"), "D", tr("Draw the target in one stroke"), "draw", gap=True),
-        tool(Tool.POLYGON, tr("P&olygon"), "P", tr("Draw the target corner by corner")),
+        tool(Tool.POLYGON, tr("P&en"), "P", tr("Draw the target point by point: click corners, drag curves")),
         tool(Tool.RECTANGLE, tr("Rec&tangle"), "R", tr("Draw a rectangle")),
         tool(Tool.ELLIPSE, tr("E&llipse"), "O", tr("Draw an ellipse or a circle")),
         tool(Tool.REGULAR, tr("Re&gular polygon"), "G", tr("Draw a regular polygon")),

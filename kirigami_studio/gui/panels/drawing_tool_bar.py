@@ -26,7 +26,7 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
     (Tool.POSE, "pose", mark("Move, resize and rotate (V). Drag the shape or the handles around it.")),
     None,
     (Tool.FREEHAND, "draw", mark("Draw freehand (D). One stroke, smoothed and closed.")),
-    (Tool.POLYGON, "polygon", mark("Draw a polygon (P). Click corners; Enter closes it.")),
+    (Tool.POLYGON, "polygon", mark("Pen (P). Click corners, drag to pull curves; Enter closes the line.")),
     (Tool.RECTANGLE, "rectangle", mark("Draw a rectangle (R). Shift makes a square.")),
     (Tool.ELLIPSE, "ellipse", mark("Draw an ellipse (O). Shift makes a circle.")),
     (Tool.REGULAR, "regular", mark("Draw a regular polygon (G). Shift keeps it regular.")),

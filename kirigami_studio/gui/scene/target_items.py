@@ -70,6 +70,27 @@ def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette, corner
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
 
 
+def paint_pen_points(
+    painter: QPainter, places: FloatArray, shown: int, handles: FloatArray, palette: Palette, closing: bool
+) -> None:
+    """Draw the points of an unfinished line, (P, 2) pixels, with the ends of the handles (H, 2) of the one ``shown``.
+
+    The first one grows while the line would be ``closing``.
+    """
+    x, y = places[shown].tolist()
+    for end_x, end_y in handles.tolist():
+        painter.setPen(QPen(QColor(palette.muted), 1.2))
+        painter.drawLine(QPointF(x, y), QPointF(end_x, end_y))
+        painter.setPen(QPen(QColor(palette.accent), 1.4))
+        painter.setBrush(QColor(palette.canvas))
+        painter.drawEllipse(QPointF(end_x, end_y), 3.5, 3.5)
+    painter.setPen(round_pen(palette.accent, 1.5))
+    for index, (x, y) in enumerate(places.tolist()):
+        painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
+        radius = 7.0 if index == 0 and closing else 4.0
+        painter.drawEllipse(QPointF(x, y), radius, radius)
+
+
 def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> None:
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
     fill = QColor(palette.accent)

@@ -32,7 +32,7 @@ from kirigami_studio.gui.scene.target_items import (
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
-from kirigami_studio.gui.sketching.shape_tools import Corners, FigureTool, Freehand, TextTool
+from kirigami_studio.gui.sketching.shape_tools import FigureTool, Freehand, Pen, TextTool
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import ZOOM_STEP, Canvas
@@ -368,7 +368,7 @@ def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
         Tool.POINTS: PointTool(context),
         Tool.POSE: PoseTool(context),
         Tool.FREEHAND: Freehand(context),
-        Tool.POLYGON: Corners(context),
+        Tool.POLYGON: Pen(context),
         Tool.RECTANGLE: FigureTool(context, Figure.RECTANGLE),
         Tool.ELLIPSE: FigureTool(context, Figure.ELLIPSE),
         Tool.REGULAR: FigureTool(context, Figure.REGULAR),
