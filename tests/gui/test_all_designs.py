@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QImage
+from PySide6.QtGui import QColor, QImage, QRegion
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -216,9 +216,9 @@ def test_that_pictures_wait_for_their_turn(designed: MainWindow, until: Until, m
     assert page is not None
     begin = page.table.cards.begin
 
-    def begun() -> None:
+    def begun(region: QRegion) -> None:
         turns.append(None)
-        begin()
+        begin(region)
 
     monkeypatch.setattr(page.table.cards, "begin", begun)
     until(lambda: len(drawn) == 3 and not page.table.cards.pending)

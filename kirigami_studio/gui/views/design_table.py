@@ -16,6 +16,7 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
+    QRegion,
     QResizeEvent,
     QShowEvent,
 )
@@ -76,7 +77,7 @@ class DesignTable(QListView):
         self.setObjectName("gallery")
         self.setAccessibleName(tr("Table of all designs"))
         self._later = QTimer(self, singleShot=True, interval=0)
-        self._later.timeout.connect(self.viewport().update)
+        self._later.timeout.connect(self._draw_waiting)
         model.arranged.connect(self._follow)
         self.selectionModel().currentChanged.connect(self._note_current)
 
@@ -281,8 +282,21 @@ class DesignTable(QListView):
         super().showEvent(event)
         self._follow()
 
+    def _draw_waiting(self) -> None:
+        """Paint the cards that lack their pictures, and no others: a large screen shows dozens that are done."""
+        region = QRegion()
+        for cell in self.cards.waiting:
+            region += cell
+        self.viewport().update(region)
+
+    def scrollContentsBy(self, dx: int, dy: int) -> None:  # noqa: N802 - Qt's name
+        super().scrollContentsBy(dx, dy)
+        if self.cards.pending:  # their cells are elsewhere now
+            self.cards.waiting.clear()
+            self.viewport().update()
+
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        self.cards.begin()
+        self.cards.begin(event.region())
         super().paintEvent(event)
         if self.cards.pending:
             self._later.start()

@@ -7,7 +7,7 @@ import time
 from collections.abc import Collection, Sequence
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QHelpEvent, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QHelpEvent, QPainter, QPen, QPixmap, QRegion
 from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -67,12 +67,17 @@ class TableCards(QStyledItemDelegate):
         self.compared: Sequence[Candidate] = ()
         self._pictures: dict[tuple[PosedDesign, int, float, str, bool], QPixmap] = {}
         self._paint_until = math.inf
-        self.pending = False  #: whether cards still lack their pictures since :meth:`begin`
+        self.waiting: list[QRect] = []  #: cells of the view that still lack their pictures
 
-    def begin(self) -> None:
-        """A paint event starts: some pictures are drawn in it, the rest in the next one."""
+    @property
+    def pending(self) -> bool:
+        """Whether cards in sight still lack their pictures."""
+        return bool(self.waiting)
+
+    def begin(self, region: QRegion) -> None:
+        """A paint event for a part of the view starts: some pictures are drawn in it, the rest in the next one."""
         self._paint_until = math.inf
-        self.pending = False
+        self.waiting = [cell for cell in self.waiting if not region.intersects(cell)]
 
     def forget_pictures(self, keep: Collection[PosedDesign] = ()) -> None:
         """Drop all pictures but those of the designs in ``keep``."""
@@ -117,7 +122,9 @@ class TableCards(QStyledItemDelegate):
         picture = _picture_of(card)
         painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
         drawn = self._picture(design, index.data(THIN_ROLE), picture.size(), painter.device().devicePixelRatio())
-        if drawn is not None:
+        if drawn is None:
+            self.waiting.append(QRect(rect))
+        else:
             painter.drawPixmap(picture.topLeft(), drawn)
         painter.setOpacity(1.0)
         self._paint_captions(painter, picture)
@@ -147,7 +154,6 @@ class TableCards(QStyledItemDelegate):
         if found is None:
             now = time.perf_counter()
             if now > self._paint_until:
-                self.pending = True
                 return None
             self._paint_until = min(self._paint_until, now + PAINT_SECONDS)
             found = states_pixmap(design, self.target, size, ratio, self.palette_, as_cut=True, ringed=thin)
@@ -182,11 +188,17 @@ class TableCards(QStyledItemDelegate):
         painter.drawText(box, middle | int(Qt.AlignmentFlag.AlignRight), match)
         room = box.width() - painter.fontMetrics().horizontalAdvance(match) - 12
         signs = self._signs(index, candidate, mark)
-        name_room = max(40, room - 22 * len(signs))
+        taken = 22 * len(signs) + (70 if candidate == self.on_stage else 0) + (25 if candidate in self.compared else 0)
+        name_room = max(40, room - taken)
         name = painter.fontMetrics().elidedText(index.data(NAME_ROLE), Qt.TextElideMode.ElideRight, name_room)
         painter.drawText(box, middle | int(Qt.AlignmentFlag.AlignLeft), name)
         left = box.left() + painter.fontMetrics().horizontalAdvance(name) + 7
         painter.setFont(plain)
+        if candidate == self.on_stage:
+            chosen = tr("chosen")
+            painter.setPen(QColor(self.palette_.accent))
+            painter.drawText(box.adjusted(left - box.left(), 1, 0, 1), middle, chosen)
+            left += painter.fontMetrics().horizontalAdvance(chosen) + 8
         ratio = painter.device().devicePixelRatio()
         if index.data(FRESH_ROLE):
             painter.setPen(Qt.PenStyle.NoPen)
@@ -202,8 +214,6 @@ class TableCards(QStyledItemDelegate):
     def _signs(self, index: Index, candidate: Candidate, mark: Mark) -> list[tuple[str, str]]:
         """Icons that follow the name, each with its colour."""
         signs = []
-        if candidate == self.on_stage:
-            signs.append(("target", self.palette_.accent))
         if mark is not Mark.NONE:
             pinned = mark is Mark.PINNED
             signs.append(("pinned", self.palette_.accent) if pinned else ("reject", self.palette_.muted))
