@@ -114,6 +114,7 @@ class StateSheet(BoardStates):
         self.choose_heart()
         self.polishing()
         self.all_sizes("designs")
+        self.german()
         self.lost_designs()
         self.collection()
         self.overlays()
@@ -159,6 +160,19 @@ class StateSheet(BoardStates):
         self.all_sizes("first-start")
         first.decline()
         self.all_sizes("sample")
+
+    def german(self) -> None:
+        """The main states in a language with longer words."""
+        window = self.window
+        window.speak("de")
+        self.all_sizes("german-designs")
+        window.stage.cuts_switch.click()
+        self.all_sizes("german-cuts")
+        window.stage.cuts_switch.click()
+        window.target.set_editing(True)
+        self.all_sizes("german-board")
+        window.target.set_editing(False)
+        window.speak("system")
 
     def first_steps(self) -> None:
         """The tour at a control on every side, and the sheet of keys."""

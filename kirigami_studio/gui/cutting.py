@@ -315,12 +315,12 @@ class MaterialStore(QObject):
         if known is None:
             sentence = tr(
                 "You don't have the material {name}; the project's own values are used.",
-                name=material.name,
+                name=tr(material.name),
             )
             keep = (tr("Add to my materials"), partial(self.keep, material))
             self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
         elif known != material:
-            sentence = tr("Your material {name} differs from the project's; yours is used.", name=known.name)
+            sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
             self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
 
     def keep(self, material: Material) -> None:

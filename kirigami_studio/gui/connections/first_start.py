@@ -77,7 +77,7 @@ class FirstStart(QObject):
         else:  # nothing was done yet: this is how it starts
             session.restart(changed, session.path)
         self._window.stage.empty.question.hide()
-        name = material if known is None else known.name
+        name = material if known is None else tr(known.name)
         session.set_status(tr("Cutting {material}. Press Generate (Ctrl+G).", material=name))
 
     def decline(self) -> None:

@@ -36,7 +36,7 @@ START_NAMES = {
 def start_words(name: str) -> str:
     """A start's name as people read it: "ellipse 3:2" for "ellipse:3:2"."""
     kind, _, numbers = name.partition(":")
-    return f"{tr(START_NAMES[kind])} {numbers}".strip() if kind in START_NAMES else name
+    return f"{tr(START_NAMES[kind])} {numbers}".strip() if kind in START_NAMES else tr(name)
 
 
 def start_of(candidate: Candidate) -> str:

@@ -189,10 +189,10 @@ class MaterialEditor(QDialog):
         self.list.clear()
         for one, material in self._library.materials.items():
             item = QListWidgetItem(
-                tr("Custom  ·  {name}", name=material.name) if one in self._library.own else material.name
+                tr("Custom  ·  {name}", name=material.name) if one in self._library.own else tr(material.name)
             )
             item.setData(Qt.ItemDataRole.UserRole, one)
-            item.setToolTip(f"{material.name} ({one})\n{material.machine}\n{_state(material)}")
+            item.setToolTip(f"{tr(material.name)} ({one})\n{tr(material.machine)}\n{_state(material)}")
             self.list.addItem(item)
         self.choose(key)
         self.status.setText("\n".join(fault.text for fault in self._library.faults) or tr(NEW))

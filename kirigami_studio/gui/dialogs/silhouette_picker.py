@@ -58,9 +58,9 @@ class SilhouettePicker(QFrame):
         for name in silhouettes.names():
             entry = silhouettes.entry(name)
             picture = target_pixmap(silhouettes.load(name), PICTURE, ratio, palette)
-            item = QListWidgetItem(QIcon(picture), entry.title)
+            item = QListWidgetItem(QIcon(picture), tr(entry.title))
             item.setData(NAME_ROLE, name)
-            item.setToolTip(entry.about)
+            item.setToolTip(tr(entry.about))
             self.list.addItem(item)
 
     def show_below(self, button: QWidget) -> None:

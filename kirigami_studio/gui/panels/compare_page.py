@@ -9,7 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.designs.gallery_selection import differences
 from kirigami_studio.gui.panels.card import FittingLabel, ToolButton
 from kirigami_studio.gui.panels.deployment_bar import DeploymentBar
@@ -166,9 +166,9 @@ class ComparePage(QWidget):
         shared = None
         if bounds[0] is not None and bounds[1] is not None:
             shared = bounds[0].united(bounds[1])
-        for number, side in enumerate(self.sides):
+        for place, side in enumerate(self.sides):
             side.view.share(shared)
-            side.show_numbers(*number_texts(self._entries[number], self._entries[1 - number], width_mm))
+            side.show_numbers(*number_texts(self._entries[place], self._entries[1 - place], width_mm))
         self.bar.set_ready(chosen is not None)
         if chosen is not None:
             contacts = [one[0].candidate.score.contact for one in pair if one is not None]
@@ -254,7 +254,8 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
         return values, [""] * rows
     gaps = [here - there for here, there in zip(mine, _numbers(other, width_mm), strict=True)]
     gap_texts = [
-        f"{gap:+.{digits}f}" if abs(gap) >= 0.5 * 0.1**digits else "=" for gap, digits in zip(gaps, DIGITS, strict=True)
+        number(gap, f"+.{digits}f") if abs(gap) >= 0.5 * 0.1**digits else "="
+        for gap, digits in zip(gaps, DIGITS, strict=True)
     ]
     return values, [*gap_texts, "", "", ""]
 

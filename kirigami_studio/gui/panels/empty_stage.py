@@ -200,7 +200,7 @@ class MachineQuestion(QFrame):
         else:
             menu = QMenu(button)
             for key, material in materials.items():
-                menu.addAction(material.name).triggered.connect(lambda _=False, key=key: self.chosen.emit(key))
+                menu.addAction(tr(material.name)).triggered.connect(lambda _=False, key=key: self.chosen.emit(key))
             button.setMenu(menu)
         button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.buttons[machine] = button

@@ -282,7 +282,7 @@ class FabricationPanel(Card):
         with QSignalBlocker(self.material):
             self.material.clear()
             for key, material in self._presets.items():
-                self.material.addItem(material.name, key)
+                self.material.addItem(tr(material.name), key)
 
     def _take_material(self, index: int) -> None:
         """A new material brings its own connector and kerf."""
@@ -294,7 +294,7 @@ class FabricationPanel(Card):
         material = self._presets.get(settings.material) or stored_material(settings)
         with QSignalBlocker(self.material):
             if self.material.findData(settings.material) < 0:
-                self.material.addItem(material.name if material else settings.material, settings.material)
+                self.material.addItem(tr(material.name) if material else settings.material, settings.material)
             self.material.setCurrentIndex(self.material.findData(settings.material))
         if material is not None:
             self.material.setToolTip(

@@ -182,7 +182,7 @@ class TargetPanel(Card):
         self.notes.setToolTip("\n".join(notes))
         self.notes.setVisible(bool(notes))
         if outline is not None:
-            self.facts.setText(outline.name)
+            self.facts.setText(tr(outline.name))
             self.size_.setText(measured(outline))
 
     def show_reach(self, grid: tuple[int, int]) -> None:

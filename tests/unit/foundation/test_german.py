@@ -9,7 +9,10 @@ import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po
 
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import DOMAIN, read_catalogue
+from kirigami_studio.outlines import silhouettes
 
 
 @pytest.fixture(scope="module")
@@ -99,3 +102,15 @@ def test_that_the_catalogue_is_read_as_babel_reads_it(german_file: Path, german:
     read = read_catalogue(german_file, "de")
     assert read.texts == {forms(message.id)[0]: forms(message.string) for message in german if message.id}
     assert [read.form(count) for count in (0, 1, 2)] == [1, 0, 1]
+
+
+def test_that_bundled_silhouettes_materials_and_profiles_have_german_names(german: Catalog) -> None:
+    shown = [entry for name in silhouettes.names() for entry in (name, *titles(name))]
+    shown += [words for one in library().materials.values() for words in (one.name, one.machine)]
+    shown += [profile.name for profile in PROFILES.values()]
+    assert [words for words in shown if german.get(words) is None] == []
+
+
+def titles(name: str) -> tuple[str, str]:
+    entry = silhouettes.entry(name)
+    return entry.title, entry.about
