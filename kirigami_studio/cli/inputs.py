@@ -28,7 +28,7 @@ from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target, target_files
-from kirigami_studio.outlines.read_image import outline_of_mask, read_image
+from kirigami_studio.outlines.read_image import image_parts, outline_of_mask, read_image
 from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
@@ -115,9 +115,10 @@ class PartChoice:
     words: str
     merging: Merging
 
-    def outline(self, path: Path) -> Outline:
-        """The outline of the chosen parts of a file."""
-        source = read_parts(path)
+    def outline(self, path: Path, threshold: float | None = None) -> Outline:
+        """The outline of the chosen parts of a file; ``threshold`` is that of a picture."""
+        is_picture = path.suffix.lower() in IMAGE_SUFFIXES
+        source = image_parts(path, threshold) if is_picture else read_parts(path)
         try:
             return merged(source, source.chosen(self.words), self.merging).outline
         except TargetError as error:
@@ -165,20 +166,20 @@ def read_targets(
         elif source not in names() and _is_folder(source):
             for file in target_files(path):
                 yield Named(file.stem, partial(_read_drawing, file, choice))
-        elif threshold is not None and path.suffix.lower() in IMAGE_SUFFIXES:
+        elif threshold is not None and choice is None and path.suffix.lower() in IMAGE_SUFFIXES:
             yield Named(source, partial(read_image, path, threshold))
         elif path.suffix.lower() in PART_READERS:
-            yield Named(source, partial(_read_drawing, path, choice))
+            yield Named(source, partial(_read_drawing, path, choice, threshold))
         elif choice is not None:
             raise UsageError("parts.not_a_drawing", source=source, kinds=", ".join(PART_READERS))
         else:
             yield Named(source, partial(read_target, source))
 
 
-def _read_drawing(path: Path, choice: PartChoice | None) -> Outline:
+def _read_drawing(path: Path, choice: PartChoice | None, threshold: float | None = None) -> Outline:
     """The outline of a file: of its parts as chosen, or as it is read by itself."""
     if choice is not None and path.suffix.lower() in PART_READERS:
-        return choice.outline(path)
+        return choice.outline(path, threshold)
     if path.suffix.lower() in CUT_FILES and (target := _own_target(path)) is not None:
         return target
     try:

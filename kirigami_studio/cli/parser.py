@@ -113,7 +113,7 @@ COPIES = (
 #: Which parts of a drawing are the target.
 PARTS = (
     option("--parts", default=None, metavar="WHICH",
-           help="parts of an SVG or DXF file: all, largest, or names, numbers, layers or colours, joined by commas "
+           help="parts of an SVG, DXF or picture: all, largest, or names, numbers, layers or colours, joined by commas "
                 "(default: what is filled or enclosed, of several pieces the largest); 'kirigami-studio parts' lists "
                 "them"),
     option("--join", choices=[join.value for join in Join], default=None,
@@ -481,7 +481,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio artwork heart.kiri --picture photo.jpg --dpi 600 --bleed-mm 2 --copies 4 --out out/print")),
     SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
     SubCommand("parts", "list the parts of a drawing, for --parts", "library:parts", (
-        option("file", help="an SVG or DXF file"),
+        option("file", help="an SVG or DXF file, or a picture"),
         JSON,
     ), ("kirigami-studio parts logo.svg", "kirigami-studio parts plate.dxf --json")),
     SubCommand("materials", "list the materials, or copy, change and calibrate one", "library:materials", (

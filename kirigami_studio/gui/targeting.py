@@ -18,6 +18,7 @@ from kirigami_studio.gui.designs.target_reader import next_run
 from kirigami_studio.gui.jobs.part_jobs import DesignRead, PartsRead, reading_parts, reading_source
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
+    PICTURES,
     Picture,
     TargetRead,
     checking_start,
@@ -145,8 +146,12 @@ class TargetReader(QObject):
         """The drawing that an outline was read from, "" for none."""
         return "" if outline is None else self._drawings.get(outline, "")
 
-    def take_chosen(self, outline: Outline) -> None:
-        """Take the outline that was made of chosen parts."""
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
+        source, first = self._asked
+        if usual and Path(source).suffix.lower() in PICTURES:
+            self._start(source, first, partial(reading_target, source))
+            return
         self._finish(*self._asked, TargetRead(outline))
 
     def _start(self, source: str, first: bool, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:

@@ -179,5 +179,20 @@ def _dxf_parts(path: Path) -> SourceParts:
     return dxf_parts(path)
 
 
+def _image_parts(path: Path) -> SourceParts:
+    from kirigami_studio.outlines.read_image import image_parts
+
+    return image_parts(path)
+
+
 #: Readers of files that can hold several parts.
-PART_READERS: Mapping[str, Callable[[Path], SourceParts]] = MappingProxyType({".svg": _svg_parts, ".dxf": _dxf_parts})
+PART_READERS: Mapping[str, Callable[[Path], SourceParts]] = MappingProxyType(
+    {
+        ".svg": _svg_parts,
+        ".dxf": _dxf_parts,
+        ".png": _image_parts,
+        ".jpg": _image_parts,
+        ".jpeg": _image_parts,
+        ".bmp": _image_parts,
+    }
+)

@@ -11,13 +11,17 @@ from typing import NamedTuple
 
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
+from scipy import ndimage
+from shapely.geometry import Polygon
 from skimage import filters
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.parts import Part, PartKind, SourceParts, numbered, parts_of_region
 from kirigami_studio.outlines.source_file import decoding, read_bytes
-from kirigami_studio.outlines.trace import trace
+from kirigami_studio.outlines.trace import LEAST_PIXELS, trace
 
 #: Larger pictures are refused: decoding them takes gigabytes.
 MOST_PIXELS = 100_000_000
@@ -30,6 +34,15 @@ LEAST_CONTRAST = 0.06
 
 #: scikit-image carries no types; the annotation states what is used of it.
 threshold_otsu: Callable[[FloatArray], float] = filters.threshold_otsu
+
+#: Regions of a picture: the least share of it, those that are offered at most, and pixels around one that is traced.
+LEAST_SHARE, MOST_REGIONS, MARGIN = 2e-4, 200, 6
+#: Colours that a picture is told apart into, its longer side then, the least share of one, and the range (of 255) of
+#: its channels that makes a colour.
+MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
+MOST_PIXELS_IN_COLOUR = 25_000_000
+#: A picture of more regions is noise.
+MOST_SPECKS = 10_000
 
 FORMATS = ("PNG", "JPEG", "BMP")
 MOST_MEGABYTES = 200
@@ -111,6 +124,88 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
         ring, notes = trace(ink)
         outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+
+
+def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
+    """The connected regions of a picture as parts: dark on light or the reverse, and those of each colour.
+
+    A coloured picture has a layer for each of its main colours but the one of its border.  A picture in grey has
+    regions by its threshold alone, as have all where ``in_colour`` is not asked for.  Regions below ``LEAST_SHARE`` of
+    the picture are specks.
+
+    Raises
+    ------
+    TargetError
+        As :func:`trace_image`, but for pictures of specks.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "source.image_damaged"):
+        levels = _levels(content)
+        level = _automatic(levels.grey) if threshold is None else _checked(threshold)
+        ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
+        if not np.any(ink > 0) or np.all(ink > 0):
+            raise TargetError("image.one_colour", threshold=level)
+        found, specks = _regions(ink, levels.reduction, "", "")
+        for colour, field, reduction in _colours(content) if in_colour else ():
+            more, dust = _regions(field, reduction, colour, colour)
+            found, specks = found + more, specks + dust
+        if not found:
+            raise TargetError("trace.specks", specks=specks)
+        parts, too_many = numbered(found, float(max(levels.size)))
+        notes = too_many
+        if specks:
+            notes = (tr_n("{count} speck was left out.", "{count} specks were left out.", specks), *notes)
+        return SourceParts(path.stem, parts, notes, "px")
+
+
+def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[list[Part], int]:
+    """The connected regions above 0 as parts, source pixels, and the number of specks."""
+    labels, count = ndimage.label(ink > 0)
+    if count > MOST_SPECKS:
+        return [], count
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    least = max(LEAST_PIXELS, LEAST_SHARE * ink.size)
+    order = [index for index in np.argsort(sizes)[::-1].tolist() if sizes[index] >= least][:MOST_REGIONS]
+    boxes = ndimage.find_objects(labels)
+    parts = []
+    for index in order:
+        rows, columns = boxes[index]
+        top, left = max(rows.start - MARGIN, 0), max(columns.start - MARGIN, 0)
+        window = (slice(top, rows.stop + MARGIN), slice(left, columns.stop + MARGIN))
+        field, own = ink[window], labels[window] == index + 1
+        try:
+            ring, _ = trace(np.where(own, field, np.where(field > 0, -field, field)))
+        except TargetError:
+            continue  # thinner than a pixel
+        below = ink.shape[0] - window[0].start - field.shape[0]
+        region = Polygon((ring + np.array([left, below])) * reduction).buffer(0)
+        like = Part(0, "", layer, colour, PartKind.FILLED, Polygon())
+        parts += parts_of_region(region, like)
+    return parts, count - len(order)
+
+
+def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
+    """The main colours of a picture but that of its border: name, where they are (1, elsewhere -1), and reduction."""
+    image = ImageOps.exif_transpose(opened_image(content))
+    if image.width * image.height > MOST_PIXELS_IN_COLOUR:
+        return []
+    reduction = math.ceil(max(image.size) / COLOUR_SIDE)
+    coloured = image.convert("RGBA")
+    flat = Image.alpha_composite(Image.new("RGBA", coloured.size, "white"), coloured)
+    small = flat.convert("RGB").reduce(reduction) if reduction > 1 else flat.convert("RGB")
+    few = small.quantize(MOST_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    table, places = few.getpalette() or [], np.asarray(few)
+    colours = [tuple(table[3 * k : 3 * k + 3]) for k in range(len(table) // 3)]
+    if not any(max(colour) - min(colour) > LEAST_CHROMA for colour in colours):
+        return []
+    border = int(np.bincount(np.concatenate([places[0], places[-1], places[:, 0], places[:, -1]])).argmax())
+    found = []
+    for index, (red, green, blue) in enumerate(colours):
+        here = places == index
+        if index != border and np.mean(here) >= LEAST_OF_COLOUR:
+            found.append((f"#{red:02x}{green:02x}{blue:02x}", np.where(here, 1.0, -1.0), reduction))
+    return found if len(found) > 1 else []
 
 
 def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:

@@ -9,6 +9,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from PIL import Image, ImageDraw
 from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
@@ -222,3 +223,26 @@ def test_that_a_damaged_drawing_says_so_and_asks_nothing(heart, tmp_path, until)
     heart.files.open(str(path))
     until(lambda: bool(heart.messages.messages))
     assert heart.controller.document is before and heart.dialogs.parts is None
+
+
+def test_that_a_picture_of_two_shapes_asks_and_the_usual_one_keeps_its_threshold(window, tmp_path, until) -> None:
+    page = Image.new("L", (300, 200), 250)
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((20, 20, 120, 120), fill=20)
+    draw.rectangle((160, 60, 219, 119), fill=20)
+    path = tmp_path / "shapes.png"
+    page.save(path)
+    window.files.open(str(path))
+    picker = opened(window, until)
+    assert len(picker._items) == 2 and len(picker.chosen) == 1
+    picker.take.click()
+    until(lambda: window.target.view.outline is not None)
+    assert window.target.threshold.isVisible()
+    window.commands["choose_parts"].trigger()
+    opened(window, until)
+    picker.all.click()
+    settled(picker, until)
+    picker.take.click()
+    QApplication.processEvents()
+    target = window.controller.document.target
+    assert target is not None and target.size is not None and target.size[0] == pytest.approx(200, abs=2)

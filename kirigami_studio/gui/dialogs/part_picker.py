@@ -48,6 +48,7 @@ JOINS = (
     (Join.HULL, mark("Hull"), mark("The outline of a rubber band around all chosen parts.")),
     (Join.TIGHT, mark("Tight hull"), mark("An outline around all chosen parts that follows them into hollows.")),
 )
+HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
     PartKind.FILLED: mark("filled"),
     PartKind.CLOSED: mark("closed line"),
@@ -61,7 +62,7 @@ class PartPicker(QDialog):
     Nothing is changed before :attr:`taken`.
     """
 
-    taken = Signal(Outline)
+    taken = Signal(Outline, bool)  #: whether it is what is taken without asking
 
     def __init__(self, parent: QWidget, queue: JobQueue) -> None:
         super().__init__(parent)
@@ -365,8 +366,10 @@ class PartPicker(QDialog):
         if self._job.busy:
             self._accepts = True  # as soon as the outline is there
         elif self.result_ is not None:
+            source = self._read.source if self._read is not None else None
+            usual = source is not None and self.chosen == frozenset(source.usual) and not self._as_painted
             self.accept()
-            self.taken.emit(self.result_.outline)
+            self.taken.emit(self.result_.outline, usual and self.merging.join not in HULLS)
 
     def _stop(self) -> None:
         self._job.stop()

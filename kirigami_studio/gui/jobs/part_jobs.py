@@ -8,18 +8,22 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from PySide6.QtGui import QImageReader
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.jobs.queue import Cancel
-from kirigami_studio.gui.jobs.target_jobs import TargetRead, reading_target
+from kirigami_studio.gui.jobs.target_jobs import PICTURES, TargetRead, reading_target
 from kirigami_studio.outlines.merging import Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.read import PART_READERS, read_parts
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.store import CUT_FILES
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
+#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
+ISLAND, MOST_ISLANDS = 0.1, 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,14 +51,32 @@ class DesignRead:
 def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead | DesignRead]:
     """Read a target, the parts of a drawing that has several to choose from, or the design of a cut file."""
     if Path(source).suffix.lower() in PART_READERS:
-        if (document := _design_of(Path(source))) is not None:
+        if Path(source).suffix.lower() in CUT_FILES and (document := _design_of(Path(source))) is not None:
             yield DesignRead(document)
             return
-        found = read_parts(source)
-        if found.is_ambiguous:
+        if Path(source).suffix.lower() in PICTURES:
+            if _has_islands(source):
+                yield sketched(read_parts(source))
+                return
+        elif (found := read_parts(source)).is_ambiguous:
             yield sketched(found)
             return
     yield from reading_target(source, cancel)
+
+
+def _has_islands(source: str) -> bool:
+    """Whether a picture has several large shapes; one of specks is refused by its reader."""
+    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts
+
+    size = QImageReader(source).size()
+    if size.width() * size.height() > MOST_PIXELS_IN_COLOUR:
+        return False  # it takes seconds to read
+    try:
+        parts = image_parts(source, in_colour=False).parts
+    except KirigamiError:
+        return False
+    areas = sorted((part.worth for part in parts), reverse=True)
+    return len(areas) > 1 and areas[1] >= ISLAND * areas[0] and areas[0] >= 0.5 * sum(areas[MOST_ISLANDS:])
 
 
 def _design_of(path: Path) -> Document | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image, ImageDraw
 from shapely.geometry import Point, Polygon, box
 
 from kirigami_studio.foundation.errors import KirigamiError, TargetError
@@ -310,3 +311,39 @@ def read_parts_of_a_square(tmp_path: Path) -> None:
     path = tmp_path / "square.svg"
     path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>')
     assert isinstance(read_parts(path).parts[0].region, Polygon)
+
+
+def islands(tmp_path: Path, **colours: str) -> Path:
+    """A disc, a square and a speck on white."""
+    page = Image.new("RGB", (300, 200), "white")
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((20, 20, 120, 120), fill=colours.get("disc", "black"))
+    draw.rectangle((160, 60, 219, 119), fill=colours.get("square", "black"))
+    draw.point((280, 180), fill="black")
+    path = tmp_path / "islands.png"
+    page.save(path)
+    return path
+
+
+def test_that_the_regions_of_a_picture_are_parts_in_pixels(tmp_path, iou) -> None:
+    source = read_parts(islands(tmp_path))
+    assert [part.size for part in source.parts] == [pytest.approx(size, abs=1.5) for size in ((101, 101), (60, 60))]
+    assert source.unit == "px" and source.left_out == ("1 speck was left out.",)
+    disc, square = source.parts
+    assert disc.bounds[3] > square.bounds[3] and disc.bounds[2] < square.bounds[0]  # up stays up
+    round_ = Outline.from_points(np.asarray(Point(0, 0).buffer(1).exterior.coords))
+    assert iou(merged(source, (disc,), Merging()).outline, round_) > 0.98
+
+
+def test_that_a_coloured_picture_has_a_layer_for_each_colour(tmp_path) -> None:
+    source = read_parts(islands(tmp_path, disc="#c02020", square="#2040c0"))
+    red, blue = (name for name in source.layers if name)
+    assert {red, blue} == {"#c02020", "#2040c0"} or {red[1], blue[1]} == {"c", "2"}
+    assert [part.layer for part in source.chosen(red)] == [red]
+
+
+def test_that_a_picture_of_nothing_is_refused(tmp_path) -> None:
+    path = tmp_path / "blank.png"
+    Image.new("RGB", (50, 50), "white").save(path)
+    with pytest.raises(TargetError, match="blank"):
+        read_parts(path)
