@@ -90,20 +90,18 @@ class FilterControls(QObject):
         column = QVBoxLayout(pane)
         column.setContentsMargins(0, 0, 0, 2)
         column.setSpacing(6)
-        for boxes in ((self.feasible, self.cuttable, self.pinned), (self.rejected, self.pinned_first), (self.grouped,)):
+        first = QHBoxLayout()
+        for box in (self.feasible, self.cuttable, self.pinned):
+            first.addWidget(box)
+        first.addStretch(1)
+        column.addLayout(first)
+        for box, (caption, number) in zip((self.rejected, self.pinned_first, self.grouped), self.numbers, strict=True):
             row = QHBoxLayout()
-            for box in boxes:
-                row.addWidget(box)
+            row.addWidget(box)
             row.addStretch(1)
+            row.addWidget(_caption(caption, number))
+            row.addWidget(number)
             column.addLayout(row)
-        last = row
-        for caption, number in self.numbers:
-            if number is not self.least:
-                last = QHBoxLayout()
-                last.addStretch(1)
-                column.addLayout(last)
-            last.addWidget(_caption(caption, number))
-            last.addWidget(number)
         return pane
 
     def wide(self) -> QWidget:
