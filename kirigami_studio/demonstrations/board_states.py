@@ -15,6 +15,7 @@ from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine, combined
+from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.mirroring import Axis
@@ -100,10 +101,22 @@ class BoardStates(Session):
             target.set_tool(tool)
             target.tools.set_mode(Combine.ADD)
             self.all_sizes(f"editor-{tool.value}")
-        target.tools.set_mode(Combine.REPLACE)
+        target.tools.set_mode(Combine.NEW)
         reshaping.preview("smooth", 0.8)
         self.all_sizes("editor-smoothing")
         target.view.show_preview(None)
+
+    def objects(self) -> None:
+        """Several objects, two of them selected, and one that hangs apart."""
+        target, reshaping = self.window.target, self.window.connections.target.reshaping
+        boxes = (Box(-30.0, -20.0, 20.0, 20.0), Box(0.0, 0.0, 45.0, 35.0), Box(52.0, -20.0, 62.0, -10.0))
+        kinds = (Figure.RECTANGLE, Figure.ELLIPSE, Figure.STAR)
+        shapes = [placed_figure(kind, box) for kind, box in zip(kinds, boxes, strict=True)]
+        reshaping.take(Change("Draw shapes", lambda: Drawing(tuple(shapes), frozenset({0, 1}))))
+        target.set_tool(Tool.POSE)
+        self.all_sizes("editor-objects")
+        target.view.context.arrange("largest")
+        reshaping.take(Change("Draw rectangle", lambda: Drawing((shapes[0],))))
 
     def points_and_mirror(self) -> None:
         """Selected points with their handles, a selection box, and a shape that is mirrored as it is drawn."""
@@ -128,7 +141,7 @@ class BoardStates(Session):
             (target.view.active.press if place[0] < 20 else partial(target.view.active.move, held=True))(pointer)
         self.all_sizes("editor-mirror")
         target.view.active.drop()
-        target.tools.set_mode(Combine.REPLACE)
+        target.tools.set_mode(Combine.NEW)
         target.tools.axis.set_axis(Axis.NONE)
 
     def lost_designs(self) -> None:

@@ -103,6 +103,7 @@ class StateSheet(BoardStates):
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
+        self.objects()
         self.points_and_mirror()
         window.target.set_editing(False)
         self.parts()

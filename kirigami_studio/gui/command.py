@@ -39,6 +39,8 @@ class WindowState:
         The chosen design is being trimmed or fitted again.
     editing_target : bool
         The drawing board is open.
+    arrangements : frozenset of str
+        What can be done with the objects that are selected on the board.
     comparing : bool
         Two designs are shown side by side.
     before, trim, hand, cuts, plots, ideal : Switch
@@ -60,6 +62,7 @@ class WindowState:
     running: bool
     busy: bool
     editing_target: bool
+    arrangements: frozenset[str]
     comparing: bool
     before: Switch
     trim: Switch

@@ -172,6 +172,7 @@ class MainWindow(QMainWindow):
         self.stage.overlays_changed.connect(refresh)
         self.stage.comparing_changed.connect(refresh)
         self.target.editing_changed.connect(refresh)
+        self.target.view.context.selection_changed.connect(refresh)
 
     def state(self) -> WindowState:
         """Return what decides which commands can be given now."""
@@ -187,6 +188,7 @@ class MainWindow(QMainWindow):
             running=controller.running,
             busy=controller.trimming.busy or controller.refitting.busy or controller.regularity.busy,
             editing_target=self.target.editing,
+            arrangements=self.target.arrangements(),
             comparing=stage.comparing,
             before=_switch(stage.before),
             trim=_switch(stage.trim),

@@ -10,6 +10,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session import Session
 from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
+from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project.edits import Edit, as_drawn, without_designs
 
@@ -35,22 +36,29 @@ class TargetReshaper(QObject):
 
     def take(self, change: Change) -> None:
         """Carry out a gesture, or say why it is impossible."""
-        before = self._context.placed
+        context = self._context
         try:
             made = change.make()
+            drawing = made if isinstance(made, Drawing) else context.drawing.with_active(made)
+            target = drawing.united().target if drawing.objects else None
         except KirigamiError as error:
             self.refused.emit(error)
             return
-        if before is not None:
-            self._context.remember(before)
-        self._context.remember(made)
-        self.edited.emit(self._edit(made, change))
+        for each in (context.placed, *context.drawing.objects, target, *drawing.objects):
+            if each is not None:
+                context.remember(each)
+        self.edited.emit(self._edit(drawing, target, change))
+        context.select(drawing.selected)
 
-    def _edit(self, made: Placed, change: Change) -> Edit:
-        document = as_drawn(self._session.document, made.outline)
-        same = made.outline == document.target  # of another size or elsewhere: its designs are still right
-        changed = replace(document, target=made.outline) if same else without_designs(document, made.outline)
-        return Edit(change.gesture, changed, change.merge_key)
+    def _edit(self, drawing: Drawing, target: Placed | None, change: Change) -> Edit:
+        document = self._session.document
+        objects = tuple(each.outline for each in drawing.objects) if len(drawing.objects) > 1 else ()
+        if target is None:
+            return Edit(change.gesture, without_designs(document, None))
+        document = as_drawn(document, target.outline)
+        same = target.outline == document.target  # of another size or elsewhere: its designs are still right
+        changed = document if same else without_designs(document, target.outline)
+        return Edit(change.gesture, replace(changed, target=target.outline, drawing=objects), change.merge_key)
 
     def preview(self, kind: str, strength: float) -> None:
         """Show what simplifying or smoothing (0..1) would make of the target."""
@@ -62,7 +70,7 @@ class TargetReshaper(QObject):
         """Simplify or smooth the target that the slider started from."""
         made = self._refined(kind, strength)
         self.previewed.emit(None)
-        placed = self._context.placed
+        placed = self._context.active
         if made is not None and (placed is None or made.outline != placed.outline):
             self._result = made
             self.take(Change(tr(REFINEMENTS[kind]), lambda: made))
@@ -70,7 +78,7 @@ class TargetReshaper(QObject):
     def _refined(self, kind: str, strength: float) -> Placed | None:
         from kirigami_studio.outlines import refining
 
-        placed = self._context.placed
+        placed = self._context.active
         if self._base is None or placed is not self._result or kind != self._kind:
             self._base, self._result, self._kind = placed, placed, kind
         if self._base is None:
@@ -84,35 +92,49 @@ class TargetReshaper(QObject):
 
     def follow(self) -> None:
         """The document's target changed: the sliders start anew unless they did it."""
-        if self._context.placed is not self._result:
+        if self._context.active is not self._result:
             self._base = self._result = None
             self.restarted.emit()
 
     def resize(self, width_mm: float, height_mm: float) -> None:
-        """Give the target another real size; its middle stays."""
+        """Give the target another real size; its middle stays, and all objects go along."""
         from kirigami_studio.outlines.refining import stretched
 
-        placed = self._context.placed
+        placed, drawing = self._context.placed, self._context.drawing
         if placed is not None:
             known = placed.outline.size if placed.outline.unit == "mm" else None
             width, height = placed.size if known is None else known  # as the outline states it, free of rounding
             ring = placed.ring
             x, y = (0.5 * (ring.min(axis=0) + ring.max(axis=0))).tolist()
             factors = (width_mm / width, height_mm / height)
-            self.take(Change(tr("Resize target"), lambda: stretched(placed, factors, (x, y))))
+            every = drawing.select(range(len(drawing.objects)))
+            self.take(
+                Change(
+                    tr("Resize target"),
+                    lambda: every.changed(lambda each: stretched(each, factors, (x, y))).select(drawing.selected),
+                )
+            )
 
     def mirror(self, how: str) -> None:
-        """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half; ``across`` and ``over`` turn all."""
+        """Reflect: ``left``, ``right``, ``top`` or ``bottom`` keeps that half of the active object; ``across`` and
+        ``over`` turn what is selected, else all.
+        """
         from kirigami_studio.outlines.combining import Half, symmetric
         from kirigami_studio.outlines.refining import stretched
 
-        placed = self._context.placed
-        if placed is None:
+        active, drawing = self._context.active, self._context.drawing
+        if active is None:
             return
         if how in FLIPS:
-            self.take(Change(tr("Flip target"), lambda: stretched(placed, FLIPS[how])))
+            turned = drawing if drawing.chosen else drawing.select(range(len(drawing.objects)))
+            low, high = turned.box(turned.chosen)
+            x, y = (0.5 * (low + high)).tolist()
+            middle = None if len(turned.chosen) == 1 else (x, y)
+            self.take(
+                Change(tr("Flip target"), lambda: turned.changed(lambda each: stretched(each, FLIPS[how], middle)))
+            )
         else:
-            self.take(Change(tr("Mirror {how} half", how=how), lambda: symmetric(placed, Half(how))))
+            self.take(Change(tr("Mirror {how} half", how=how), lambda: symmetric(active, Half(how))))
 
 
 #: Factors along x and y of the reflections of the whole target.

@@ -26,9 +26,10 @@ LEAST_LEFT = 0.01
 class Combine(Enum):
     """What happens with a ring that is drawn while there is a target."""
 
-    REPLACE = "new"
+    NEW = "new"  #: another object
     ADD = "add"
     SUBTRACT = "subtract"
+    INTERSECT = "intersect"
 
 
 class Half(Enum):
@@ -50,7 +51,7 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     ring : (L, 2) float, mm
     how : Combine
     name : str
-        Of the new target where the ring replaces the old one.
+        Of the new target where the ring is one by itself.
     notes : iterable of str
         What was changed when the ring was made.
 
@@ -60,13 +61,12 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
         The ring is no shape, touches nothing of the target, leaves nothing of it, changes nothing or would cut a hole.
     """
     drawn = Placed.from_ring(ring, name, notes)
-    if how is Combine.REPLACE or target is None:
+    if how is Combine.NEW or target is None:
         return drawn
     old, new = target.polygon, drawn.polygon
     if old.intersection(new).area <= WORTH_SAYING * min(old.area, new.area):
-        raise TargetError("combine.beside_adding" if how is Combine.ADD else "combine.beside_subtracting")
-    join = shapely.union if how is Combine.ADD else shapely.difference
-    region = join(old, new, grid_size=SNAP * target.scale)
+        raise TargetError(BESIDE[how])
+    region = JOINS[how](old, new, grid_size=SNAP * target.scale)
     if how is Combine.SUBTRACT:
         _refuse_holes(old, new)
         if region.area < LEAST_LEFT * old.area:
@@ -75,6 +75,20 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     if Polygon(kept).symmetric_difference(old).area <= WORTH_SAYING * old.area:
         raise TargetError("combine.no_change")
     return target.reshaped(tidy(as_contour(kept)), (*notes, *left_out))
+
+
+#: What is said of a ring that touches nothing of the target.
+BESIDE = {
+    Combine.ADD: "combine.beside_adding",
+    Combine.SUBTRACT: "combine.beside_subtracting",
+    Combine.INTERSECT: "combine.nothing_shared",
+}
+#: What is left of a target and a ring.
+JOINS = {
+    Combine.ADD: shapely.union,
+    Combine.SUBTRACT: shapely.difference,
+    Combine.INTERSECT: shapely.intersection,
+}
 
 
 def _refuse_holes(old: Polygon, new: Polygon) -> None:

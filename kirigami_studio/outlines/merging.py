@@ -125,7 +125,7 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
             )
         region = shapely.union_all(regions)
         if merging.join is Join.BRIDGE:
-            region, bridges = _bridged(region, merging, size)
+            region, bridges = bridged(region, merging, size)
             if bridges:
                 notes.append(
                     tr_n(
@@ -176,7 +176,7 @@ def _check_width(code: str, width: float, size: float) -> None:
         raise TargetError(code, width=width, least=least, most=most)
 
 
-def _bridged(region: BaseGeometry, merging: Merging, size: float) -> tuple[BaseGeometry, tuple[Polygon, ...]]:
+def bridged(region: BaseGeometry, merging: Merging, size: float) -> tuple[BaseGeometry, tuple[Polygon, ...]]:
     """The region with bridges along the shortest tree that joins its pieces."""
     pieces = [piece.simplify(FLATNESS * size) for piece in enclosed(region)]
     if len(pieces) < 2:

@@ -133,9 +133,9 @@ def mirrored(target: Placed | None, drawn: Placed, how: Combine, name: str, mirr
     """
     notes = drawn.outline.notes
     if mirror.axis is Axis.NONE:
-        return drawn if how is Combine.REPLACE or target is None else combined(target, drawn.ring, how, name, notes)
+        return drawn if how is Combine.NEW or target is None else combined(target, drawn.ring, how, name, notes)
     pieces = mirror.united([drawn.ring])
-    if how is Combine.REPLACE or target is None:
+    if how is Combine.NEW or target is None:
         if len(pieces) > 1:
             raise TargetError("mirror.images_apart")
         ring, more = largest_piece(pieces[0])

@@ -49,6 +49,8 @@ def encode(document: Document) -> dict[str, bytes]:
     design = {
         "target": None if document.target is None else _outline_json(document.target),
         "settings": _settings_json(document.settings, seconds),
+        # Not there for a target that is one object, so that such projects stay as they were.
+        **({"drawing": [_outline_json(entry) for entry in document.drawing]} if document.drawing else {}),
         "fabrication": _fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry, runs, seconds) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
@@ -94,6 +96,7 @@ def decode(members: Members) -> Document:
     target = _outline(design.record("target")) if design.holds("target") else None
     return Document(
         target=target,
+        drawing=_drawing(design),
         settings=DesignSettings(
             **_plain_fields(settings, DesignSettings),
             grid=(rows, columns),
@@ -211,6 +214,13 @@ def _outline(record: Record) -> Outline:
         place=record.pair("place") if record.holds("place") else None,
         nodes=_nodes(record.record("nodes")) if record.holds("nodes") else None,
     )
+
+
+def _drawing(design: Record) -> tuple[Outline, ...]:
+    if not design.holds("drawing"):
+        return ()
+    place = f"{DESIGN}.drawing"
+    return tuple(_outline(Record(entry, f"{place}[{k}]")) for k, entry in enumerate(design.list("drawing")))
 
 
 def _nodes_json(nodes: Nodes) -> dict[str, object]:

@@ -52,6 +52,9 @@ class Document:
         Voids whose ratio a change by hand leaves as it is.
     artwork : Artwork or None
         What is printed on the sheet.
+    drawing : tuple of Outline
+        The objects of the drawing board that the target was made of, the lowest first; none for a target that is one
+        object by itself.
     labels : tuple of Label
         Name and note of each candidate; left out, they are named as those of one run.
     runs : int
@@ -73,11 +76,13 @@ class Document:
     marks: tuple[Mark, ...] = ()
     locked: frozenset[Void] = frozenset()
     artwork: Artwork | None = None
+    drawing: tuple[Outline, ...] = ()
     labels: tuple[Label, ...] = ()
     runs: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))
+        object.__setattr__(self, "drawing", tuple(self.drawing))
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
         if self.candidates and self.target is None:
             raise ProjectError("project.designs_without_target")

@@ -147,7 +147,15 @@ def edit_target(document: Document, target: Outline, gesture: str) -> Edit:
 def without_designs(document: Document, target: Outline | None) -> Document:
     """The document with another target; the designs of the old one, their marks, names and locks go."""
     return replace(
-        document, target=target, candidates=(), chosen=None, provenance={}, marks=(), labels=(), locked=frozenset()
+        document,
+        target=target,
+        drawing=(),
+        candidates=(),
+        chosen=None,
+        provenance={},
+        marks=(),
+        labels=(),
+        locked=frozenset(),
     )
 
 
@@ -276,6 +284,7 @@ def set_candidates(
         document,
         fabrication=_fabrication_for(document, found),
         target=document.target if target is None else target,
+        drawing=document.drawing if target is None or target == document.target else (),
         candidates=found,
         chosen=0 if found else None,
         provenance=provenance,

@@ -152,7 +152,13 @@ class History:
 
 def _alike(one: Document, other: Document) -> bool:
     """Whether two documents hold the same; targets of one shape, hence equal, may differ in size, place or nodes."""
-    return one is other or (one == other and _measure(one.target) == _measure(other.target))
+    if one is other:
+        return True
+    return one == other and _measures(one) == _measures(other)
+
+
+def _measures(document: Document) -> list[tuple[object, ...]]:
+    return [_measure(outline) for outline in (document.target, *document.drawing)]
 
 
 def _measure(target: Outline | None) -> tuple[object, ...]:

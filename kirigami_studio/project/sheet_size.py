@@ -17,6 +17,7 @@ from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import anchor_points
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
@@ -64,12 +65,16 @@ def set_opened_size(document: Document, longer_mm: float) -> Edit:
         No length that a shape can have.
     """
     cut = replace(document.fabrication, opened_mm=longer_mm)
-    target = document.target
+    target, drawing = document.target, document.drawing
     if target is not None:
         width, height = np.ptp(target.points, axis=0).tolist()
         scale = longer_mm / max(width, height)
+        if drawing:
+            placed = Placed.on_board(target)
+            objects = (Placed.on_board(each).enlarged(scale / placed.scale, placed.centre) for each in drawing)
+            drawing = tuple(each.outline for each in objects)
         target = replace(target, size=(scale * width, scale * height), unit="mm")
-    changed = replace(document, target=target, fabrication=cut)
+    changed = replace(document, target=target, fabrication=cut, drawing=drawing)
     return Edit(tr("Change the size of the opened shape"), sized(changed), merge_key="fabrication:opened_mm")
 
 

@@ -68,7 +68,14 @@ def placed(window: MainWindow) -> Placed:
     return found
 
 
-def use(window: MainWindow, tool: Tool, mode: Combine = Combine.REPLACE) -> None:
+def newest(window: MainWindow) -> Placed:
+    """The object that was drawn last: it is selected."""
+    found = window.target.view.context.active
+    assert found is not None
+    return found
+
+
+def use(window: MainWindow, tool: Tool, mode: Combine = Combine.NEW) -> None:
     window.target.set_tool(tool)
     window.target.tools.set_mode(mode)
     QApplication.processEvents()
@@ -137,7 +144,7 @@ def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: Ma
 
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
-    assert plate.status_text.text().startswith("Drag a square")
+    assert plate.status_text.text().startswith("Click a shape")
     qtbot.mouseClick(plate.target.tools.done_button, LEFT)
     assert not plate.target.editing and plate.status_text.text().startswith("Press Generate")
 
@@ -158,7 +165,7 @@ def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> No
         keys = board.commands[tool.value].shortcut().toString()
         assert keys and f"({keys})" in button.toolTip()
         assert button.accessibleName() and not button.icon().isNull()
-    for mode, name in ((Combine.ADD, "mode_add"), (Combine.SUBTRACT, "mode_subtract"), (Combine.REPLACE, "mode_new")):
+    for mode, name in ((Combine.ADD, "mode_add"), (Combine.SUBTRACT, "mode_subtract"), (Combine.NEW, "mode_new")):
         assert f"({board.commands[name].shortcut().toString()})" in board.target.tools.modes[mode].toolTip()
 
 
@@ -211,15 +218,15 @@ def test_that_the_grid_catches_corners_and_ctrl_suspends_it(board: MainWindow) -
     step = board.target.view.context.step
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
-    assert placed(board).size == pytest.approx((4 * step, 3 * step))
+    assert newest(board).size == pytest.approx((4 * step, 3 * step))
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step), CTRL)
-    assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
+    assert newest(board).size == pytest.approx((4.1 * step, 3 * step))
     board.commands["grid"].trigger()
     assert not board.target.tools.grid.isChecked()
     use(board, Tool.RECTANGLE)
     drag(board, (0.2 * step, 0.2 * step), (4.3 * step, 3.2 * step))
-    assert placed(board).size == pytest.approx((4.1 * step, 3 * step))
+    assert newest(board).size == pytest.approx((4.1 * step, 3 * step))
 
 
 def test_that_the_numbers_of_a_star_hold(board: MainWindow) -> None:

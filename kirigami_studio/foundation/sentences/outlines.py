@@ -204,6 +204,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "combine.beside_subtracting": mark(
         "The shape lies beside the target and cannot be subtracted from it. Draw it so that the two overlap."
     ),
+    "combine.nothing_shared": mark("The shapes share no area. Move or draw them so that they overlap."),
+    "combine.apart": mark("The selected shapes do not touch. Move them together, or bridge them."),
     "combine.nothing_left": mark(
         "The shape would take away the whole target. Draw a smaller one, or clear the target."
     ),

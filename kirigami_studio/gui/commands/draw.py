@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.command import Command
 from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.sketching.arrangements import EVERY, Arrangement
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 def commands(window: MainWindow) -> tuple[Command, ...]:
     """Return the commands of the Draw menu."""
-    return (_board(window), *_tools(window), *_modes(window), *_aids(window))
+    return (_board(window), *_tools(window), *_modes(window), *_aids(window), *_arrangements(window))
 
 
 def _board(window: MainWindow) -> Command:
@@ -43,7 +44,7 @@ def _tools(window: MainWindow) -> tuple[Command, ...]:
         tool(Tool.POINTS, tr("Move &points"), "N", tr("Drag the target's points"), gap=True),
         tool(Tool.POSE, tr("&Move, resize and rotate"), "V", tr("Move, resize and rotate the target")),
         tool(Tool.FREEHAND, tr("&Freehand"), "D", tr("Draw the target in one stroke"), "draw", gap=True),
-        tool(Tool.POLYGON, tr("P&en"), "P", tr("Draw the target point by point: click corners, drag curves")),
+        tool(Tool.POLYGON, tr("Pen"), "P", tr("Draw the target point by point: click corners, drag curves")),
         tool(Tool.RECTANGLE, tr("Rec&tangle"), "R", tr("Draw a rectangle")),
         tool(Tool.ELLIPSE, tr("E&llipse"), "O", tr("Draw an ellipse or a circle")),
         tool(Tool.REGULAR, tr("Re&gular polygon"), "G", tr("Draw a regular polygon")),
@@ -64,16 +65,18 @@ def _modes(window: MainWindow) -> tuple[Command, ...]:
             partial(_set_mode, window, how),
             (key,),
             icon,
-            gap=how is Combine.REPLACE,
+            gap=how is Combine.NEW,
             enabled_when=lambda now: now.editing_target,
         )
 
-    new, join = tr("Replace the target with the next shape"), tr("Add the next shape to the target")
-    cut = tr("Cut the next shape out of the target")
+    new, join = tr("The next shape is another object"), tr("Add the next shape to the objects it overlaps")
+    cut = tr("Cut the next shape out of the objects it overlaps")
+    share = tr("Keep of the objects that the next shape overlaps what lies in it")
     return (
-        mode("mode_new", Combine.REPLACE, tr("&New shape"), "Alt+1", new, "replace"),
+        mode("mode_new", Combine.NEW, tr("&New shape"), "Alt+1", new, "replace"),
         mode("mode_add", Combine.ADD, tr("&Add shape"), "Alt+2", join, "add"),
         mode("mode_subtract", Combine.SUBTRACT, tr("Su&btract shape"), "Alt+3", cut, "subtract"),
+        mode("mode_intersect", Combine.INTERSECT, tr("Intersect wit&h shape"), "Alt+4", share, "intersect"),
     )
 
 
@@ -100,6 +103,25 @@ def _aids(window: MainWindow) -> tuple[Command, ...]:
             icon="grid",
         ),
     )
+
+
+def _arrangements(window: MainWindow) -> tuple[Command, ...]:
+    """The Arrange menu: what can be done with the selected objects."""
+    context = window.target.view.context
+
+    def command(one: Arrangement) -> Command:
+        return Command(
+            one.id,
+            tr("&Arrange"),
+            tr(one.text),
+            tr(one.tip),
+            partial(context.arrange, one.id),
+            (one.key,) if one.key else (),
+            gap=one.gap,
+            enabled_when=lambda now: one.id in now.arrangements,
+        )
+
+    return tuple(command(one) for one in EVERY.values())
 
 
 def _take_tool(window: MainWindow, tool: Tool) -> None:

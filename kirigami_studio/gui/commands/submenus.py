@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 
@@ -16,6 +16,7 @@ from kirigami_studio.gui.commands.view import Appearance
 from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.language import NAMES, SYSTEM
+from kirigami_studio.gui.views.target_view import TargetView
 from kirigami_studio.project.recent import Recent
 
 if TYPE_CHECKING:
@@ -23,7 +24,28 @@ if TYPE_CHECKING:
 
 #: Commands by id, "" for a gap.  Those that cannot be given now are grey.
 BOARD = (
-    *("undo", "redo", "", "points", "pose", "polygon", "freehand", "rectangle", "ellipse", "regular", "star", "text"),
+    *(
+        "undo",
+        "redo",
+        "",
+        "duplicate",
+        "delete",
+        "union",
+        "difference",
+        "intersection",
+        "to_front",
+        "to_back",
+        "",
+        "pose",
+        "points",
+        "polygon",
+        "freehand",
+        "rectangle",
+        "ellipse",
+        "regular",
+        "star",
+        "text",
+    ),
     *("", "paste", "copy_picture", "clear", "", "fit", "zoom_selection", "zoom_real", "zoom_in", "zoom_out"),
     *("", "grid", "axis", "", "edit_target"),
 )
@@ -184,6 +206,8 @@ def _offer(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...
 
 
 def _open(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...]], place: QPoint) -> None:
+    if isinstance(view, TargetView):
+        view.select_at(QPointF(place))
     window.commands.refresh()
     menu = QMenu(view)
     menu.setObjectName("contextMenu")

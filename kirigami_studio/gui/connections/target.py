@@ -88,16 +88,22 @@ class TargetConnections(QObject):
 
     def _show_document(self, document: Document) -> None:
         before, self._shown = self._shown, document
-        if document.target is not before.target:
+        if document.target is not before.target or document.drawing != before.drawing or _moved(document, before):
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:
             self._window.target.show_reach(document.settings.grid)
 
     def _show_target(self, document: Document) -> None:
         panel = self._window.target
-        panel.show_target(document.target, self._controller.targeting.tracer.picture_of(document.target))
+        picture = self._controller.targeting.tracer.picture_of(document.target)
+        panel.show_target(document.target, picture, document.drawing)
         self.reshaping.follow()
         panel.show_reach(document.settings.grid)
+
+
+def _moved(document: Document, before: Document) -> bool:
+    """Whether other objects are there: equal ones may lie elsewhere."""
+    return any(one is not other for one, other in zip(document.drawing, before.drawing, strict=False))
 
 
 class StartConnections(QObject):

@@ -12,9 +12,11 @@ from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLa
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import ToolButton, muted_label
-from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
+from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar, LooseRow
+from kirigami_studio.gui.sketching.arrangements import ARRANGEMENTS
 from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import TargetView, Tool
+from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
 
@@ -74,7 +76,7 @@ class OutlineBoard(QDialog):
         self.setModal(False)
         self.resize(SIZE)
         self._words = words
-        self._steps: list[Placed | None] = [None]
+        self._steps = [Drawing()]
         self._at = 0
         self.view = TargetView() if view is None else view
         self.view.setAcceptDrops(False)
@@ -86,6 +88,7 @@ class OutlineBoard(QDialog):
         self.redo = ToolButton("redoBoard", "redo", tr("Redo on this board (Ctrl+Shift+Z)."))
         self.about = QLabel(tr(words.empty))
         self.about.setWordWrap(True)
+        self.loose = LooseRow(self.view.context)
         self.hint = muted_label()
         self.take = QPushButton(tr(words.take))
         self.take.setObjectName("primary")
@@ -113,6 +116,7 @@ class OutlineBoard(QDialog):
         column.addWidget(self.view, 1)
         column.addWidget(self.hint)
         column.addWidget(self.about)
+        column.addWidget(self.loose)
         below.addStretch(1)
         below.addWidget(self.cancel)
         below.addWidget(self.take)
@@ -121,6 +125,10 @@ class OutlineBoard(QDialog):
     def _connect(self) -> None:
         context = self.view.context
         context.changed.connect(self._change)
+        context.selection_changed.connect(self._show_selection)
+        for one in ARRANGEMENTS:
+            if one.key:
+                QShortcut(QKeySequence(one.key), self).activated.connect(partial(context.arrange, one.id))
         self.view.hint.connect(self.hint.setText)
         self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(self.reject)
@@ -140,15 +148,16 @@ class OutlineBoard(QDialog):
         placed = None if outline is None or len(outline.points) > MOST_POINTS else Placed.on_board(outline)
         if placed is not None:
             self.view.context.remember(placed)
-        self._steps, self._at = [placed], 0
+        self._steps, self._at = [Drawing(() if placed is None else (placed,))], 0
         self._show()
         self.view.set_editing(True)
         self.set_tool(Tool.POLYGON if placed is None else Tool.POINTS)
 
     @property
     def placed(self) -> Placed | None:
-        """What is on the board."""
-        return self._steps[self._at]
+        """The outline that the objects on the board make."""
+        drawing = self._steps[self._at]
+        return drawing.united().target if drawing.objects else None
 
     def set_tool(self, tool: Tool) -> None:
         """Change what the pointer does."""
@@ -166,15 +175,24 @@ class OutlineBoard(QDialog):
 
     def _change(self, change: Change) -> None:
         """Carry out a gesture, or say why it is impossible."""
+        context = self.view.context
         try:
             made = change.make()
+            drawing = made if isinstance(made, Drawing) else context.drawing.with_active(made)
+            targets = (drawing.united().target,) if drawing.objects else ()
         except KirigamiError as error:
             self.say(str(error), wrong=True)
             return
-        self.view.context.remember(made)
-        self._steps = [*self._steps[: self._at + 1], made]
+        for each in (*drawing.objects, *targets):
+            context.remember(each)
+        self._steps = [*self._steps[: self._at + 1], drawing]
         self._at += 1
         self._show()
+        context.select(drawing.selected)
+
+    def _show_selection(self) -> None:
+        self.tools.options.pose.show_drawing(self.view.context.drawing)
+        self.loose.setVisible(bool(self.view.context.loose))
 
     def _step(self, by: int) -> None:
         """Undo or redo one gesture."""
@@ -185,9 +203,12 @@ class OutlineBoard(QDialog):
     def _show(self) -> None:
         """Show the shape, and whether it can be taken."""
         placed = self.placed
-        self.view.show_outline(None if placed is None else placed.outline)
+        objects = tuple(each.outline for each in self._steps[self._at].objects)
+        if placed is not None:
+            self.view.context.remember(placed)
+        self.view.show_outline(None if placed is None else placed.outline, None, objects)
         self.tools.show_target(placed is not None)
-        self.tools.options.pose.show_placed(placed)
+        self._show_selection()
         self.undo.setEnabled(self._at > 0)
         self.redo.setEnabled(self._at + 1 < len(self._steps))
         refusal = None if placed is None else self.refusal(placed.outline)

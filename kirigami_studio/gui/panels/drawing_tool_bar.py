@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
@@ -16,6 +18,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.panels.card import ToolButton
 from kirigami_studio.gui.panels.tool_options import AxisButton, ToolOptions
+from kirigami_studio.gui.sketching.arrangements import ARRANGEMENTS, BRIDGE_LOOSE, KEEP_LARGEST
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
@@ -35,9 +38,10 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
 )
 #: Mode, icon, tooltip.
 MODES = (
-    (Combine.REPLACE, "replace", mark("New (Alt+1). What you draw replaces the shape.")),
-    (Combine.ADD, "add", mark("Add (Alt+2). What you draw is added to the shape.")),
-    (Combine.SUBTRACT, "subtract", mark("Subtract (Alt+3). What you draw is cut out of the shape.")),
+    (Combine.NEW, "replace", mark("New (Alt+1). What you draw is another object.")),
+    (Combine.ADD, "add", mark("Add (Alt+2). What you draw is added to the objects it overlaps.")),
+    (Combine.SUBTRACT, "subtract", mark("Subtract (Alt+3). What you draw is cut out of the objects it overlaps.")),
+    (Combine.INTERSECT, "intersect", mark("Intersect (Alt+4). Of the objects it overlaps, what lies in it stays.")),
 )
 MIRRORS = (
     ("left", mark("Keep &left half")),
@@ -64,7 +68,7 @@ class DrawingToolBar(QWidget):
         self.modes: dict[Combine, QToolButton] = {}
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
+        row.setSpacing(0)  # the least window has room for all tools, and no more
         self._add_tools(row)
         row.addWidget(_rule())
         self._add_modes(row)
@@ -80,6 +84,10 @@ class DrawingToolBar(QWidget):
         self.grid.toggled.connect(self.grid_switched)
         self.axis = AxisButton(context)
         self.axis.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.arrange = ToolButton("arrange", "arrange", tr("Arrange. Duplicate, combine, order and align objects."))
+        self.arrange.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.arrange.setMenu(ArrangeMenu(context, self))
+        row.addWidget(self.arrange)
         row.addWidget(self.mirror)
         row.addWidget(self.axis)
         row.addWidget(self.grid)
@@ -127,10 +135,60 @@ class DrawingToolBar(QWidget):
 
     def show_target(self, present: bool) -> None:
         """Without a target there is nothing to move, mirror or take from."""
-        for button in (self.buttons[Tool.POINTS], self.buttons[Tool.POSE], self.mirror):
+        for button in (self.buttons[Tool.POINTS], self.buttons[Tool.POSE], self.mirror, self.arrange):
             button.setEnabled(present)
-        for mode in (Combine.ADD, Combine.SUBTRACT):
+        for mode in (Combine.ADD, Combine.SUBTRACT, Combine.INTERSECT):
             self.modes[mode].setEnabled(present)
+
+
+class ArrangeMenu(QMenu):
+    """What can be done with the selected objects; what needs more of them is grey."""
+
+    def __init__(self, context: SketchContext, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._context = context
+        self._entries = []
+        for one in (*ARRANGEMENTS, BRIDGE_LOOSE, KEEP_LARGEST):
+            if one.gap:
+                self.addSeparator()
+            action = self.addAction(tr(one.text))
+            action.setObjectName(one.id)
+            action.setToolTip(tr(one.tip))
+            action.triggered.connect(partial(self._arrange, one.id))
+            self._entries.append(action)
+        self.aboutToShow.connect(self.refresh)
+
+    def _arrange(self, name: str, _: bool = False) -> None:
+        self._context.arrange(name)
+
+    def refresh(self) -> None:
+        """Offer what is possible with what is selected."""
+        for action in self._entries:
+            action.setEnabled(self._context.can_arrange(action.objectName()))
+
+
+class LooseRow(QWidget):
+    """Shown while objects hang apart: what can be done about it."""
+
+    def __init__(self, context: SketchContext) -> None:
+        super().__init__()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        self.buttons = {}
+        for one in (BRIDGE_LOOSE, KEEP_LARGEST):
+            button = QPushButton(tr(one.text))
+            button.setObjectName("small")
+            button.setToolTip(tr(one.tip))
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            button.clicked.connect(partial(self._arrange, context, one.id))
+            row.addWidget(button)
+            self.buttons[one.id] = button
+        row.addStretch(1)
+        self.hide()
+
+    def _arrange(self, context: SketchContext, name: str, _: bool = False) -> None:
+        context.arrange(name)
 
 
 def _rule() -> QFrame:

@@ -18,10 +18,11 @@ from PySide6.QtWidgets import (
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.panels.card import Card, ElidedLabel, ToolButton, muted_label
-from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar
+from kirigami_studio.gui.panels.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.panels.number_field import LengthField, number_field
 from kirigami_studio.gui.panels.opened_size_row import OpenedSizeRow
 from kirigami_studio.gui.panels.start_tile import StartTile
+from kirigami_studio.gui.sketching.arrangements import EVERY
 from kirigami_studio.gui.views.target_view import TargetView, Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -110,6 +111,9 @@ class TargetPanel(Card):
         self.body.addWidget(self.refine)
         self.body.addWidget(self.threshold)
         self.body.addWidget(self.notes)
+        self.loose = LooseRow(self.view.context)
+        self.body.addWidget(self.loose)
+        self.view.context.selection_changed.connect(self._show_selection)
         self.buttons["openTarget"].clicked.connect(self.open_wanted)
         self.buttons["library"].clicked.connect(self.wants_silhouette)
         self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
@@ -149,6 +153,7 @@ class TargetPanel(Card):
             self.editing_changed.emit(on)
             if not on and self.view.outline is not None:
                 self.view.hint.emit(tr(DONE_HINT))
+        self._show_selection()
         if opens or not on:
             self.set_tool(Tool.POSE if on else Tool.LOOK)
 
@@ -158,7 +163,9 @@ class TargetPanel(Card):
         self.tools.grid.setChecked(on)
         self.view.update()
 
-    def show_target(self, outline: Outline | None, picture: Picture | None = None) -> None:
+    def show_target(
+        self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()
+    ) -> None:
         """Show the document's target, and the threshold when it was traced from a picture."""
         self.threshold.setVisible(picture is not None)
         if picture is not None:
@@ -168,12 +175,12 @@ class TargetPanel(Card):
             self.set_tool(Tool.LOOK)
         under = self.view.underlay
         retraced = picture is not None and under is not None and under.path == picture.path
-        self.view.show_outline(outline, picture)
+        self.view.show_outline(outline, picture, objects)
         if elsewhere and not retraced:  # the axes go through the middle of what is drawn on
             self.view.context.set_axis(self.view.context.mirror.axis)
         self.tools.show_target(outline is not None)
         self.refine.show_placed(self.view.context.placed)
-        self.tools.options.pose.show_placed(self.view.context.placed)
+        self._show_selection()
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
@@ -184,6 +191,15 @@ class TargetPanel(Card):
         if outline is not None:
             self.facts.setText(tr(outline.name))
             self.size_.setText(measured(outline))
+
+    def arrangements(self) -> frozenset[str]:
+        """What can be done with the selected objects while the board is open."""
+        context = self.view.context
+        return frozenset(name for name in EVERY if self.editing and context.can_arrange(name))
+
+    def _show_selection(self) -> None:
+        self.tools.options.pose.show_drawing(self.view.context.drawing)
+        self.loose.setVisible(self.editing and bool(self.view.context.loose))
 
     def show_reach(self, grid: tuple[int, int]) -> None:
         """Mark on the drawing, and say, what a grid (rows, columns) can hardly show of the target."""

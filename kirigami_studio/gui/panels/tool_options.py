@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QAction, QActionGroup, QFont
 from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QLineEdit, QMenu, QSpinBox, QToolButton, QWidget
@@ -14,12 +15,13 @@ from kirigami_studio.gui.look import icons
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.card import TOOL_ICON, ToolButton
 from kirigami_studio.gui.panels.number_field import DecimalField, LengthField, number_field
-from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext, middle_of
+from kirigami_studio.gui.sketching.sketch_context import Change, SketchContext
 from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.outlines.drawing import Drawing, about
 from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.nodes import Kind
-from kirigami_studio.outlines.placed import LARGEST_MM, Placed
+from kirigami_studio.outlines.placed import LARGEST_MM
 
 
 class ToolOptions(QWidget):
@@ -160,35 +162,43 @@ class PoseOptions(QWidget):
     def _leave(self) -> None:
         self._visit += 1
 
-    def show_placed(self, placed: Placed | None) -> None:
-        """Show where the target lies."""
-        self.setEnabled(placed is not None)
-        if placed is None:
+    def show_drawing(self, drawing: Drawing) -> None:
+        """Show where the middle of what is selected lies."""
+        self.setEnabled(bool(drawing.chosen))
+        if not drawing.chosen:
             return
-        for field, value in zip((self.x_, self.y_), middle_of(placed), strict=True):
+        for field, value in zip((self.x_, self.y_), _middle(drawing), strict=True):
             with QSignalBlocker(field):
                 field.setValue(value)
         with QSignalBlocker(self.turn):
             self.turn.setValue(0.0)
 
     def _move(self) -> None:
-        placed = self._context.placed
-        if placed is not None:
-            middle = middle_of(placed)
+        drawing = self._context.drawing
+        if drawing.chosen:
+            middle = _middle(drawing)
             # Only the field that was changed: the other one shows a rounded number.
             fields = zip((self.x_, self.y_), middle, strict=True)
             x, y = (field.value() - old if self.sender() is field else 0.0 for field, old in fields)
-            self._change(tr("Move target"), lambda: placed.moved((x, y)))
+            self._change(tr("Move target"), lambda: drawing.moved((x, y)))
 
     def _turn(self, degrees: float) -> None:
-        from kirigami_studio.outlines.refining import turned
+        drawing = self._context.drawing
+        if drawing.chosen and degrees:
+            alone = len(drawing.chosen) == 1
+            centre = np.array(drawing.objects[drawing.chosen[0]].centre if alone else _middle(drawing))
+            angle = math.radians(degrees)
+            self._change(tr("Rotate target"), lambda: drawing.changed(lambda each: about(each, angle, centre)))
 
-        placed = self._context.placed
-        if placed is not None and degrees:
-            self._change(tr("Rotate target"), lambda: turned(placed, math.radians(degrees)))
-
-    def _change(self, gesture: str, make: Callable[[], Placed]) -> None:
+    def _change(self, gesture: str, make: Callable[[], Drawing]) -> None:
         self._context.changed.emit(Change(gesture, make, f"typed {gesture} {self._visit}"))
+
+
+def _middle(drawing: Drawing) -> tuple[float, float]:
+    """The middle of the box around what is selected, mm."""
+    low, high = drawing.box(drawing.chosen)
+    x, y = (0.5 * (low + high)).tolist()
+    return x, y
 
 
 class FontOptions(QWidget):

@@ -100,6 +100,26 @@ def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> N
     painter.drawPath(line_path(points, closed=True))
 
 
+def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palette) -> None:
+    """Draw the box that selects what lies in it, between two corners in pixels."""
+    fill = QColor(palette.accent)
+    fill.setAlpha(28)
+    painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
+    painter.setBrush(fill)
+    painter.drawRect(QRectF(one, other).normalized())
+
+
+def paint_object(painter: QPainter, points: FloatArray, palette: Palette, *, selected: bool, loose: bool) -> None:
+    """Draw one of several objects, (L, 2) pixels: its fill, and a thin line that tells its state."""
+    colour = palette.warning if loose else palette.accent if selected else palette.muted
+    painter.setPen(round_pen(colour, 1.8 if selected or loose else 1.0))
+    painter.setBrush(QColor(palette.target_fill))
+    painter.drawPath(line_path(points, closed=True))
+    if loose:
+        painter.setBrush(QBrush(stripes(colour, True, painter.device().devicePixelRatioF())))
+        painter.drawPath(line_path(points, closed=True))
+
+
 def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], palette: Palette) -> None:
     """Write width and height (mm) on a label beside the pointer."""
     paint_label(

@@ -14,7 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.scene.target_items import paint_label, paint_proposal
+from kirigami_studio.gui.scene.target_items import paint_field, paint_label, paint_proposal
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
@@ -79,6 +79,7 @@ class PointTool(SketchTool):
         self.selected: frozenset[int] = frozenset()
         context.kind_wanted.connect(self.set_kind)
         context.mirror_changed.connect(self._reset)
+        context.selection_changed.connect(self._follow)
 
     @property
     def anchors(self) -> Anchors | None:
@@ -86,7 +87,7 @@ class PointTool(SketchTool):
         return self._dragged or self._anchors
 
     def sync(self) -> None:
-        placed = self.context.placed
+        placed = self.context.active
         self._dragged = None
         if placed is self._shown and self._anchors is not None:
             self._add_mirror_images()
@@ -97,16 +98,21 @@ class PointTool(SketchTool):
         self._shown = placed
         self._add_mirror_images()
 
+    def _follow(self) -> None:
+        """Another object may be the active one now."""
+        if self.context.active is not self._shown:
+            self.sync()
+
     def _reset(self) -> None:
         """Other axes hold: points that were set for the old ones only are gone."""
-        if self.context.placed is not None and self.context.placed is self._shown:
-            self._anchors = Anchors.of(self.context.placed)
+        if self.context.active is not None and self.context.active is self._shown:
+            self._anchors = Anchors.of(self.context.active)
             self.select(())
             self._add_mirror_images()
 
     def _add_mirror_images(self) -> None:
         """With a mirror every point of the target has its image: set those that are missing on the line."""
-        placed, anchors = self.context.placed, self._anchors
+        placed, anchors = self.context.active, self._anchors
         if placed is not None and anchors is not None and placed is self._shown:
             images = [self.context.mirror.image(anchors.places, factors) for factors in self.context.mirror.images]
             more = anchors.evened(images, IMAGE_REACH * placed.scale)
@@ -141,6 +147,10 @@ class PointTool(SketchTool):
             self._grip, self._field = Grip.FIELD, (pointer, pointer)
             if not pointer.shift:
                 self.select(())
+            other = self.context.drawing.at(pointer.free)
+            if other is not None and other != self.context.drawing.active:
+                self.context.select({other})
+                self._grip, self._field = Grip.NOTHING, None
 
     def _press_point(self, index: int, more: bool) -> None:
         if more and index in self.selected:
@@ -216,7 +226,7 @@ class PointTool(SketchTool):
 
     def _take_kind(self, kind: Kind, cusp: bool = False) -> None:
         anchors = self._anchors
-        if anchors is None or not self.selected or self.context.placed is not self._shown:
+        if anchors is None or not self.selected or self.context.active is not self._shown:
             return
         for index in sorted(self.selected | self._images(anchors).keys()):
             anchors = anchors.as_cusp(index) if cusp else anchors.with_kind(index, kind)
@@ -279,7 +289,7 @@ class PointTool(SketchTool):
     def _images(self, anchors: Anchors) -> dict[int, tuple[int, int]]:
         """The mirror images of the selected points, and by which factors they are that."""
         found: dict[int, tuple[int, int]] = {}
-        placed = self.context.placed
+        placed = self.context.active
         for factors in self.context.mirror.images if placed is not None else ():
             for index in self.selected:
                 image = self.context.mirror.image(anchors.places[index], factors)
@@ -292,7 +302,7 @@ class PointTool(SketchTool):
     def _with_handle(self, anchors: Anchors, handle: Handle, pointer: PointerEvent) -> Anchors:
         offset = np.array(pointer.place) - anchors.places[handle.anchor]
         bent = anchors.with_handle(handle.anchor, handle.side, offset, pointer.alt, pointer.shift)
-        placed = self.context.placed
+        placed = self.context.active
         for factors in self.context.mirror.images if placed is not None else ():
             image = self.context.mirror.image(anchors.places[handle.anchor], factors)
             far = np.linalg.norm(anchors.places - image, axis=1)
@@ -324,7 +334,7 @@ class PointTool(SketchTool):
 
     def _commit(self, anchors: Anchors, gesture: str, merge_key: str | None = None) -> bool:
         """Hand over the target with these points; whether it was taken.  They stay selected."""
-        placed = self.context.placed
+        placed = self.context.active
         if placed is None:
             return False
         before = self._anchors
@@ -336,7 +346,7 @@ class PointTool(SketchTool):
             return made
 
         self.context.changed.emit(Change(gesture, make, merge_key))
-        if self.context.placed is placed:  # refused
+        if self.context.active is placed:  # refused
             self._anchors = before
             return False
         if self._anchors is not None and len(self._anchors.places) != len(anchors.places):
@@ -440,11 +450,7 @@ def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, m
         x, y = transform.to_pixels(place).tolist()
         paint_label(painter, QPointF(x, y), tr("{x:.4g}, {y:.4g} mm", x=place[0], y=place[1]), palette)
     if marks.field is not None:
-        fill = QColor(palette.accent)
-        fill.setAlpha(28)
-        painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
-        painter.setBrush(fill)
-        painter.drawRect(QRectF(*marks.field).normalized())
+        paint_field(painter, *marks.field, palette)
 
 
 def _paint_point(painter: QPainter, pointer: QPointF, kind: Kind) -> None:

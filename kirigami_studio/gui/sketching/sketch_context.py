@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +14,11 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.sketching.arrangements import EVERY
 from kirigami_studio.outlines.combining import Combine
+from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.figures import USUAL_WAIST, Figure
-from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
+from kirigami_studio.outlines.mirroring import Axis, Mirror
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import BOARD_MM, Placed
@@ -83,13 +85,14 @@ class Change:
     gesture : str
         As it follows the word Undo: "Add star".
     make : callable
-        Returns the new target; raises a TargetError when there can be none.
+        Returns the shape that takes the place of the active object, or the whole new drawing; raises a TargetError
+        when there can be none.
     merge_key : str or None
         Changes of one key that follow each other undo together.
     """
 
     gesture: str
-    make: Callable[[], Placed]
+    make: Callable[[], Placed | Drawing]
     merge_key: str | None = None
 
 
@@ -102,12 +105,15 @@ class SketchContext(QObject):
     mirror_changed = Signal()
     kind_wanted = Signal(Kind)  #: that the selected points shall have
     kinds_shown = Signal(frozenset)  #: kinds of the selected points
+    selection_changed = Signal()  #: other objects are selected, or others are there
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.transform = ViewTransform(1.0, (0.0, 0.0))
         self.placed: Placed | None = None
-        self.combine = Combine.REPLACE
+        self.drawing = Drawing()
+        self.loose: frozenset[int] = frozenset()
+        self.combine = Combine.NEW
         self.snapping = True
         self.corners = 5
         self.waist = USUAL_WAIST
@@ -116,6 +122,27 @@ class SketchContext(QObject):
         self.mirror = Mirror()
         self._nudges = 0
         self._places: dict[tuple[object, ...], Placed] = {}
+
+    @property
+    def active(self) -> Placed | None:
+        """The object whose points are edited."""
+        index = self.drawing.active
+        return None if index is None else self.drawing.objects[index]
+
+    def show(self, target: Placed | None, objects: tuple[Placed, ...]) -> None:
+        """Lay a target and its objects on the board; what was selected stays so while the objects are as many."""
+        same = len(objects) == len(self.drawing.objects)
+        self.placed, self.drawing = target, Drawing(objects, self.drawing.selected if same else frozenset())
+        self.loose = self.drawing.united().loose if len(objects) > 1 else frozenset()
+        self.selection_changed.emit()
+
+    def select(self, indices: Iterable[int]) -> None:
+        """Select objects."""
+        wanted = self.drawing.select(indices)
+        if wanted.selected != self.drawing.selected:
+            self.drawing = wanted
+            self.selection_changed.emit()
+            self.repaint.emit()
 
     def remember(self, placed: Placed) -> None:
         """Keep where an outline lies on the board."""
@@ -149,6 +176,22 @@ class SketchContext(QObject):
         step = self.step
         return round(length / step) * step
 
+    def snapped_way(self, low: FloatArray, high: FloatArray, way: FloatArray) -> FloatArray:
+        """A way (2,), mm, after which the lower left corner of a box lies on the grid."""
+        there = np.array([self.snapped(length) for length in (low + way).tolist()])
+        return there - low
+
+    def can_arrange(self, name: str) -> bool:
+        """Whether an arrangement has enough objects."""
+        needed = EVERY[name].least
+        return bool(self.loose) if needed == 0 else len(self.drawing.chosen) >= needed
+
+    def arrange(self, name: str) -> None:
+        """Change the selected objects by an arrangement of the table."""
+        one, drawing = EVERY[name], self.drawing
+        if self.can_arrange(name):
+            self.changed.emit(Change(tr(one.gesture), lambda: one.make(drawing)))
+
     def set_axis(self, axis: Axis) -> None:
         """Mirror what is drawn from now on about axes through the middle of the target, or of the empty board."""
         self.mirror = Mirror(axis, (0.0, 0.0) if self.placed is None else middle_of(self.placed))
@@ -169,14 +212,14 @@ class SketchContext(QObject):
         return np.array(direction) * length, f"nudge {self._nudges}"
 
     def draw(self, make: Callable[[], Placed], name: str) -> None:
-        """Let a new shape replace the target, be added to it or subtracted; a replacement ends the tool."""
-        how, target, mirror = self.combine, self.placed, self.mirror
-        replaces = how is Combine.REPLACE or target is None
-        gesture = _change_name(Combine.REPLACE if replaces else how, name)
+        """Let a new shape be another object, or join those that it overlaps; another object ends the tool."""
+        how, drawing, mirror = self.combine, self.drawing, self.mirror
+        new = how is Combine.NEW or not drawing.objects
+        gesture = _change_name(Combine.NEW if new else how, name)
         if mirror.axis is not Axis.NONE:
             gesture = tr("{gesture}, mirrored", gesture=gesture)
-        self.changed.emit(Change(gesture, lambda: mirrored(target, make(), how, name, mirror)))
-        if replaces:
+        self.changed.emit(Change(gesture, lambda: drawing.with_drawn(make(), how, name, mirror)))
+        if new:
             self.tool_done.emit()
 
 
@@ -224,6 +267,9 @@ class SketchTool:
         """Select nothing; whether anything was selected."""
         return False
 
+    def select_at(self, pixel: QPointF) -> None:
+        """Select what is there, before its menu opens."""
+
     def selected_box(self) -> Bounds | None:
         """The box around what is selected, else around the target, mm."""
         return None if self.context.placed is None else Bounds.of(self.context.placed.ring)
@@ -250,8 +296,10 @@ def distance(one: QPointF, other: QPointF) -> float:
 
 def _change_name(how: Combine, name: str) -> str:
     """What the Undo menu says of a drawn shape."""
+    if how is Combine.INTERSECT:
+        return tr("Intersect with a shape")
     draw, add, subtract = (tr(label) for label in SHAPE_LABELS[name])
-    return {Combine.REPLACE: draw, Combine.ADD: add, Combine.SUBTRACT: subtract}[how]
+    return {Combine.NEW: draw, Combine.ADD: add, Combine.SUBTRACT: subtract}[how]
 
 
 def _key(outline: Outline) -> tuple[object, ...]:

@@ -24,6 +24,7 @@ from kirigami_studio.gui.jobs.target_jobs import Picture
 from kirigami_studio.gui.scene.target_items import (
     paint_axes,
     paint_grid,
+    paint_object,
     paint_proposal,
     paint_reach,
     paint_target_line,
@@ -37,7 +38,6 @@ from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, Sk
 from kirigami_studio.gui.sketching.underlay import Underlay
 from kirigami_studio.gui.views.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.views.file_drops import FileDrops
-from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import Figure
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
@@ -108,11 +108,13 @@ class TargetView(Canvas):
         """What follows the pointer now."""
         return self._tools[self._tool]
 
-    def show_outline(self, outline: Outline | None, picture: Picture | None = None) -> None:
+    def show_outline(
+        self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()
+    ) -> None:
         """Show another target; an unfinished sketch is dropped.
 
-        One that was drawn here, or traced from the picture that lies here, stays where it is, with the board as it is
-        seen; another one is fitted.
+        ``objects`` are those that it was made of, if they are several.  A target that was drawn here, or traced from
+        the picture that lies here, stays where it is, with the board as it is seen; another one is fitted.
         """
         drawn = None if outline is None else self.context.recall(outline)
         traced = None if picture is None else picture.traced
@@ -125,7 +127,9 @@ class TargetView(Canvas):
         elif drawn is None:
             under = None
         self._outline, self._preview, self.reach = outline, None, None
-        self.context.placed = drawn or (None if outline is None else Placed.on_board(outline))
+        target = drawn or (None if outline is None else Placed.on_board(outline))
+        alone = () if target is None else (target,)
+        self.context.show(target, tuple(map(self._placed, objects)) if len(objects) > 1 else alone)
         seen = None if picture is None else picture.seen
         if under is None and picture is not None and seen is not None and traced is not None and self.context.placed:
             under = Underlay.under(self.context.placed, picture.path, seen, traced)
@@ -135,6 +139,9 @@ class TargetView(Canvas):
             self.fit()
         self.active.sync()
         self.update()
+
+    def _placed(self, outline: Outline) -> Placed:
+        return self.context.recall(outline) or Placed.on_board(outline)
 
     def show_reach(self, reach: Reach | None) -> None:
         """Mark what the chosen grid can hardly show of this target."""
@@ -194,6 +201,8 @@ class TargetView(Canvas):
             self._board = BOARD
             return
         tight = Bounds.of(placed.ring)
+        for each in self.context.drawing.objects:
+            tight = tight.united(Bounds.of(each.ring))
         room = ROOM * max(tight.right - tight.left, tight.top - tight.bottom)
         self._board = Bounds(tight.left - room, tight.bottom - room, tight.right + room, tight.top + room)
 
@@ -223,11 +232,12 @@ class TargetView(Canvas):
         if self.underlay is not None:
             self.underlay.paint(painter, transform)
         if self.context.placed is not None:
-            replacing = self.context.combine is Combine.REPLACE and self._tool in DRAWING
-            painter.setOpacity(0.25 if replacing else 1.0)
-            self.paint_outline(painter, transform.to_pixels(self.context.placed.ring))
+            if self._editing and len(self.context.drawing.objects) > 1:
+                self._paint_objects(painter, transform)
+                paint_target_line(painter, transform.to_pixels(self.context.placed.ring), self.palette_)
+            else:
+                self.paint_outline(painter, transform.to_pixels(self.context.placed.ring))
             self._paint_reach(painter, transform, self.context.placed)
-            painter.setOpacity(1.0)
         if self._preview is not None:
             paint_proposal(painter, transform.to_pixels(self._preview.ring), self.palette_)
         if self._editing:
@@ -238,6 +248,18 @@ class TargetView(Canvas):
         """Draw the outline on the board: (L, 2) pixels."""
         paint = paint_target_shape if self.underlay is None else paint_target_line
         paint(painter, points, self.palette_)
+
+    def _paint_objects(self, painter: QPainter, transform: ViewTransform) -> None:
+        drawing = self.context.drawing
+        for index, each in enumerate(drawing.objects):
+            points = transform.to_pixels(each.ring)
+            selected, loose = index in drawing.selected, index in self.context.loose
+            paint_object(painter, points, self.palette_, selected=selected, loose=loose)
+
+    def select_at(self, pixel: QPointF) -> None:
+        """Select the object there, as a right click does before its menu opens."""
+        self.active.select_at(pixel)
+        self.update()
 
     def _paint_reach(self, painter: QPainter, transform: ViewTransform, placed: Placed) -> None:
         if self.reach is None or self._preview is not None:

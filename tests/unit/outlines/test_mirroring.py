@@ -34,7 +34,7 @@ def test_that_a_shape_across_the_axis_and_its_images_are_one_symmetric_target(ax
     if abs(x) > 0.8 * width or abs(y) > 0.8 * height:
         return
     drawn = Placed.from_ring(figure(Figure.STAR, box, 6, 0.7), "star")
-    made = mirrored(None, drawn, Combine.REPLACE, "star", mirror)
+    made = mirrored(None, drawn, Combine.NEW, "star", mirror)
     assert asymmetry(made, mirror) < 1e-5
     assert made.polygon.area >= drawn.polygon.area * (1 - 1e-6)
 
@@ -43,7 +43,7 @@ def test_that_a_shape_beside_the_axis_is_refused_and_ears_are_added_both() -> No
     mirror = Mirror(Axis.UPRIGHT)
     ear = Placed.from_ring(figure(Figure.ELLIPSE, Box(10, 10, 20, 30)), "ear")
     with pytest.raises(TargetError, match="do not touch"):
-        mirrored(None, ear, Combine.REPLACE, "ear", mirror)
+        mirrored(None, ear, Combine.NEW, "ear", mirror)
     head = Placed.from_ring(figure(Figure.ELLIPSE, Box(-20, -20, 20, 20)), "head")
     hare = mirrored(head, ear, Combine.ADD, "ear", mirror)
     assert asymmetry(hare, mirror) < 1e-5 and hare.polygon.bounds[3] == pytest.approx(30)

@@ -128,7 +128,7 @@ def test_that_without_a_target_or_as_new_the_ring_is_the_target() -> None:
     ring = rectangle(0, 0, 30, 20)
     assert combined(None, ring, Combine.SUBTRACT, "rectangle").outline.name == "rectangle"
     old = Placed.from_ring(figure(Figure.ELLIPSE, BOX), "ellipse")
-    assert combined(old, ring, Combine.REPLACE, "rectangle").size == pytest.approx((30, 20))
+    assert combined(old, ring, Combine.NEW, "rectangle").size == pytest.approx((30, 20))
     assert combined(old, ring, Combine.ADD, "rectangle").outline.name == "ellipse"
 
 
