@@ -201,6 +201,7 @@ def gestures() -> tuple[Gesture, ...]:
         Gesture(tr("Start tile"), tr("Drop a file"), tr("Start as the shape in it; Delete goes back to the rectangle")),
         Gesture(board, tr("+ and -, 0, 1, 2"), tr("Zoom; show everything, actual size, the selection")),
         Gesture(board, tr("Space+drag or middle button"), tr("Pan the board")),
+        Gesture(board, tr("Drag from a ruler"), tr("Pull out a guide; back onto the ruler removes it")),
         Gesture(board, tr("Esc"), tr("Take back one thing: gesture, selection, tool; then leave the board")),
         Gesture(anywhere, tr("Right-click or the menu key"), tr("Open the menu of what is there")),
         Gesture(board, tr("Ctrl while drawing"), tr("Ignore the grid")),

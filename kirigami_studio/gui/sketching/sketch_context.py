@@ -28,6 +28,8 @@ Place = tuple[float, float]
 BOARD = Bounds(-0.5 * BOARD_MM, -0.5 * BOARD_MM, 0.5 * BOARD_MM, 0.5 * BOARD_MM)
 #: Lines of the grid are at least this far apart, pixels.
 CLOSEST_LINES = 14.0
+#: Guides catch what comes this near, pixels.
+GUIDE_REACH = 7.0
 #: Placed outlines that are remembered, so that undo puts a target back where it was.
 CAPACITY = 256
 #: What a target is called that was drawn in one stroke, corner by corner, or as text.
@@ -120,6 +122,7 @@ class SketchContext(QObject):
         self.text = "K"
         self.family, self.bold, self.italic = "", True, False
         self.mirror = Mirror()
+        self.guides: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())  # x of upright ones, y of level ones, mm
         self._nudges = 0
         self._places: dict[tuple[object, ...], Placed] = {}
 
@@ -167,9 +170,16 @@ class SketchContext(QObject):
         """Where a pixel lies on the board; Ctrl suspends snapping."""
         free = self.transform.to_world(pixel)
         snaps = self.snapping and not modifiers & Qt.KeyboardModifier.ControlModifier
-        place = (self.snapped(free[0]), self.snapped(free[1])) if snaps else free
+        place = (self._caught(free[0], 0), self._caught(free[1], 1)) if snaps else free
         shift, alt = (bool(modifiers & key) for key in (SHIFT, ALT))
         return PointerEvent(pixel, free, place, shift, alt, snaps)
+
+    def _caught(self, length: float, axis: int) -> float:
+        """The guide nearby along an axis, else the nearest line of the grid, mm."""
+        guide = min(self.guides[axis], key=lambda at: abs(at - length), default=None)
+        if guide is not None and abs(guide - length) * self.transform.scale <= GUIDE_REACH:
+            return guide
+        return self.snapped(length)
 
     def snapped(self, length: float) -> float:
         """The nearest line of the grid, mm."""
@@ -177,9 +187,17 @@ class SketchContext(QObject):
         return round(length / step) * step
 
     def snapped_way(self, low: FloatArray, high: FloatArray, way: FloatArray) -> FloatArray:
-        """A way (2,), mm, after which the lower left corner of a box lies on the grid."""
-        there = np.array([self.snapped(length) for length in (low + way).tolist()])
-        return there - low
+        """A way (2,), mm, after which a side or the middle of a box lies on a guide nearby, else its lower left corner
+        on the grid.
+        """
+        caught = []
+        for axis in (0, 1):
+            sides = [float(side[axis]) for side in (low, 0.5 * (low + high), high)]
+            ways = [at - side for at in self.guides[axis] for side in sides]
+            nearest = min(ways, key=lambda each: abs(each - way[axis]), default=math.inf)
+            near = abs(nearest - way[axis]) * self.transform.scale <= GUIDE_REACH
+            caught.append(nearest if near else self.snapped(float(low[axis] + way[axis])) - float(low[axis]))
+        return np.array(caught)
 
     def can_arrange(self, name: str) -> bool:
         """Whether an arrangement has enough objects."""

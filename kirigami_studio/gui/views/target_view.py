@@ -33,6 +33,7 @@ from kirigami_studio.gui.scene.target_items import (
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
+from kirigami_studio.gui.sketching.rulers import Rulers
 from kirigami_studio.gui.sketching.shape_tools import FigureTool, Freehand, Pen, TextTool
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.underlay import Underlay
@@ -87,6 +88,7 @@ class TargetView(Canvas):
         self.context.tool_done.connect(self.tool_left)
         self._tool = Tool.LOOK
         self._tools = _tools(self.context)
+        self.rulers = Rulers(self.context)
         self.drops = FileDrops(self, with_content=True)
         self.drops.file_dropped.connect(self.file_dropped)
         self.drops.content_dropped.connect(self.content_dropped)
@@ -272,6 +274,9 @@ class TargetView(Canvas):
         paint_reach(painter, arms, notches, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
+        transform = self.transform()
+        if self._editing and transform is not None and not self.rendering:
+            self.rulers.paint(painter, transform, QRectF(self.rect()), self.palette_)
         if self.drops.here:
             painter.setPen(QPen(QColor(self.palette_.accent), 2.0, Qt.PenStyle.DashLine))
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -314,14 +319,20 @@ class TargetView(Canvas):
         if self._looking or event.button() is not Qt.MouseButton.LeftButton:
             super().mousePressEvent(event)
             return
-        self.active.press(self._pointer_event(event))
+        pointer = self._pointer_event(event)
+        takes = self._tool is Tool.POSE and self.context.drawing.at(pointer.free) is None
+        if not (self._editing and self.rulers.press(pointer.pixel, takes=takes)):
+            self.active.press(pointer)
         self.update()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if self._looking or event.buttons() & Qt.MouseButton.MiddleButton:
             super().mouseMoveEvent(event)
             return
-        self.active.move(self._pointer_event(event), bool(event.buttons() & Qt.MouseButton.LeftButton))
+        pointer = self._pointer_event(event)
+        free = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+        if not self.rulers.move(pointer.pixel, free=free):
+            self.active.move(pointer, bool(event.buttons() & Qt.MouseButton.LeftButton))
         self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
@@ -329,7 +340,9 @@ class TargetView(Canvas):
             super().mouseReleaseEvent(event)
             self.setCursor(self.active.cursor)
             return
-        self.active.release(self._pointer_event(event))
+        pointer = self._pointer_event(event)
+        if not self.rulers.release(pointer.pixel):
+            self.active.release(pointer)
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name

@@ -1,0 +1,149 @@
+"""Rulers at two edges of the drawing board, and the guides that are pulled out of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+
+from kirigami_studio.foundation.words import number
+from kirigami_studio.gui.look.theme import Palette
+from kirigami_studio.gui.scene.view_transform import ViewTransform
+from kirigami_studio.gui.sketching.sketch_context import SketchContext
+
+#: Width of a ruler, pixels.
+RULER = 18.0
+#: A guide is taken within this distance, pixels.
+REACH = 5.0
+#: Numbers on a ruler are at least this far apart, pixels.
+NUMBER_STEP = 56.0
+#: Lengths of ticks without and with a number, pixels.
+TICK, LONG_TICK = 4.0, 9.0
+#: Axes: an upright guide has an x, a level one a y.
+X, Y = 0, 1
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A guide that is being dragged: its axis, and where it lies, mm."""
+
+    axis: int
+    at: float
+
+
+class Rulers:
+    """Pulls guides out of the rulers, moves them, and puts them back; guides belong to the board that is open."""
+
+    def __init__(self, context: SketchContext) -> None:
+        self._context = context
+        self._held: Held | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a guide is being dragged."""
+        return self._held is not None
+
+    def over(self, pixel: QPointF) -> int | None:
+        """The axis of the guides that the ruler under a pixel gives; None beside the rulers."""
+        if pixel.y() < RULER:
+            return Y
+        return X if pixel.x() < RULER else None
+
+    def press(self, pixel: QPointF, *, takes: bool) -> bool:
+        """Begin to drag a guide out of a ruler, or the one that is there if it ``takes`` guides; whether one is."""
+        axis, place = self.over(pixel), self._context.transform.to_world(pixel)
+        if axis is not None:
+            self._held = Held(axis, place[axis])
+            return True
+        for way in (X, Y) if takes else ():
+            near = [at for at in self._context.guides[way] if self._far(at, place[way]) <= REACH]
+            if near:
+                self._held = Held(way, near[0])
+                self._put(way, [at for at in self._context.guides[way] if at != near[0]])
+                return True
+        return False
+
+    def move(self, pixel: QPointF, *, free: bool) -> bool:
+        """Move the guide that is held, on the grid unless ``free``; whether one is."""
+        if self._held is None:
+            return False
+        at = self._context.transform.to_world(pixel)[self._held.axis]
+        snaps = self._context.snapping and not free
+        self._held = Held(self._held.axis, self._context.snapped(at) if snaps else at)
+        return True
+
+    def release(self, pixel: QPointF) -> bool:
+        """Leave the guide there, or put it away over a ruler; whether one was held."""
+        held, self._held = self._held, None
+        if held is None:
+            return False
+        if self.over(pixel) is None:
+            self._put(held.axis, [*self._context.guides[held.axis], held.at])
+        return True
+
+    def _far(self, one: float, other: float) -> float:
+        return abs(one - other) * self._context.transform.scale
+
+    def _put(self, axis: int, places: list[float]) -> None:
+        upright, level = self._context.guides
+        kept = tuple(sorted(set(places)))
+        self._context.guides = (kept, level) if axis == X else (upright, kept)
+
+    def paint(self, painter: QPainter, transform: ViewTransform, area: QRectF, palette: Palette) -> None:
+        """Draw guides, and the rulers on top."""
+        held = self._held
+        painter.setPen(QPen(QColor(palette.accent), 1.0))
+        for axis in (X, Y):
+            places = [*self._context.guides[axis], *((held.at,) if held is not None and held.axis == axis else ())]
+            for at in places:
+                pixel = _pixel(transform, axis, at)
+                if axis == X:
+                    painter.drawLine(QPointF(pixel, area.top()), QPointF(pixel, area.bottom()))
+                else:
+                    painter.drawLine(QPointF(area.left(), pixel), QPointF(area.right(), pixel))
+        for axis in (X, Y):
+            self._paint_ruler(painter, transform, area, palette, axis)
+
+    def _paint_ruler(
+        self, painter: QPainter, transform: ViewTransform, area: QRectF, palette: Palette, axis: int
+    ) -> None:
+        length = area.width() if axis == X else area.height()
+        strip = QRectF(0.0, 0.0, length, RULER) if axis == X else QRectF(0.0, RULER, RULER, length - RULER)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(palette.surface))
+        painter.drawRect(strip)
+        font = painter.font()
+        small = painter.font()
+        small.setPointSizeF(0.75 * font.pointSizeF())
+        painter.setFont(small)
+        painter.setPen(QPen(QColor(palette.muted), 1.0))
+        step = _step(NUMBER_STEP / transform.scale)
+        ends = sorted(transform.to_world(QPointF(*spot))[axis] for spot in ((0.0, 0.0), (area.width(), area.height())))
+        for tick in range(math.floor(5 * ends[0] / step), math.ceil(5 * ends[1] / step) + 1):
+            at, numbered = tick * step / 5, tick % 5 == 0
+            pixel, reach = _pixel(transform, axis, at), LONG_TICK if numbered else TICK
+            if pixel < RULER:
+                continue
+            if axis == X:
+                painter.drawLine(QPointF(pixel, RULER - reach), QPointF(pixel, RULER))
+            else:
+                painter.drawLine(QPointF(RULER - reach, pixel), QPointF(RULER, pixel))
+            if numbered:
+                painter.save()
+                painter.translate(*((pixel + 3, 11.0) if axis == X else (11.0, pixel - 3)))
+                painter.rotate(0.0 if axis == X else -90.0)
+                painter.drawText(QPointF(0.0, 0.0), number(at + 0.0, ".6g"))
+                painter.restore()
+        painter.setFont(font)
+
+
+def _pixel(transform: ViewTransform, axis: int, at: float) -> float:
+    return transform.origin[axis] + (transform.scale if axis == X else -transform.scale) * at
+
+
+def _step(least: float) -> float:
+    """1, 2 or 5 times a power of ten, at least so much."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))
