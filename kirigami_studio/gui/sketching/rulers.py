@@ -47,9 +47,9 @@ class Rulers:
 
     def over(self, pixel: QPointF) -> int | None:
         """The axis of the guides that the ruler under a pixel gives; None beside the rulers."""
-        if pixel.y() < RULER:
+        if 0.0 <= pixel.y() < RULER:
             return Y
-        return X if pixel.x() < RULER else None
+        return X if 0.0 <= pixel.x() < RULER else None
 
     def press(self, pixel: QPointF, *, takes: bool) -> bool:
         """Begin to drag a guide out of a ruler, or the one that is there if it ``takes`` guides; whether one is."""
@@ -79,7 +79,7 @@ class Rulers:
         held, self._held = self._held, None
         if held is None:
             return False
-        if self.over(pixel) is None:
+        if pixel.x() >= RULER and pixel.y() >= RULER:
             self._put(held.axis, [*self._context.guides[held.axis], held.at])
         return True
 
