@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QPoint, Qt
+from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -15,6 +16,7 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.drawing import Drawing
+from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.project import store
 from tests.gui.test_drawing_board import CTRL, LEFT, NONE, PLAIN, SHIFT, board, drag, pixel, placed, plate, send, use
@@ -194,6 +196,26 @@ def test_that_a_project_keeps_the_objects(pair: MainWindow, tmp_path: Path) -> N
     assert [each.place for each in opened.drawing] == [each.place for each in pair.controller.document.drawing]
     use(pair, Tool.POSE)
     assert bounds(pair) == [(-20, -10, 20, 10), (10, 0, 40, 30)]
+
+
+def test_that_the_boards_of_other_outlines_hold_several_objects_too(window: MainWindow, qtbot: QtBot) -> None:
+    window.dialogs.show_second_board()
+    dialog = window.dialogs.second_board
+    assert dialog is not None
+    view, shapes = dialog.view, (Box(-20, -10, 20, 10), Box(10, 0, 40, 30))
+    for shape in shapes:
+        made = placed_figure(Figure.RECTANGLE, shape)
+        view.context.draw(lambda made=made: made, "rectangle")
+    assert len(view.context.drawing.objects) == 2 and dialog.take.isEnabled()
+    place = QPoint(view.width() // 2, view.height() // 2)
+    QApplication.sendEvent(view, QContextMenuEvent(QContextMenuEvent.Reason.Mouse, place, view.mapToGlobal(place)))
+    menu = QApplication.activePopupWidget()
+    assert menu is dialog.tools.arrange.menu()
+    menu.close()
+    taken = []
+    dialog.taken.connect(taken.append)
+    qtbot.mouseClick(dialog.take, LEFT)
+    assert taken[0].size == pytest.approx((60, 40))
 
 
 def test_that_the_size_fields_and_the_opened_size_take_all_objects_along(pair: MainWindow) -> None:

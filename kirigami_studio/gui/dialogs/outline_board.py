@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
@@ -126,6 +126,8 @@ class OutlineBoard(QDialog):
         context = self.view.context
         context.changed.connect(self._change)
         context.selection_changed.connect(self._show_selection)
+        self.view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.view.customContextMenuRequested.connect(self._open_menu)
         for one in ARRANGEMENTS:
             if one.key:
                 QShortcut(QKeySequence(one.key), self).activated.connect(partial(context.arrange, one.id))
@@ -189,6 +191,11 @@ class OutlineBoard(QDialog):
         self._at += 1
         self._show()
         context.select(drawing.selected)
+
+    def _open_menu(self, place: QPoint) -> None:
+        """The menu of the right button: what can be done with the object there."""
+        self.view.select_at(QPointF(place))
+        self.tools.arrange.menu().popup(self.view.mapToGlobal(place))
 
     def _show_selection(self) -> None:
         self.tools.options.pose.show_drawing(self.view.context.drawing)

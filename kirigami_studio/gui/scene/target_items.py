@@ -109,11 +109,13 @@ def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palett
     painter.drawRect(QRectF(one, other).normalized())
 
 
-def paint_object(painter: QPainter, points: FloatArray, palette: Palette, *, selected: bool, loose: bool) -> None:
+def paint_object(
+    painter: QPainter, points: FloatArray, palette: Palette, *, selected: bool, loose: bool, filled: bool = True
+) -> None:
     """Draw one of several objects, (L, 2) pixels: its fill, and a thin line that tells its state."""
     colour = palette.warning if loose else palette.accent if selected else palette.muted
     painter.setPen(round_pen(colour, 1.8 if selected or loose else 1.0))
-    painter.setBrush(QColor(palette.target_fill))
+    painter.setBrush(QColor(palette.target_fill) if filled else Qt.BrushStyle.NoBrush)
     painter.drawPath(line_path(points, closed=True))
     if loose:
         painter.setBrush(QBrush(stripes(colour, True, painter.device().devicePixelRatioF())))

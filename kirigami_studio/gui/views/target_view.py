@@ -256,7 +256,8 @@ class TargetView(Canvas):
         for index, each in enumerate(drawing.objects):
             points = transform.to_pixels(each.ring)
             selected, loose = index in drawing.selected, index in self.context.loose
-            paint_object(painter, points, self.palette_, selected=selected, loose=loose)
+            filled = self.underlay is None  # the picture below is what one draws after
+            paint_object(painter, points, self.palette_, selected=selected, loose=loose, filled=filled)
 
     def select_at(self, pixel: QPointF) -> None:
         """Select the object there, as a right click does before its menu opens."""
