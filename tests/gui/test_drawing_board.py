@@ -461,7 +461,7 @@ def test_that_the_hint_goes_with_the_target(plate: MainWindow) -> None:
 def test_that_a_slip_is_forgotten_once_a_shape_can_be_made(plate: MainWindow) -> None:
     use(plate, Tool.RECTANGLE)
     plate.target.tools.set_mode(Combine.ADD)
-    drag(plate, (60, 60), (70, 70))
+    drag(plate, (40, 35), (48, 43))
     assert "lies beside the target" in plate.messages.messages[-1].sentence
     drag(plate, (0, 0), (40, 10))
     assert plate.messages.messages == ()

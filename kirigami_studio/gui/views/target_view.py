@@ -33,7 +33,7 @@ from kirigami_studio.gui.scene.target_items import (
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.pose_tool import PoseTool
-from kirigami_studio.gui.sketching.rulers import Rulers
+from kirigami_studio.gui.sketching.rulers import RULER, Rulers
 from kirigami_studio.gui.sketching.shape_tools import FigureTool, Freehand, Pen, TextTool
 from kirigami_studio.gui.sketching.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.sketching.underlay import Underlay
@@ -225,6 +225,11 @@ class TargetView(Canvas):
         if self.context.placed is not None:
             return Bounds.of(self.context.placed.ring)
         return None if self._tool is Tool.LOOK else BOARD
+
+    def scene_box(self) -> QRectF:
+        """The view, on the board without its rulers."""
+        edge = RULER if self._editing else 0.0
+        return QRectF(self.rect()).adjusted(edge, edge, 0.0, 0.0)
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         self.context.transform = transform
