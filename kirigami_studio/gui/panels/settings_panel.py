@@ -37,6 +37,10 @@ VARIANTS = {
     "accuracy": (mark("For match"), mark("Tuned for the closest match.")),
     "regularity": (mark("For evenness"), mark("Tuned for even panels that are easy to cut; slightly lower match.")),
     "balanced": (mark("For both"), mark("Tuned for both match and even panels. Recommended.")),
+    "paper": (
+        mark("As in the paper"),
+        mark("The paper's own way: a small U-Net, trained with optimal-transport pairing. To compare with."),
+    ),
 }
 
 
