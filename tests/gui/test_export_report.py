@@ -226,9 +226,9 @@ def test_that_everything_goes_into_one_folder_with_a_report_for_each_cut_file(
     report = designed.dialogs.report
     assert report is not None and report.file.isVisible() and report.file.count() == 3
     assert all(one.ok for one in report.verifications)
-    assert report.file.itemText(1) == "Verified  \N{MIDDLE DOT}  heart_r12.dxf"
+    assert report.file.itemText(1) == "Verified  \N{MIDDLE DOT}  heart-A1_r12.dxf"
     report.file.setCurrentIndex(1)
-    assert report.path.text().endswith("heart_r12.dxf") and report.verdict.text().startswith("Verified")
+    assert report.path.text().endswith("heart-A1_r12.dxf") and report.verdict.text().startswith("Verified")
     assert {path.suffix for path in (tmp_path / "all").iterdir()} >= {".dxf", ".svg", ".pdf", ".png", ".lbrn2"}
 
 

@@ -51,7 +51,8 @@ def test_that_scrolling_moves_on_in_the_contents(guide: GuideWindow) -> None:
     for share in (0.25, 0.5, 0.75, 1.0):
         bar.setValue(round(share * bar.maximum()))
         passed.append(guide.contents.currentItem().text(0))
-    assert passed == sorted(set(passed), key=[line.text(0) for line in guide.headings].index)
+    places = [[line.text(0) for line in guide.headings].index(heading) for heading in passed]
+    assert places == sorted(places) and len(set(places)) >= 3
 
 
 def test_that_words_are_found_marked_and_walked_through(guide: GuideWindow, qtbot: QtBot) -> None:

@@ -29,7 +29,10 @@ def test_that_a_saved_project_opens_as_it_was(
     assert store.load(tmp_path / "mine.kiri") == designed.controller.document
     assert "mine.kiri" in designed.windowTitle() and not designed.isWindowModified()
     designed.commands["new"].trigger()
-    assert designed.controller.document == Document() and designed.gallery.view.model_.rowCount() == 0
+    assert (
+        designed.controller.document == designed.controller.preferences.new_document()
+        and designed.gallery.view.model_.rowCount() == 0
+    )
     designed.commands["open_project"].trigger()
     until(lambda: designed.controller.stage is not None)
     assert designed.controller.document.chosen == 1
@@ -95,7 +98,7 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     designed.commands["new"].trigger()
     assert designed.controller.document is before
     dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
-    assert designed.controller.document == Document()
+    assert designed.controller.document == designed.controller.preferences.new_document()
 
 
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(

@@ -171,7 +171,7 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
         person.answers("Save project", project)
         person.waits(lambda: saved(project) is not None, "the project file")
         drawn = saved(project)
-        assert drawn is not None and drawn.target is not None and drawn.target.name == "drawing"
+        assert drawn is not None and drawn.target is not None and len(drawn.drawing) == 2, "an object beside the heart"
         person.looks_at("drawn.kiri")
         person.clicks(count)
         person.presses("ctrl+a", *str(DESIGNS), "Tab")

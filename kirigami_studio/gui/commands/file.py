@@ -167,7 +167,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "recover",
             menu,
-            tr("&Recover unsaved work …"),
+            tr("Reco&ver unsaved work …"),
             tr("Ask again about work that an earlier session left unsaved"),
             window.controller.filing.recovery.offer_again,
         ),
@@ -201,7 +201,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "choose_parts",
             menu,
-            tr("Choose par&ts …"),
+            tr("C&hoose parts …"),
             tr("Choose other parts of the target's drawing, or join them in another way"),
             window.controller.targeting.choose_parts,
             enabled_when=lambda now: now.has_parts,

@@ -62,7 +62,7 @@ class PictureMenu(QMenu):
     """Export picture of: every view in sight, how large, and with or without overlays."""
 
     def __init__(self, parent: QWidget, picturing: PictureMaker, ask: Callable[[str], Path | None]) -> None:
-        super().__init__(tr("Export pi&cture of"), parent)
+        super().__init__(tr("Export picture o&f"), parent)
         self._picturing = picturing
         self._ask = ask
         self.menuAction().setStatusTip(tr("Export a view as PNG or SVG"))
@@ -168,7 +168,7 @@ class LanguageMenu(QMenu):
     """The window's language: the desktop's, or one of those there are."""
 
     def __init__(self, parent: QWidget, appearance: Appearance) -> None:
-        super().__init__(tr("La&nguage"), parent)
+        super().__init__(tr("Language"), parent)
         self._appearance = appearance
         self.choices: dict[str, QAction] = {}
         self.menuAction().setStatusTip(tr("Change the language of the window at once"))

@@ -351,7 +351,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
         Command(
             "still",
             tr("&View"),
-            tr("Reduce mo&tion"),
+            tr("Reduce motion"),
             tr("Nothing moves by itself, such as the sample on the empty stage"),
             window.connections.first_start.switch_motion,
             checked_when=lambda now: now.still,

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from PySide6.QtGui import QImageReader
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
@@ -66,10 +65,16 @@ def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRe
 
 def _has_islands(source: str) -> bool:
     """Whether a picture has several large shapes; one of specks is refused by its reader."""
+    from PIL import Image
+
     from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts
 
-    size = QImageReader(source).size()
-    if size.width() * size.height() > MOST_PIXELS_IN_COLOUR:
+    try:
+        with Image.open(source) as picture:
+            width, height = picture.size
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return False  # its reader says what is wrong with it
+    if width * height > MOST_PIXELS_IN_COLOUR:
         return False  # it takes seconds to read
     try:
         parts = image_parts(source, in_colour=False).parts

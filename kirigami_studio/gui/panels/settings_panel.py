@@ -207,7 +207,7 @@ class SettingsPanel(Card):
         self.start_weight.setDecimals(2)
         self.start_weight.setSingleStep(0.1)
         self.start_weight.setAccessibleName(tr("Weight of the start"))
-        self.search = QCheckBox(tr("Try h&arder"))
+        self.search = QCheckBox(tr("Tr&y harder"))
         self.search.setObjectName("search")
         self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.search.setAccessibleName(tr("Try harder: search for one more design"))

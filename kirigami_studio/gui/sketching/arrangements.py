@@ -181,7 +181,7 @@ ARRANGEMENTS = (
 #: What is offered for objects that hang apart.
 BRIDGE_LOOSE = Arrangement(
     "bridge",
-    mark("Bri&dge loose objects"),
+    mark("Bridge loose ob&jects"),
     mark("Join what hangs apart by bridges, which are objects, too"),
     mark("Bridge objects"),
     Drawing.bridged,
