@@ -27,6 +27,8 @@ def bundle(name: str, weights: Path) -> Path:
 
 
 if __name__ == "__main__":
-    for word in sys.argv[1:]:
-        name, _, weights = word.partition("=")
+    pairs = [word.partition("=") for word in sys.argv[1:]]
+    if not pairs or not all(name and weights for name, _, weights in pairs):
+        sys.exit("usage: python packaging/bundle_models.py NAME=WEIGHTS ...")
+    for name, _, weights in pairs:
         print(bundle(name, Path(weights)))

@@ -117,10 +117,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.image_damaged"):
         levels = _levels(content)
-        level = _automatic(levels.grey) if threshold is None else _checked(threshold)
-        ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
-        if not np.any(ink > 0) or np.all(ink > 0):
-            raise TargetError("image.one_colour", threshold=level)
+        ink = _ink(levels, threshold)
         ring, notes = trace(ink)
         outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
@@ -142,10 +139,7 @@ def image_parts(path: str | Path, threshold: float | None = None, in_colour: boo
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.image_damaged"):
         levels = _levels(content)
-        level = _automatic(levels.grey) if threshold is None else _checked(threshold)
-        ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
-        if not np.any(ink > 0) or np.all(ink > 0):
-            raise TargetError("image.one_colour", threshold=level)
+        ink = _ink(levels, threshold)
         found, specks = _regions(ink, levels.reduction, "", "")
         for colour, field, reduction in _colours(content) if in_colour else ():
             more, dust = _regions(field, reduction, colour, colour)
@@ -332,6 +326,21 @@ def _automatic(grey: FloatArray) -> float:
     above = grey > otsu
     # On clean two-level pictures Otsu sits on one of the levels; midway, sub-pixel contours are unbiased.
     return (float(np.mean(grey[above])) + float(np.mean(grey[~above]))) / 2.0
+
+
+def _ink(levels: Levels, threshold: float | None) -> FloatArray:
+    """How much each pixel belongs to the shape: above 0 inside, where the grey level crosses the threshold 0.
+
+    Raises
+    ------
+    TargetError
+        A threshold that is none, or that leaves the picture in one colour.
+    """
+    level = _automatic(levels.grey) if threshold is None else _checked(threshold)
+    ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
+    if not np.any(ink > 0) or np.all(ink > 0):
+        raise TargetError("image.one_colour", threshold=level)
+    return ink
 
 
 def _checked(threshold: float) -> float:

@@ -48,11 +48,10 @@ def test_that_the_contents_list_every_section_and_lead_to_it(guide: GuideWindow)
 
 def test_that_scrolling_moves_on_in_the_contents(guide: GuideWindow) -> None:
     bar, passed = guide.text.verticalScrollBar(), []
-    for share in (0.25, 0.5, 0.75, 1.0):
+    for share in (0.2, 0.4, 0.6, 0.8):  # the last section is long: the end of the bar is in it, too
         bar.setValue(round(share * bar.maximum()))
         passed.append(guide.contents.currentItem().text(0))
-    places = [[line.text(0) for line in guide.headings].index(heading) for heading in passed]
-    assert places == sorted(places) and len(set(places)) >= 3
+    assert passed == sorted(set(passed), key=[line.text(0) for line in guide.headings].index)
 
 
 def test_that_words_are_found_marked_and_walked_through(guide: GuideWindow, qtbot: QtBot) -> None:

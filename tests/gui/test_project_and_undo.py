@@ -13,9 +13,13 @@ from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
 CONTROL = Qt.KeyboardModifier.ControlModifier
+
+#: A new project where nothing else is preferred: its sheet will open to 100 mm.
+NEW = Document(fabrication=FabricationSettings(opened_mm=100.0))
 
 
 def test_that_a_saved_project_opens_as_it_was(
@@ -29,10 +33,7 @@ def test_that_a_saved_project_opens_as_it_was(
     assert store.load(tmp_path / "mine.kiri") == designed.controller.document
     assert "mine.kiri" in designed.windowTitle() and not designed.isWindowModified()
     designed.commands["new"].trigger()
-    assert (
-        designed.controller.document == designed.controller.preferences.new_document()
-        and designed.gallery.view.model_.rowCount() == 0
-    )
+    assert designed.controller.document == NEW and designed.gallery.view.model_.rowCount() == 0
     designed.commands["open_project"].trigger()
     until(lambda: designed.controller.stage is not None)
     assert designed.controller.document.chosen == 1
@@ -98,7 +99,7 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     designed.commands["new"].trigger()
     assert designed.controller.document is before
     dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
-    assert designed.controller.document == designed.controller.preferences.new_document()
+    assert designed.controller.document == NEW
 
 
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(

@@ -8,14 +8,10 @@ from dataclasses import dataclass
 from kirigami_studio.benchmark.report.cells import Figures, share
 
 #: Why a row may be behind the paper's, by the row's name.
-SOLVER = (
-    "the paper's settings as far as it gives them, but our own targets; a search of the same box for the same number "
-    "of evaluations ends where it ends"
-)
-BUDGET = "a smaller network and a tenth of the paper's training steps, see *Training*"
+SOLVER = "run with the paper's settings as far as it gives them, on our own targets, see *Table 1*"
+BUDGET = "smaller networks and fewer training steps than the paper's, see *Training*"
 GRPO = (
-    "GRPO weighs the designs that it drew itself; what little it gains here, the control without reward gains or "
-    "loses too, see *over control*"
+    "what the run began with decides the level; *over start* and *over control* tell what the reward did, see *Table 3*"
 )
 REASONS = {
     **dict.fromkeys(("cma-es", "swarm", "local-search", "powell"), SOLVER),

@@ -4,13 +4,31 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QPointF, QRect, QRectF, QSize, Qt
+from PySide6.QtCore import (
+    QAbstractItemModel,
+    QModelIndex,
+    QPersistentModelIndex,
+    QPoint,
+    QPointF,
+    QRect,
+    QRectF,
+    QSize,
+    Qt,
+)
 from PySide6.QtGui import QColor, QFont, QHelpEvent, QPainter, QPen, QPixmap
-from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QListView,
+    QStyle,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QToolTip,
+    QWidget,
+)
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -46,6 +64,8 @@ SMALLEST_CARD = 132
 #: Pixels above the picture, for the name and the marks, and below it, for two lines of text.
 HEAD_HEIGHT, TEXT_HEIGHT = 24, 48
 GAP = 8
+#: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
+SCROLL_BAR = 14
 #: What polishing must have added to sIoU at least for a card to say so.
 SMALLEST_RISE = 5e-4
 #: Edge of the buttons under the mouse, pixels.
@@ -132,7 +152,7 @@ class CardDelegate(QStyledItemDelegate):
         alike: int = index.data(ALIKE_ROLE)
         if alike and not index.data(OPEN_ROLE):
             self._paint_stack(painter, card)
-        self._paint_back(painter, card, state)
+        paint_back(painter, card, state, self.palette_)
         picture = picture_of(card)
         painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
         drawn = self._picture(design, picture.size(), painter.device().devicePixelRatio())
@@ -156,17 +176,8 @@ class CardDelegate(QStyledItemDelegate):
         if alike:
             self._paint_alike(painter, alike_box(rect), alike, index.data(OPEN_ROLE))
         if candidate is self.under_mouse:
-            self._paint_buttons(painter, rect, mark)
+            paint_buttons(painter, button_boxes(rect), mark, self.hovered_button, self.palette_)
         painter.restore()
-
-    def _paint_back(self, painter: QPainter, card: QRect, state: QStyle.StateFlag) -> None:
-        chosen = bool(state & QStyle.StateFlag.State_Selected)
-        over = bool(state & QStyle.StateFlag.State_MouseOver)
-        colour = self.palette_.accent_soft if chosen else self.palette_.raised if over else self.palette_.surface
-        edge = self.palette_.accent if chosen else self.palette_.strong_border if over else self.palette_.border
-        painter.setBrush(QColor(colour))
-        painter.setPen(QPen(QColor(edge), 2.0 if chosen else 1.0))
-        painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
     def _paint_stack(self, painter: QPainter, card: QRect) -> None:
         """The edge of another card under this one."""
@@ -254,17 +265,6 @@ class CardDelegate(QStyledItemDelegate):
         painter.drawPixmap(box.topLeft() + QPointF(3, 3), icon)
         return round(box.right()) + 5
 
-    def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
-        ratio = painter.device().devicePixelRatio()
-        for button, box in button_boxes(rect).items():
-            over = button is self.hovered_button
-            on = mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
-            painter.setPen(QPen(QColor(self.palette_.accent if over or on else self.palette_.strong_border), 1.0))
-            painter.setBrush(QColor(self.palette_.accent_soft if over or on else self.palette_.surface))
-            painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
-            icon = icons.pixmap(button.value, self.palette_.text, BUTTON - 8, ratio)
-            painter.drawPixmap(box.topLeft() + QPoint(4, 4), icon)
-
     def _paint_chip(self, painter: QPainter, card: QRect, text: str, icon: str = "") -> None:
         """A small mark in the upper right corner."""
         metrics = painter.fontMetrics()
@@ -307,6 +307,46 @@ class CardDelegate(QStyledItemDelegate):
         edge, text = 16, _text_of(card)
         ratio = painter.device().devicePixelRatio()
         painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icons.pixmap(name, colour, edge, ratio))
+
+
+def lay_out_cards(view: QListView, model: QAbstractItemModel, cards: QStyledItemDelegate) -> None:
+    """Make a list view a grid of cards that never scrolls sideways; only one of them is selected."""
+    view.setModel(model)
+    view.setItemDelegate(cards)
+    view.setViewMode(QListView.ViewMode.IconMode)
+    view.setResizeMode(QListView.ResizeMode.Adjust)
+    view.setMovement(QListView.Movement.Static)
+    view.setUniformItemSizes(True)
+    view.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+    view.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+    view.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    view.setMouseTracking(True)
+    view.setObjectName("gallery")
+
+
+def paint_back(painter: QPainter, card: QRect, state: QStyle.StateFlag, palette: Palette) -> None:
+    """The card's ground and edge: plain, under the mouse, or selected."""
+    selected = bool(state & QStyle.StateFlag.State_Selected)
+    over = bool(state & QStyle.StateFlag.State_MouseOver)
+    colour = palette.accent_soft if selected else palette.raised if over else palette.surface
+    edge = palette.accent if selected else palette.strong_border if over else palette.border
+    painter.setBrush(QColor(colour))
+    painter.setPen(QPen(QColor(edge), 2.0 if selected else 1.0))
+    painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
+
+
+def paint_buttons(
+    painter: QPainter, boxes: Mapping[CardButton, QRect], mark: Mark, hovered: CardButton | None, palette: Palette
+) -> None:
+    """The buttons of the card under the mouse; lit are the one under it, and the one that the design is marked by."""
+    ratio = painter.device().devicePixelRatio()
+    for button, box in boxes.items():
+        lit = button is hovered or mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
+        painter.setPen(QPen(QColor(palette.accent if lit else palette.strong_border), 1.0))
+        painter.setBrush(QColor(palette.accent_soft if lit else palette.surface))
+        painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
+        icon = icons.pixmap(button.value, palette.text, BUTTON - 8, ratio)
+        painter.drawPixmap(box.topLeft() + QPoint(4, 4), icon)
 
 
 def button_tip(button: CardButton, mark: Mark) -> str:

@@ -25,13 +25,11 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import Palette
-from kirigami_studio.gui.views.card_delegate import GAP, CardButton
+from kirigami_studio.gui.views.card_delegate import GAP, SCROLL_BAR, CardButton, lay_out_cards
 from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.gui.views.table_card import TableCards, button_at, card_size
 from kirigami_studio.outlines.outline import Outline
 
-#: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
-SCROLL_BAR = 14
 #: Least widths of a card, pixels, from small to large.
 WIDTHS = (270, 340, 430, 560)
 #: Designs that are compared at most.
@@ -64,17 +62,7 @@ class DesignTable(QListView):
         self._size = 1
         self._compared: list[Candidate] = []
         self._current: Candidate | None = None
-        self.setModel(model)
-        self.setItemDelegate(self.cards)
-        self.setViewMode(QListView.ViewMode.IconMode)
-        self.setResizeMode(QListView.ResizeMode.Adjust)
-        self.setMovement(QListView.Movement.Static)
-        self.setUniformItemSizes(True)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setMouseTracking(True)
-        self.setObjectName("gallery")
+        lay_out_cards(self, model, self.cards)
         self.setAccessibleName(tr("Table of all designs"))
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self._draw_waiting)

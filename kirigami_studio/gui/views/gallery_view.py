@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
+from PySide6.QtWidgets import QListView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
@@ -15,20 +15,19 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.session import Entry
 from kirigami_studio.gui.views.card_delegate import (
     GAP,
+    SCROLL_BAR,
     SMALLEST_CARD,
     CardButton,
     CardDelegate,
     alike_box,
     button_at,
     card_size,
+    lay_out_cards,
 )
 from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
-
-#: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
-SCROLL_BAR = 14
 
 
 class GalleryView(QListView):
@@ -45,17 +44,7 @@ class GalleryView(QListView):
         super().__init__(parent)
         self.model_ = GalleryModel(self)
         self.cards = CardDelegate(self)
-        self.setModel(self.model_)
-        self.setItemDelegate(self.cards)
-        self.setViewMode(QListView.ViewMode.IconMode)
-        self.setResizeMode(QListView.ResizeMode.Adjust)
-        self.setMovement(QListView.Movement.Static)
-        self.setUniformItemSizes(True)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setMouseTracking(True)
-        self.setObjectName("gallery")
+        lay_out_cards(self, self.model_, self.cards)
         self.setAccessibleName(tr("Design gallery"))
         # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
         self._later = QTimer(self, singleShot=True, interval=0)

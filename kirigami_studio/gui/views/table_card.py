@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QHelpEvent, QPainter, QPen, QPixmap, QRegion
-from PySide6.QtWidgets import QAbstractItemView, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -26,6 +26,8 @@ from kirigami_studio.gui.views.card_delegate import (
     SIGNS,
     CardButton,
     button_tip,
+    paint_back,
+    paint_buttons,
 )
 from kirigami_studio.gui.views.gallery_model import (
     ALIKE_ROLE,
@@ -118,7 +120,7 @@ class TableCards(QStyledItemDelegate):
             painter.setBrush(QColor(self.palette_.raised))
             painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
             painter.drawRoundedRect(QRectF(card).adjusted(4, 4, 3, 3), 8, 8)
-        self._paint_back(painter, card, option.state)
+        paint_back(painter, card, option.state, self.palette_)
         picture = _picture_of(card)
         painter.setOpacity(DIMMED if mark is Mark.REJECTED else 1.0)
         drawn = self._picture(design, index.data(THIN_ROLE), picture.size(), painter.device().devicePixelRatio())
@@ -135,17 +137,8 @@ class TableCards(QStyledItemDelegate):
         if index.data(ALIKE_ROLE):
             self._paint_alike(painter, self.alike_box(rect, index), index)
         if candidate is self.under_mouse:
-            self._paint_buttons(painter, rect, mark)
+            paint_buttons(painter, button_boxes(rect), mark, self.hovered_button, self.palette_)
         painter.restore()
-
-    def _paint_back(self, painter: QPainter, card: QRect, state: QStyle.StateFlag) -> None:
-        current = bool(state & QStyle.StateFlag.State_Selected)
-        over = bool(state & QStyle.StateFlag.State_MouseOver)
-        colour = self.palette_.accent_soft if current else self.palette_.raised if over else self.palette_.surface
-        edge = self.palette_.accent if current else self.palette_.strong_border if over else self.palette_.border
-        painter.setBrush(QColor(colour))
-        painter.setPen(QPen(QColor(edge), 2.0 if current else 1.0))
-        painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
     def _picture(self, design: PosedDesign, thin: bool, size: QSize, ratio: float) -> QPixmap | None:
         """The design's picture, None where it has to wait for the next paint event."""
@@ -291,18 +284,6 @@ class TableCards(QStyledItemDelegate):
         painter.setPen(QColor(self.palette_.text))
         fitted = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, box.width() - 8)
         painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), fitted)
-
-    def _paint_buttons(self, painter: QPainter, rect: QRect, mark: Mark) -> None:
-        ratio = painter.device().devicePixelRatio()
-        for button, box in button_boxes(rect).items():
-            over = button is self.hovered_button
-            on = mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
-            painter.setPen(QPen(QColor(self.palette_.accent if over or on else self.palette_.strong_border), 1.0))
-            painter.setBrush(QColor(self.palette_.accent_soft if over or on else self.palette_.surface))
-            painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
-            painter.drawPixmap(
-                box.topLeft() + QPoint(4, 4), icons.pixmap(button.value, self.palette_.text, BUTTON - 8, ratio)
-            )
 
 
 def card_size(width: int) -> QSize:
