@@ -1,15 +1,16 @@
 """The moving sheet in the target's frame: one motion for the screen, pictures and the animation.
 
 A deployment is computed in its own layout frame.  A :class:`PosedDesign` places it over its target at the target angle
-and, at every other angle, keeps the mean of all nodes where it is then.  What trimming left of the edge panels, and
-what it took, turns and moves with the panels.
+and, at every other angle, keeps the mean of all nodes where it is then.  While the sheet closes to the flat one, it
+turns until that stands upright.  What trimming left of the edge panels, and what it took, turns and moves with the
+panels.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -31,6 +32,9 @@ EXTENT_SAMPLES = 9
 class PosedDesign:
     """One design over its target at ``phi_target``, and at every other angle with the same centre (mean of all nodes).
 
+    From ``phi_target`` to the flat sheet it turns with the angle until the flat sheet is upright: rectangles by at most
+    an eighth of a turn, so that they may stand on their short side; other start outlines to the side that is theirs.
+
     Attributes
     ----------
     deployment : Deployment
@@ -45,6 +49,16 @@ class PosedDesign:
     pose: Similarity
     phi_target: float
     trim: Trim | None = None
+
+    @property
+    def turn(self) -> float:
+        """How far the flat sheet is turned back, so that it stands upright; radians, counter-clockwise."""
+        whole = 0.5 * math.pi if self.deployment.sheet.start is None else 2.0 * math.pi
+        return math.remainder(-self.pose.angle, whole)
+
+    def pose_at(self, phi: float) -> Similarity:
+        """Layout frame at angle ``phi`` -> world."""
+        return _pose_at(self, phi)
 
     def nodes(self, phi: float) -> FloatArray:
         """All nodes at angle ``phi``: (N, 2) float, world, not to be written to."""
@@ -70,7 +84,7 @@ class PosedDesign:
         if self.trim is None:
             return {}
         rings = trimmed_parts(self.deployment, self.trim).kept
-        return dict(zip(rings.panel.tolist(), rings.at(nodes, self.pose, phi), strict=True))
+        return dict(zip(rings.panel.tolist(), rings.at(nodes, self.pose_at(phi), phi), strict=True))
 
     def parts(self, phi: float) -> list[FloatArray]:
         """What there is of every panel at angle ``phi``, row by row: list of (P, 2) float, world."""
@@ -82,7 +96,9 @@ class PosedDesign:
 
     def removed(self, nodes: FloatArray, phi: float) -> list[FloatArray]:
         """What trimming cut off: list of (P, 2), out of :meth:`nodes`."""
-        return [] if self.trim is None else trimmed_parts(self.deployment, self.trim).removed.at(nodes, self.pose, phi)
+        if self.trim is None:
+            return []
+        return trimmed_parts(self.deployment, self.trim).removed.at(nodes, self.pose_at(phi), phi)
 
     def outline(self, nodes: FloatArray, phi: float) -> FloatArray:
         """Boundary polygon (L, 2) out of :meth:`nodes`, before anything was cut off."""
@@ -93,15 +109,11 @@ class PosedDesign:
 
     def to_world(self, places: npt.ArrayLike, phi: float) -> FloatArray:
         """Map places (..., 2) of the layout frame at ``phi`` to the world."""
-        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
-        moved: FloatArray = self.pose.apply(places) + (_placed_middle(self) - placed)
-        return moved
+        return self.pose_at(phi).apply(places)
 
     def to_layout(self, place: tuple[float, float], phi: float) -> FloatArray:
         """Map one place of the world to the layout frame at ``phi``: (2,), the way back of :meth:`to_world`."""
-        placed = self.pose.apply(self.deployment.nodes(phi)).mean(axis=0)
-        back: FloatArray = self.pose.inverse().apply(np.asarray(place) - (_placed_middle(self) - placed))
-        return back
+        return self.pose_at(phi).inverse().apply(np.asarray(place))
 
     def laid_over(self, made: Deployment) -> PosedDesign:
         """Another sheet of the same grid, posed so that its outline at ``phi_target`` is nearest to this one's.
@@ -132,10 +144,17 @@ def _placed_middle(design: PosedDesign) -> FloatArray:
 
 
 @lru_cache(maxsize=16)
+def _pose_at(design: PosedDesign, phi: float) -> Similarity:
+    share = max((phi - design.phi_target) / (math.pi - design.phi_target), 0.0) if design.phi_target < math.pi else 0.0
+    turned = replace(design.pose, angle=design.pose.angle + share * design.turn, shift=(0.0, 0.0))
+    x, y = _placed_middle(design) - turned.apply(design.deployment.nodes(phi).mean(axis=0))
+    return replace(turned, shift=(float(x), float(y)))
+
+
+@lru_cache(maxsize=16)
 def _placed_nodes(design: PosedDesign, phi: float) -> FloatArray:
     """The nodes at the angles that were asked for last: whoever draws a design asks several times."""
-    placed = design.pose.apply(design.deployment.nodes(phi))
-    placed += _placed_middle(design) - placed.mean(axis=0)
+    placed = design.pose_at(phi).apply(design.deployment.nodes(phi))
     placed.setflags(write=False)
     return placed
 

@@ -85,7 +85,7 @@ class CutMotion:
         flat = as_plane(deployment.compact - deployment.compact.min(axis=0))
         mm = self.width_mm / float(np.ptp(deployment.compact[:, 0]))
         # The ideal motion keeps the middle of all nodes where it is in the flat sheet.
-        factor = design.pose.factor / mm
+        factor = design.pose_at(phi).factor / mm
         middle = complex(*design.nodes(phi).mean(axis=0))
         shift = middle + factor * (meant.mean() - mm * flat.mean()) - factor * turned * here.mean()
 

@@ -125,6 +125,19 @@ def test_that_no_text_of_the_window_is_left_in_the_language_before(designed: Mai
     assert {text for _, _, text in texts(designed)} == english
 
 
+def test_that_what_is_told_of_the_cut_sheet_follows_the_language(designed: MainWindow, until: Until) -> None:
+    fabrication, ends = designed.fabrication, designed.stage.ends
+    until(lambda: designed.stage.verdict.isVisible() and bool(fabrication.summary.text()))
+    assert "cut" in fabrication.summary.text() and "heart" in ends.target.accessibleName()
+    designed.speak("de")
+    designed.resize(1000, 640)  # a small window shows other texts than a large one
+    designed.resize(1440, 900)
+    until(lambda: "Schnitt" in fabrication.summary.text())
+    level = designed.stage.verdict.headline.text()
+    assert fabrication.warnings.text().startswith(level) and level != "Ready to cut"
+    assert "Herz" in ends.target.accessibleName()
+
+
 def test_that_texts_in_the_drawing_board_follow_the_language(heart: MainWindow) -> None:
     heart.target.set_editing(True)
     heart.target.buttons["points"].click()

@@ -142,7 +142,7 @@ class PassedState:
         unit = width_mm / (float(np.ptp(anchor_points(candidate.sheet)[:, 0])) * second.match.transform.scale)
         width, height = (unit * np.ptp(outline.points, axis=0)).tolist()
         match, phi = second.match.iou_exact, second.target.phi
-        return cls(outline.name, outline.points, (width, height), match, phi, candidate.trim is not None)
+        return cls(tr(outline.name), outline.points, (width, height), match, phi, candidate.trim is not None)
 
     def texts(self) -> tuple[str, ...]:
         """What is known of it, longest text first."""
@@ -198,7 +198,7 @@ class TwoStates:
         opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
             State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
-            State(target.name, target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),
+            State(tr(target.name), target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),
             candidate.final_phi,
             None if candidate.second is None else PassedState.of(candidate, candidate.second, width_mm),
         )

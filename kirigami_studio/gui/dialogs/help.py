@@ -112,15 +112,18 @@ class GuideWindow(QWidget):
         return found
 
     def _go_to(self, line: QTreeWidgetItem) -> None:
-        block = self.text.document().findBlock(line.data(0, PLACE))
-        top = self.text.document().documentLayout().blockBoundingRect(block).top()
-        self.text.verticalScrollBar().setValue(round(top))
+        self.text.verticalScrollBar().setValue(round(self._height(line)))
         self.contents.setCurrentItem(line)
+
+    def _height(self, line: QTreeWidgetItem) -> float:
+        """Height of a heading in the text, from its beginning, in pixels."""
+        block = self.text.document().findBlock(line.data(0, PLACE))
+        return self.text.document().documentLayout().blockBoundingRect(block).top()
 
     def _follow(self) -> None:
         """The text was scrolled: the contents show where."""
-        top = self.text.cursorForPosition(QPoint(4, 12)).position()
-        passed = [line for line in self.headings if line.data(0, PLACE) <= top]
+        top = self.text.verticalScrollBar().value() + 12
+        passed = [line for line in self.headings if self._height(line) <= top]
         if passed:
             self.contents.setCurrentItem(passed[-1])
 

@@ -84,7 +84,7 @@ def readings(design: PosedDesign, target: Outline | None, angles: list[float]) -
     matches = [None] * len(angles) if target is None else matched(outlines, target)
     for phi, outline, match in zip(angles, outlines, matches, strict=True):
         gap = outline_gap(sheet, phi)
-        width, height = np.ptp(rotate(outline, design.pose.angle), axis=0).tolist()
+        width, height = np.ptp(rotate(outline, design.pose_at(phi).angle), axis=0).tolist()
         siou, iou = (math.nan, math.nan) if match is None else (match.siou, match.iou_exact)
         size = math.nan if gap is None else gap.size
         found.append(Reading(phi, siou, iou, openness.area(phi), openness.at(phi), width, height, size))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.material import library
-from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.foundation.words import again, mark, tr, tr_n
 from kirigami_studio.gui.designs.verdict import VerdictState
 from kirigami_studio.gui.look.readable import (
     TIMES,
@@ -353,7 +353,10 @@ class FabricationPanel(Card):
             return
         level, *reasons = state.lines
         weighty = state.verdict is not None and bool(state.verdict.problems)
-        first = f"{level}: {reasons[0]}" if reasons and not state.pending else "\n".join([level, *reasons[:1]])
+        if reasons and not state.pending:
+            first = tr("{level}: {reason}", level=level, reason=reasons[0])
+        else:
+            first = "\n".join([level, *reasons[:1]])
         self._warn("\n".join([first, *reasons[1:]]), calm=not reasons, muted=not weighty)
 
     def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:
@@ -376,6 +379,12 @@ class FabricationPanel(Card):
         text = self._summaries[self._extent is not Extent.ALL]
         self.summary.setText(text)
         self.summary.setVisible(bool(text))
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.LanguageChange:
+            with_numbers, without = self._summaries
+            self._summaries = (again(with_numbers), again(without))
 
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""

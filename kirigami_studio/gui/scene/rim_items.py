@@ -69,7 +69,7 @@ class RimShapes:
         """Place the handles of a design."""
         feet = transform.to_pixels(mouth_places(design, phi))
         # Panels on both sides of a cut turn by the same angle, one either way: the way out of the sheet stays.
-        turned = outward(design.deployment.sheet) @ (design.pose.matrix[:, :2].T / design.pose.scale)
+        turned = outward(design.deployment.sheet) @ (design.pose_at(phi).matrix[:, :2].T / design.pose.scale)
         return cls(feet, feet + OUTSIDE * turned * (1.0, -1.0))
 
     def mouth_at(self, x: float, y: float) -> int | None:

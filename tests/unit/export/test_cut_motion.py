@@ -97,7 +97,9 @@ def test_that_the_last_frame_shows_where_the_sheet_jams_and_says_so(straight: Ex
     corner = last[-LETTERS:, :90].reshape(-1, 3)
     assert np.any(np.abs(corner - INK).max(axis=1) < 60)
     # The same angle in the ideal motion: no caption, other panels.
-    ideal = animation_frames(replace(straight, phi=motion.reached, motion=None), 4, 240)[-1].convert("RGB")
+    reached = straight.posed.pose_at(motion.reached)
+    job = replace(straight, phi=motion.reached, transform=reached, motion=None)
+    ideal = animation_frames(job, 4, 240)[-1].convert("RGB")
     other = np.asarray(ideal).astype(int)
     assert not np.any(np.abs(other[-LETTERS:, :90].reshape(-1, 3) - INK).max(axis=1) < 60)
     assert np.mean(np.abs(last[: -2 * LETTERS] - other[: -2 * LETTERS]).max(axis=2) > 60) > 0.02
