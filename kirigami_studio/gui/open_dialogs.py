@@ -235,18 +235,13 @@ class Dialogs(QObject):
 
     def reword(self) -> None:
         """The language has changed: what is only read is written anew."""
-        for dialog, show in ((self.guide, self.show_guide), (self.shortcuts, self.show_shortcuts)):
-            if dialog is None:
-                continue
-            visible = dialog.isVisible()
-            dialog.close()
-            dialog.deleteLater()
-            if dialog is self.guide:
-                self.guide = None
-            else:
-                self.shortcuts = None
+        if self.shortcuts is not None:
+            visible = self.shortcuts.isVisible()
+            self.shortcuts.close()
+            self.shortcuts.deleteLater()
+            self.shortcuts = None
             if visible:
-                show()
+                self.show_shortcuts()
         self._update_history()
 
     def close(self) -> None:

@@ -6,11 +6,13 @@ import argparse
 import ast
 import re
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 from kirigami_studio.cli.parser import SUB_COMMANDS, build_parser
+from kirigami_studio.foundation.words import DOMAIN, read_catalogue
 
 #: Folders with documents, beside those in the root.
 FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
@@ -75,6 +77,64 @@ def missing_targets(makefile: str, text: str) -> list[str]:
     return [target for target in named if not re.search(rf"^{target}:", makefile, flags=re.MULTILINE)]
 
 
+#: Words in bold, which name controls; in italics, which name choices; and keys.
+BOLD, ITALIC, CODE = r"\*\*([^*]+)\*\*", r"(?<![*\w])\*([^*]+)\*(?!\*)", r"`([^`]+)`"
+PICTURE = r"!\[[^\]]+\]\(([^)]+)\)"
+#: What German keyboards call keys, as the German window does.
+KEYS = {
+    "Ctrl": "Strg",
+    "Shift": "Umschalt",
+    "Del": "Entf",
+    "Delete": "Entf",
+    "Enter": "Eingabe",
+    "Backspace": "Rücktaste",
+    "Space": "Leertaste",
+    "PgUp": "Bild auf",
+    "PgDn": "Bild ab",
+    "Home": "Pos1",
+    "End": "Ende",
+}
+
+
+def sections_of(guide: str) -> list[str]:
+    """The text from one heading to the next, the headings included."""
+    return re.split(r"^(?=#)", guide, flags=re.MULTILINE)[1:]
+
+
+def blocks_of(section: str) -> list[str]:
+    """Paragraphs, entries of lists and rows of tables."""
+    return [block for block in re.split(r"\n\n+|\n(?=[|-] |[|-]{3}|\d\. )", section.strip()) if block]
+
+
+def named(block: str, pattern: str) -> list[str]:
+    """What is named in a block, ways through menus step by step, each on one line."""
+    return [" ".join(part.split()) for words in re.findall(pattern, block) for part in words.split(" > ")]
+
+
+def pattern_of(text: str) -> str:
+    """A regular expression for what a text of the window becomes once its values are put in."""
+    parts = re.split(r"\{[^{}]*\}", re.sub(r"&(?=\w)", "", text))
+    return r".+?".join(re.escape(part) for part in parts)
+
+
+def begins(text: str, words: str) -> bool:
+    """Whether words are those that a text begins with, values put in or not."""
+    return bool(re.match(rf"{re.escape(words)}(?!\w)", re.sub(r"&(?=\w)", "", text))) or bool(
+        "{" in text and len(re.sub(r"\{[^{}]*\}|\W", "", text)) > 3 and re.fullmatch(pattern_of(text), words)
+    )
+
+
+def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, ...]], pattern: str) -> list[str]:
+    """What a German block names and is not what the window calls a thing that the English block names."""
+    ours, theirs = named(german, pattern), named(english, pattern)
+    if len(ours) != len(theirs):
+        return [f"{theirs} -> {ours}"]
+    known = {words: [said for source, said in texts.items() if begins(source, words)] for words in theirs}
+    wanted = [text for found in known.values() for said in found for text in said]
+    other = [words for words in ours if not any(begins(text, words) for text in wanted)]
+    return other if len(other) > sum(not known[words] for words in theirs) else []  # which are no texts of the window
+
+
 def texts_of_the_window(package: Path) -> set[str]:
     """What the window's modules give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
     found, sayings = set(), ("tr", "tr_n", "mark")
@@ -98,6 +158,50 @@ def test_that_the_guide_calls_things_as_the_window_does(repository: Path) -> Non
     assert guide.count("**") > 80
     assert not_in_the_window(guide, texts) == []
     assert not_in_the_window("**File > Open recent**, **Take away**", texts) == ["Take away"]
+
+
+@pytest.fixture(scope="module")
+def guides(repository: Path) -> tuple[str, str]:
+    """The English and the German guide."""
+    english, german = (repository / "resources" / "guide" / name for name in ("guide.md", "guide.de.md"))
+    return english.read_text(encoding="utf-8"), german.read_text(encoding="utf-8")
+
+
+def test_that_the_german_guide_has_the_sections_pictures_and_tables_of_the_english_one(
+    guides: tuple[str, str],
+) -> None:
+    english, german = (sections_of(guide) for guide in guides)
+    assert [section.partition(" ")[0] for section in german] == [section.partition(" ")[0] for section in english]
+    for own, other in zip(german, english, strict=True):
+        title = own.partition("\n")[0]
+        assert re.findall(PICTURE, own) == re.findall(PICTURE, other), title
+        assert [kind_of(block) for block in blocks_of(own)] == [kind_of(block) for block in blocks_of(other)], title
+
+
+def kind_of(block: str) -> str:
+    """What a block begins with if it is no plain paragraph; how many columns a row has."""
+    return f"| {block.count('|')}" if block.startswith("|") else (re.match(r"[#-]+ |\d\. |!", block) or [""])[0]
+
+
+def test_that_the_german_guide_names_the_keys_of_the_english_one(guides: tuple[str, str]) -> None:
+    english, german = (blocks_of(guide) for guide in guides)
+    for own, other in zip(german, english, strict=True):
+        keys = [re.sub(r"[A-Z]\w+", lambda found: KEYS.get(found[0], found[0]), keys) for keys in named(other, CODE)]
+        assert sorted(named(own, CODE)) == sorted(keys), own
+
+
+def test_that_the_german_guide_calls_things_as_the_german_window_does(
+    guides: tuple[str, str], repository: Path
+) -> None:
+    path = repository / "resources" / "locale" / "de" / "LC_MESSAGES" / f"{DOMAIN}.po"
+    texts = read_catalogue(path, "de").texts
+    english, german = (blocks_of(guide) for guide in guides)
+    for own, other in zip(german, english, strict=True):
+        assert called_otherwise(other, own, texts, BOLD) == [], own
+        assert called_otherwise(other, own, texts, ITALIC) == [], own
+    assert called_otherwise("**Edit > Done**", "**Fertig**, **Bearbeiten**", texts, BOLD) == []
+    assert called_otherwise("**Edit > Done**", "**Fertig**, **Ändern**", texts, BOLD) == ["Ändern"]
+    assert called_otherwise("**Done**", "Fertig", texts, BOLD) == ["['Done'] -> []"]
 
 
 def test_that_every_relative_link_and_picture_exists(documents: dict[Path, str]) -> None:

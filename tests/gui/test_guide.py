@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Iterator
 
 import pytest
 from PIL import Image
 from PySide6.QtCore import Qt, QUrl
-from PySide6.QtGui import QImage, QTextDocument
+from PySide6.QtGui import QImage, QKeySequence, QTextDocument
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.dialogs.help import GuideWindow
+from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.main_window import MainWindow
+
+
+@pytest.fixture
+def english_afterwards() -> Iterator[None]:
+    """Speak the desktop's language again when the test is over."""
+    wanted = os.environ.get("LANGUAGE")
+    yield
+    os.environ.pop("LANGUAGE", None)
+    if wanted is not None:
+        os.environ["LANGUAGE"] = wanted
+    speak(SYSTEM)
 
 
 @pytest.fixture
@@ -90,3 +104,51 @@ def test_that_every_picture_is_shown_and_small(guide: GuideWindow) -> None:
             assert picture.width <= 640, name
         loaded = guide.text.loadResource(QTextDocument.ResourceType.ImageResource.value, QUrl(name))
         assert isinstance(loaded, (bytes, QImage)) or loaded is not None, name
+
+
+def test_that_the_guide_follows_the_language_to_the_same_section(
+    guide: GuideWindow, window: MainWindow, english_afterwards: None
+) -> None:
+    rows = len(guide.headings)
+    guide.contents.itemClicked.emit(guide.headings[9], 0)
+    assert guide.windowTitle() == "Kirigami Studio guide" and seen_heading(guide) == "5. Trim it (optional)"
+    window.speak("de")
+    assert window.dialogs.guide is guide and guide.isVisible()
+    assert guide.windowTitle() == "Handbuch von Kirigami Studio" and len(guide.headings) == rows
+    assert guide.contents.currentItem() is guide.headings[9]
+    assert guide.headings[9].text(0) == "5. Zuschneiden (wenn man will)" == seen_heading(guide)
+    window.speak("en")
+    assert seen_heading(guide) == "5. Trim it (optional)" and guide.contents.currentItem() is guide.headings[9]
+
+
+def test_that_german_words_are_found_and_searched_for_again_after_a_change(
+    guide: GuideWindow, window: MainWindow, english_afterwards: None
+) -> None:
+    guide.search.setText("Schnittfuge")
+    assert guide.found.text() == "Not found"
+    window.speak("de")
+    count = guide.text.document().toPlainText().lower().count("schnittfuge")
+    assert len(guide.text.extraSelections()) == count > 2 and guide.found.text() == f"1 von {count}"
+    guide.search.setText("größe")
+    assert len(guide.text.extraSelections()) == guide.text.document().toPlainText().lower().count("größe") > 3
+    window.speak("en")
+    assert guide.found.text() == "Not found" and guide.text.extraSelections() == []
+
+
+def test_that_a_guide_opened_in_german_is_german(window: MainWindow, english_afterwards: None) -> None:
+    window.speak("de")
+    window.commands["guide"].trigger()
+    assert window.dialogs.guide is not None
+    assert window.dialogs.guide.headings[0].text(0) == "1. Ein Ziel wählen"
+
+
+def test_that_the_german_guide_writes_keys_as_the_german_window_shows_them(
+    window: MainWindow, english_afterwards: None
+) -> None:
+    window.speak("de")
+    arrows = {"←": "Links", "→": "Rechts"}
+    text = resource("guide", "guide.de.md").read_text(encoding="utf-8")
+    listed = {re.sub("[←→]", lambda found: arrows[found[0]], keys) for keys in re.findall(r"`(Strg\+[^`]+)`", text)}
+    native = QKeySequence.SequenceFormat.NativeText
+    known = {QKeySequence(keys).toString(native) for command in window.commands.records for keys in command.shortcuts}
+    assert len(listed) > 15 and listed - known == {"Strg+A"}  # which selects all in every list

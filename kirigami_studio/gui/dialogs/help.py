@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut, QTextCursor
 from PySide6.QtWidgets import (
     QHeaderView,
@@ -22,7 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import language, tr, tr_n
 from kirigami_studio.gui.command import Command
 
 #: Headings down to this level are in the guide's contents.
@@ -31,8 +32,14 @@ DEEPEST = 3
 PLACE = Qt.ItemDataRole.UserRole
 
 
+def guide_file() -> Path:
+    """The guide in the language that is spoken, such as ``guide.de.md``; the English one where there is none."""
+    own = resource("guide", f"guide.{language().split('_')[0]}.md")
+    return own if own.is_file() else resource("guide", "guide.md")
+
+
 class GuideWindow(QWidget):
-    """Shows ``resources/guide/guide.md`` beside its contents, and finds words in it."""
+    """Shows the guide in the window's language beside its contents, and finds words in it."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Window)
@@ -44,7 +51,6 @@ class GuideWindow(QWidget):
         self.text.setAccessibleName(tr("User guide"))
         self.text.setOpenExternalLinks(True)
         self.text.setSearchPaths([str(resource("guide"))])  # for its pictures
-        self.text.setMarkdown(resource("guide", "guide.md").read_text(encoding="utf-8"))
         self.search = QLineEdit()
         self.search.setPlaceholderText(tr("Search the guide"))
         self.search.setAccessibleName(tr("Search the guide"))
@@ -59,7 +65,7 @@ class GuideWindow(QWidget):
         self.contents.setIndentation(14)
         self.contents.setUniformRowHeights(True)
         self._lay_out()
-        self._list_contents()
+        self._read()
         QShortcut(QKeySequence.StandardKey.Find, self, self._begin_search)
         self.search.textChanged.connect(self._find)
         self.contents.itemClicked.connect(self._go_to)
@@ -84,8 +90,27 @@ class GuideWindow(QWidget):
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(columns)
 
+    def _read(self) -> None:
+        """Show the guide of the present language."""
+        self._file = guide_file()
+        self.text.setMarkdown(self._file.read_text(encoding="utf-8"))
+        self._list_contents()
+
+    def _change_language(self) -> None:
+        """The same section in the other language, and the same words searched for."""
+        if guide_file() == self._file:
+            return
+        lines, at = self.headings, self.contents.currentItem()
+        section = next((row for row, line in enumerate(lines) if line is at), None)
+        self._read()
+        if section is not None:
+            self.text.document().size()  # laid out whole, or it could not be scrolled that far
+            self._go_to(self.headings[section])
+        self._find(self.search.text())
+
     def _list_contents(self) -> None:
         """One line for each heading, under the one above it."""
+        self.contents.clear()
         above: dict[int, QTreeWidgetItem] = {}
         block = self.text.document().begin()
         while block.isValid():
@@ -166,6 +191,12 @@ class GuideWindow(QWidget):
         there.clearSelection()
         self.text.setTextCursor(there)
         self.text.ensureCursorVisible()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        """The guide follows the language of the window."""
+        if event.type() == QEvent.Type.LanguageChange:
+            self._change_language()
+        super().changeEvent(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         """Enter goes to the next place, Shift+Enter to the one before; Esc clears the search, then closes the guide."""
