@@ -41,6 +41,7 @@ from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.as_cut import jam_angles
+from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
@@ -86,7 +87,8 @@ def design(arguments: argparse.Namespace) -> int:
             second=second,
         )
         material_named = arguments.material is not None
-        return Job(request, fabrication, arguments.least_panel_mm, material_named, arguments.out is not None)
+        as_cut, files = material_named, arguments.out is not None
+        return Job(request, fabrication, arguments.least_panel_mm, as_cut, files, arguments.engrave or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
@@ -105,7 +107,10 @@ def design(arguments: argparse.Namespace) -> int:
 
     def one(name: str, target: Outline) -> None:
         design = designed(job_for(target), line)
-        tell(name, design, write_files(design.result, fabrication, folder_for(name)) if arguments.out else {})
+        files: dict[str, str] = {}
+        if arguments.out:
+            files = write_files(design.result, fabrication, folder_for(name), arguments.engrave or "")
+        tell(name, design, files)
 
     def one_from_cluster(name: str, design: Design) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
@@ -130,6 +135,8 @@ class Job:
         Whether designs are ranked as cut in the material, and get a verdict.
     files : bool
         Whether the design comes with its files.
+    name : str
+        Of the best design; "" for the name that it gets by itself.
     """
 
     request: Request
@@ -137,6 +144,7 @@ class Job:
     least_panel_mm: float
     as_cut: bool
     files: bool
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -214,7 +222,7 @@ def designed_there(asked: Asked) -> Answer:
         if not job.files:
             return Answer(design, None)
         with TemporaryDirectory() as folder:
-            paths = write_files(design.result, job.fabrication, Path(folder))
+            paths = write_files(design.result, job.fabrication, Path(folder), job.name)
             files = {role: (Path(path).name, Path(path).read_bytes()) for role, path in paths.items()}
         return Answer(replace(design, files=files), None)
     except KirigamiError as error:
@@ -353,14 +361,17 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
     return entry
 
 
-def write_files(result: Result, fabrication: FabricationSettings, folder: Path) -> dict[str, str]:
+def write_files(result: Result, fabrication: FabricationSettings, folder: Path, name: str = "") -> dict[str, str]:
     """Write the project, the cut file, the layout, a preview and the candidates; returns their paths by role.
 
-    The bytes depend on the request alone: wall time is not written.
+    The best design is called ``name``, if it is given one.  The bytes depend on what is given alone: wall time is not
+    written.
     """
     request, best = result.request, result.best
-    plan, _ = checked_plan(best, fabrication)
     document = document_of(result, fabrication)
+    if name:
+        document = set_label(document, 0, name, "").document
+    plan, _ = checked_plan(best, fabrication, document.name_of(best))
     facts, record = design_facts(document, best), packed_design(document, best)
     job = replace(ExportJob.of(best, request.target.points, plan), provenance=facts, record=record)
     paths = {

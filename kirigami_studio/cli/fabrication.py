@@ -18,7 +18,7 @@ from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.export.provenance import narrowed_json, sidecar_path, write_sidecar
+from kirigami_studio.export.provenance import engraved_json, narrowed_json, sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export as export_file
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
@@ -36,6 +36,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.coarser import coarser_designs
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.as_cut import simulated
+from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
@@ -51,15 +52,17 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     return overridden(FabricationSettings(material=material.key), arguments)
 
 
-def checked_plan(candidate: Candidate, fabrication: FabricationSettings) -> tuple[CutPlan, Report]:
+def checked_plan(candidate: Candidate, fabrication: FabricationSettings, name: str = "") -> tuple[CutPlan, Report]:
     """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
+
+    Its name is engraved if the settings say so.
 
     Raises
     ------
     FabricationError
         The plan cannot be made, or the sheet would not survive it.
     """
-    plan = plan_of(candidate, fabrication)
+    plan = plan_of(candidate, fabrication, name=name)
     report = check_plan(plan, phi=candidate.final_phi)
     for problem in report.problems:
         if problem.severity is Severity.ERROR:
@@ -72,10 +75,14 @@ def export(arguments: argparse.Namespace) -> int:
     if not arguments.all:
         find_exporter(arguments.out)
     document = load(arguments.project)
+    chosen_candidate(document)
+    if arguments.engrave and document.chosen is not None and document.label is not None:
+        document = set_label(document, document.chosen, arguments.engrave, document.label.note).document
     settings = overridden(document.fabrication, arguments)
     _check_hinges(chosen_candidate(document), settings.options)
     try:
-        plan, report = checked_plan(chosen_candidate(document), settings)
+        chosen = chosen_candidate(document)
+        plan, report = checked_plan(chosen, settings, document.name_of(chosen))
     except FabricationError as error:
         if not arguments.fixes:
             raise
@@ -118,6 +125,7 @@ def export(arguments: argparse.Namespace) -> int:
                 "pieces": report.pieces * len(plan.copies),
                 **({} if len(plan.copies) == 1 else {"copies": len(plan.copies)}),
                 "min_connector_mm": plan.min_connector_mm,
+                **({} if plan.engraving is None else {"engraved": engraved_json(plan.engraving)}),
                 **({} if not plan.hinges.narrowed.size else {"narrowed_connectors": narrowed_json(plan)}),
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
                 "jam_deg": None if not verified else verified[0]["jam_deg"],
@@ -278,7 +286,7 @@ def check(arguments: argparse.Namespace) -> int:
 def _judged_by_design(path: Path, document: Document) -> tuple[Verification, Verdict]:
     """Compare a file with the chosen design of a project as the project would cut it, and judge the sheet."""
     candidate, settings = chosen_candidate(document), document.fabrication
-    plan = plan_of(candidate, settings)
+    plan = plan_of(candidate, settings, name=document.name_of(candidate))
     report = check_plan(plan, phi=candidate.final_phi)
     motion = deploy(candidate.final_sheet)
     found = verify_export(plan, path, settings.profile, settings.dxf_version, motion)
@@ -355,6 +363,8 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     changes: dict[str, Any] = {
         name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version", "paper") if name in given
     }
+    if "engrave" in given:
+        changes["engrave"] = given["engrave"] is not False
     if arguments.material is not None:
         changes["material"] = find_material(arguments.material).key
     try:

@@ -97,6 +97,14 @@ CUTS = (
     ),
 )
 
+#: A name on the sheet.
+ENGRAVE = (
+    option("--engrave", nargs="?", const="", default=None, metavar="TEXT",
+           help="engrave the design's name (A1, ...) on one panel, on layer NAME and before the cuts; TEXT names the "
+                "design so (default: the project's choice)"),
+    option("--no-engrave", dest="engrave", action="store_const", const=False, default=None, help="engrave no name"),
+)  # fmt: skip
+
 #: Several sheets in one file.
 COPIES = (
     option(
@@ -325,6 +333,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--budget", type=positive, default=None, metavar="SECONDS",
                help="stop after this time with the best so far; results then depend on the machine (default: none)"),
         *WIDTHS,
+        *ENGRAVE,
         SCHEDULER,
         JSON,
     ), (
@@ -380,6 +389,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *WIDTHS,
         *CUTS,
         *COPIES,
+        *ENGRAVE,
         option("--profile", default=None,
                help="machine profile: any, lightburn, k40, single, layers or slots (default: the project's)"),
         option("--dxf-version", default=None, choices=("R2010", "R12"), help="DXF version (default: the project's)"),
@@ -394,6 +404,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
+        "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave 'For Ada'",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
         "mechanics:mechanics", (

@@ -24,7 +24,7 @@ from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_content import FileContent, bent_otherwise
 from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of
+from kirigami_studio.export.strokes import Stroke, extent, file_strokes, layer_colours
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -70,7 +70,7 @@ def write_dxf(
     """
     chosen = find_profile(profile) if isinstance(profile, str) else profile
     content = dxf_bytes(plan, version, chosen, record)
-    strokes = strokes_of(plan, chosen)
+    strokes = file_strokes(plan, chosen)
     size = extent(strokes)
     write_atomically(Path(path), content, lambda written: check_written(written, strokes, size, version))
 
@@ -83,7 +83,7 @@ def dxf_bytes(plan: CutPlan, version: str, profile: Profile, record: bytes = b""
     ExportError
         Unknown version, or a plan that the profile cannot show.
     """
-    strokes = strokes_of(plan, profile)
+    strokes = file_strokes(plan, profile)
     return strokes_dxf(strokes, extent(strokes), version, facts_of(plan, profile), record=record)
 
 
@@ -259,7 +259,7 @@ def write_reference(plan: CutPlan, path: str | Path) -> Path:
         An unwritable place, or a file that did not read back.
     """
     goal = Path(path)
-    strokes = strokes_of(plan, find_profile(PROFILE))
+    strokes = file_strokes(plan, find_profile(PROFILE))
     size = extent(strokes)
     facts = {**facts_of(plan, find_profile(PROFILE)), "PURPOSE": "reference, not for cutting"}
     content = strokes_dxf(strokes, size, "R2010", facts, lambda document: _mark(document, plan, facts))

@@ -2,7 +2,7 @@
 
 :func:`check_file` reads a DXF of any origin, or a folder of layer files.  A file written here says how many tabs its
 outline has and how many cuts end on other cuts, and is held to that; in a foreign file the outline is the largest
-closed contour.
+closed contour.  A name that such a file says it engraves is no cut.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
+from kirigami_studio.export.profile import NAME_LAYER
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
+from kirigami_studio.fabricate.engraving import nearest_cut
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import ending_on_others
@@ -108,6 +110,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     content = _read(Path(path))
     kerf = _kerf(content, kerf_mm)
     problems = [*content.problems, *_layer_problems(content.layers)]
+    content = _without_name(content, kerf, problems)
     if not content.paths:
         problems.append(Problem.error("cut_file.empty"))
         return FileReport(Path(path), tuple(problems), content.unit, content.layers, 0, 0.0, 0.0, (0.0, 0.0), kerf,
@@ -175,6 +178,22 @@ def _without_marks(content: DxfContent) -> DxfContent:
         paths=[path for path in content.paths if path.layer != REGISTRATION_LAYER],
         layers=tuple(name for name in content.layers if name != REGISTRATION_LAYER),
     )
+
+
+def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
+    """The cuts alone of a file that says in how many lines it engraves a name; those have to be there, and clear."""
+    promised = content.facts.get("ENGRAVED_LINES")
+    if promised is None or "PART" in content.facts:
+        return content
+    names = [path for path in content.paths if path.layer == NAME_LAYER]
+    cuts = [path for path in content.paths if path.layer != NAME_LAYER]
+    if f"{len(names)}" != promised:
+        problems.append(Problem.error("cut_file.name_differs", promised=promised, layer=NAME_LAYER, count=len(names)))
+    if names and cuts:
+        clear = nearest_cut([path.points for path in names], [path.points for path in cuts])
+        if clear.distance_mm < kerf:
+            problems.append(Problem.error("cut_file.name_cuts", clear.where, clear_mm=clear.distance_mm))
+    return replace(content, paths=cuts)
 
 
 def _kerf(content: DxfContent, kerf_mm: float | None) -> float:

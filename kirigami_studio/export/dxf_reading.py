@@ -37,7 +37,8 @@ LARGEST_FILE = 100_000_000
 #: Chord tolerance (mm) for curves.
 FLATTEN_MM = 0.005
 #: Facts about a file's making that its check needs; R12 files keep them among ezdxf's own records.
-RECORDED_FACTS = ("KERF_MM", "TABS", "TAB_MM", "JOINS", "PART", "COPIES", "COPY_GAP_MM")
+RECORDED_FACTS = ("KERF_MM", "TABS", "TAB_MM", "JOINS", "PART", "COPIES", "COPY_GAP_MM",
+                  "ENGRAVED_LINES")  # fmt: skip
 #: What ezdxf raises on damaged files, depending on where the damage is.
 PARSER_FAULTS = (
     DXFError,

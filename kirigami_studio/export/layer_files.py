@@ -22,7 +22,7 @@ from kirigami_studio.export.dxf import SAME_MM, check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent, one_drawing
 from kirigami_studio.export.profile import BLUE, Profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.export.strokes import Stroke, extent, strokes_of
+from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -60,7 +60,7 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
     """
     folder = layer_folder(Path(path))
     _refuse_strange_content(folder)
-    strokes = strokes_of(plan, profile)
+    strokes = file_strokes(plan, profile)
     marks, facts = registration_marks(extent(strokes)), facts_of(plan, profile)
     size, parts = extent(marks), by_layer(strokes)
     fresh: Path | None = None

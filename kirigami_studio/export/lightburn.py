@@ -1,6 +1,8 @@
 """Cut plan -> LightBurn project (.lbrn2): named layers with speed, power and passes, in the order of cutting.
 
-Connectors are marked on the tool layer T1 where that is asked for: LightBurn leaves it out, but MeerK40t engraves it.
+A name is engraved first, by lines with a setting of their own: in one pass at a share of the material's power, since
+materials know only what cuts them.  Connectors are marked on the tool layer T1 where that is asked for: LightBurn
+leaves it out, but MeerK40t engraves it.
 
 The file is XML; a path is a list of vertices (``V x y``, with handles where a curve leaves or arrives) and a list of
 primitives between them (``L`` line, ``B`` Bezier curve).  Arcs become Bezier curves of a quarter turn at most.  The
@@ -19,9 +21,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.export.strokes import layer_colours, strokes_of
+from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes
 from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Note
@@ -32,6 +34,10 @@ from kirigami_studio.foundation.files import write_atomically
 
 #: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
 PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
+#: Number of the name in the palette: black.
+NAME_NUMBER = 0
+#: Share of the material's power that the name is engraved with.
+NAME_POWER = 0.2
 #: The first tool layer, which LightBurn shows and never cuts.
 TOOL_LAYER = 30
 MARKER_RADIUS_MM = 0.5
@@ -84,7 +90,7 @@ def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> N
         The place cannot be written, or the file did not read back.
     """
     content = lightburn_bytes(plan, markers)
-    strokes = strokes_of(plan, find_profile("any"))
+    strokes = file_strokes(plan, find_profile("any"))
     meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
 
     def verify(written: Path) -> None:
@@ -114,12 +120,19 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
         "numPasses": f"{material.passes}",
         "kerf": "0",
     }
-    for priority, layer in enumerate(plan.layers):
+    names = name_strokes(plan, find_profile("any"))
+    if names:
+        faint = f"{NAME_POWER * material.power_percent:g}"
+        light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
+        _add_setting(root, "Cut", NAME_NUMBER, NAME_LAYER, 0, light)
+    for priority, layer in enumerate(plan.layers, start=1 if names else 0):
         _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
     if markers:
-        _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers), {})
+        _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers) + (1 if names else 0), {})
+    for stroke in names:
+        _add_path(root, stroke, NAME_NUMBER)
     for path in plan.copies.of(plan.paths):
-        _add_path(root, path)
+        _add_path(root, path, PALETTE_NUMBER[path.layer])
     marked = (plan.copies.places[:, None] + plan.hinges.position).reshape(-1, 2)
     for x, y in marked.tolist() if markers else []:
         size = f"{MARKER_RADIUS_MM:g}"
@@ -128,7 +141,10 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
         )
         ElementTree.SubElement(marker, "XForm").text = f"1 0 0 1 {x:.4f} {y:.4f}"
     notes = [f"{key} {value}" for key, value in facts_of(plan, find_profile("lightburn")).items()]
-    notes += [note.text for note in (*plan.notes, *power_notes(material))]
+    about_name = (
+        [Note.of("lightburn.name_power", percent=100.0 * NAME_POWER)] if names and material.power_percent else []
+    )
+    notes += [note.text for note in (*plan.notes, *power_notes(material), *about_name)]
     ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join(notes)})
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
@@ -148,15 +164,15 @@ def _add_setting(
         ElementTree.SubElement(setting, key, {"Value": value})
 
 
-def _add_path(root: ElementTree.Element, path: CutPath) -> None:
-    shape = ElementTree.SubElement(root, "Shape", {"Type": "Path", "CutIndex": str(PALETTE_NUMBER[path.layer])})
+def _add_path(root: ElementTree.Element, path: CutPath | Stroke, number: int) -> None:
+    shape = ElementTree.SubElement(root, "Shape", {"Type": "Path", "CutIndex": str(number)})
     ElementTree.SubElement(shape, "XForm").text = "1 0 0 1 0 0"
     vertices, primitives = _vertices(path)
     ElementTree.SubElement(shape, "VertList").text = "".join(vertices)
     ElementTree.SubElement(shape, "PrimList").text = "".join(primitives)
 
 
-def _vertices(path: CutPath) -> tuple[list[str], list[str]]:
+def _vertices(path: CutPath | Stroke) -> tuple[list[str], list[str]]:
     """Vertices with their handles, and the primitives between them."""
     points: list[FloatArray] = [path.points[0]]
     leaving: dict[int, FloatArray] = {}

@@ -36,9 +36,10 @@ from kirigami_studio.export.pdf_pages import (
     to_page,
 )
 from kirigami_studio.export.picture import Colour
-from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
+from kirigami_studio.export.strokes import name_strokes
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -79,7 +80,9 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = NO_PAPER) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
-    lines = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.copies.of(plan.paths)]
+    names = [(stroke.points, False, picture.NAME_COLOUR) for stroke in name_strokes(plan, find_profile("any"))]
+    cuts = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.copies.of(plan.paths)]
+    lines = [*names, *cuts]
     tiling = one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
     content = _pdf_bytes(plan, lines, tiling)
     write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
@@ -136,23 +139,27 @@ def _draw_lines(canvas: Any, lines: Sequence[Line], part: Tile, whole: bool) -> 
                 draw_line(canvas, shapely.get_coordinates(piece) + shift, closed=False)
 
 
-def _chord_length(cut: CutPath) -> float:
-    """Length (mm) of a cut as it is drawn, with chords for arcs."""
-    return float(np.linalg.norm(np.diff(cut.travelled, axis=0), axis=1).sum())
+def _chord_length(points: FloatArray) -> float:
+    """Length (mm) of a line (P, 2) as it is drawn, with chords for arcs."""
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
     """Read the pages back: their size, and that their cells together hold every cut once."""
     pages = read_pages(path)
     check_pages([page.size_mm for page in pages], tiling.page, len(tiling.tiles))
-    for layer in plan.layers:
-        colour = picture.LAYER_COLOUR[layer]
+    meant = {
+        layer.value: (picture.LAYER_COLOUR[layer], [cut.travelled for cut in plan.on_layer(layer)])
+        for layer in plan.layers
+    }
+    names = () if plan.engraving is None else plan.engraving.lines
+    for name, (colour, lines) in (meant | {NAME_LAYER: (picture.NAME_COLOUR, names)}).items():
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
         found = sum(_length_in_cell(page, part, colour) for page, part in shown)
-        meant = len(plan.copies) * sum(_chord_length(cut) for cut in plan.on_layer(layer))
-        corners = len(plan.copies) * sum(len(cut.flattened) for cut in plan.on_layer(layer))
-        if abs(found - meant) > SAME_LENGTH * meant + ROUNDING_MM * corners:
-            raise ExportError("pdf.other_length", found_mm=found, planned_mm=meant, layer=layer.value)
+        length = len(plan.copies) * sum(_chord_length(line) for line in lines)
+        corners = len(plan.copies) * sum(len(line) for line in lines)
+        if abs(found - length) > SAME_LENGTH * length + ROUNDING_MM * corners:
+            raise ExportError("pdf.other_length", found_mm=found, planned_mm=length, layer=name)
 
 
 def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:

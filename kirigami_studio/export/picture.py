@@ -33,6 +33,8 @@ INK: Colour = (40, 40, 40)
 LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
     {Layer.RELIEF: (220, 120, 0), Layer.SLITS: (255, 0, 0), Layer.EDGE_SLITS: (0, 160, 0), Layer.OUTLINE: (0, 0, 255)}
 )
+#: A name that is engraved.
+NAME_COLOUR: Colour = (150, 0, 140)
 #: Pictures are drawn this many times larger and then reduced.
 SUPERSAMPLING = 3
 LONGEST_SIDE = 900

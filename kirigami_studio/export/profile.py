@@ -2,6 +2,9 @@
 
 Programs choose the operation by colour: MeerK40t cuts pure red only, engraves blue and rasters white; K40 Whisperer
 engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so a person picks one.
+
+A name that is engraved has a layer and a colour of its own, in which no profile cuts.  Files of profiles that stand for
+cuts alone do not have it.
 """
 
 from __future__ import annotations
@@ -19,6 +22,8 @@ RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
 ONE_LAYER = "SHEET"
 #: Layer of closed contours that stand for slits.
 SLOT_LAYER = "SLOTS"
+#: Layer of a name that is engraved.
+NAME_LAYER = "NAME"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +46,8 @@ class Profile:
         Closed contours only: every slit becomes the outline of the slot that it burns.
     note : Note or None
         What to know before importing.
+    name_colour : int or None
+        AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
     """
 
     key: str
@@ -51,6 +58,7 @@ class Profile:
     file_per_layer: bool = False
     slots: bool = False
     note: Note | None = None
+    name_colour: int | None = BLUE
 
     def layer_name(self, layer: Layer) -> str:
         """Name of a layer in files of this profile."""
@@ -68,6 +76,7 @@ _TABLE = (
         "LightBurn: one colour for each layer",
         _BY_LAYER,
         note=Note.of("profile.only_red_is_cut"),
+        name_colour=WHITE,
     ),
     Profile("k40", "MeerK40t, K40 Whisperer: everything red, arcs as chords", _ALL_RED, flatten=True),
     Profile(
@@ -75,6 +84,7 @@ _TABLE = (
         "One colour, one layer: for programs that sort by colour or layer",
         _ALL_RED,
         one_layer=True,
+        name_colour=None,
     ),
     Profile(
         "layers",
@@ -89,6 +99,7 @@ _TABLE = (
         _BY_LAYER,
         slots=True,
         note=Note.of("profile.kerf_is_theirs"),
+        name_colour=None,
     ),
 )
 PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for profile in _TABLE})

@@ -17,9 +17,10 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import Profile, find_profile
-from kirigami_studio.export.strokes import strokes_of, work_of
+from kirigami_studio.export.strokes import name_strokes, strokes_of, work_of
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.joints import joint_count
+from kirigami_studio.fabricate.lettering import Engraving
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.sheet_files import rim_json
@@ -46,6 +47,7 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
         **({} if profile.slots else _deliberate(plan)),
         **_copies(plan),
+        **_name(plan, profile),
         **origin_facts(plan.origin),
     }
 
@@ -54,6 +56,14 @@ def _copies(plan: CutPlan) -> dict[str, str]:
     """How many sheets the file holds, where it is not one, and how far they are apart."""
     copies = plan.copies
     return {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": f"{copies.gap_mm:g}"}
+
+
+def _name(plan: CutPlan, profile: Profile) -> dict[str, str]:
+    """What is engraved, where the file has it, and in how many lines, so that a check can tell it from cuts."""
+    lines = name_strokes(plan, profile)
+    if plan.engraving is None or not lines:
+        return {}
+    return {"ENGRAVED": plan.engraving.text, "ENGRAVED_LINES": f"{len(lines)}"}
 
 
 def _deliberate(plan: CutPlan) -> dict[str, str]:
@@ -148,6 +158,7 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
             "profile": job.profile,
             "dxf_version": job.dxf_version,
             "paper": job.paper,
+            **({} if plan.engraving is None else {"engraved": engraved_json(plan.engraving)}),
         },
         "expected": _expected(plan, find_profile(job.profile)),
         "provenance": dict(sorted(job.provenance.items())),
@@ -183,6 +194,11 @@ def narrowed_json(plan: CutPlan) -> list[dict[str, float]]:
         }
         for hinge in hinges.narrowed.tolist()
     ]
+
+
+def engraved_json(engraving: Engraving) -> dict[str, Any]:
+    """Text and height, mm, of a name that is engraved."""
+    return {"text": engraving.text, "height_mm": engraving.height_mm}
 
 
 def _plain(value: Any) -> Any:

@@ -1,5 +1,6 @@
 """Cut plan and machine profile -> the strokes that a cut file must hold, in the order of cutting.
 
+A name that is engraved comes first, on a layer of its own; all that is measured of strokes is measured of the cuts.
 A profile for cutting services wants closed contours: there every slit becomes the outline of the slot that the beam
 would burn, and the strokes are the edges of the finished part.
 """
@@ -14,7 +15,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
-from kirigami_studio.export.profile import Profile
+from kirigami_studio.export.profile import NAME_LAYER, Profile
 from kirigami_studio.fabricate.copies import moved
 from kirigami_studio.fabricate.cut_path import CHORD_MM, edge_lengths, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
@@ -68,7 +69,7 @@ class Stroke:
 
 
 def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
-    """Return what a file of this profile holds: the strokes of the sheet, of one copy after the other.
+    """Return what a file of this profile cuts: the strokes of the sheet, of one copy after the other.
 
     Raises
     ------
@@ -79,6 +80,28 @@ def strokes_of(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
     if len(plan.copies) == 1:
         return one
     return tuple(replace(stroke, points=moved(stroke.points, place)) for place in plan.copies.places for stroke in one)
+
+
+def name_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
+    """What a file of this profile engraves: the name on one copy of the sheet after the other; nothing without one."""
+    if plan.engraving is None or profile.name_colour is None:
+        return ()
+    return tuple(
+        Stroke(moved(line, place), False, NAME_LAYER, profile.name_colour)
+        for place in plan.copies.places
+        for line in plan.engraving.lines
+    )
+
+
+def file_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
+    """Return everything that a file of this profile draws: the name first, then what is cut.
+
+    Raises
+    ------
+    ExportError
+        The profile wants slots and the plan has no kerf.
+    """
+    return (*name_strokes(plan, profile), *strokes_of(plan, profile))
 
 
 def sheet_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:

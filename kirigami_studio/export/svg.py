@@ -16,7 +16,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import facts_of, origin_facts
-from kirigami_studio.export.strokes import Stroke, extent, strokes_of
+from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -70,7 +70,7 @@ def _cut_drawing(
     plan: CutPlan, profile: Profile, record: bytes
 ) -> tuple[ElementTree.Element, int, tuple[float, float]]:
     """The drawing, the number of its paths and its size (mm)."""
-    strokes = strokes_of(plan, profile)
+    strokes = file_strokes(plan, profile)
     width, height = extent(strokes)
     root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
     facts = facts_of(plan, profile)

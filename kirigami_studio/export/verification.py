@@ -1,4 +1,8 @@
-"""Verification of a written cut file: two independent readers against the plan, and the sheet that would be left."""
+"""Verification of a written cut file: two independent readers against the plan, and the sheet that would be left.
+
+An engraved name is compared by itself: it has to come back, before anything is cut, and to be clear of every cut.  All
+else is told of the cuts alone.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +21,15 @@ from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_o
 from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.jam_angle import jam_angle_of_file, matched_connectors
 from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
-from kirigami_studio.export.profile import Profile, find_profile
-from kirigami_studio.export.strokes import Stroke, extent, layer_colours, strokes_of, work_of
+from kirigami_studio.export.profile import NAME_LAYER, Profile, find_profile
+from kirigami_studio.export.strokes import Stroke, extent, layer_colours, name_strokes, strokes_of, work_of
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
 from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.copies import SAME_MM, alike, copy_numbers
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
+from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest_cut
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import Pair, joined_pairs
@@ -38,6 +43,8 @@ Reader = Callable[[Path], FileContent]
 
 #: Voids may miss being parallelograms by this much (micrometres) in a file whose connectors are all centred.
 VOID_MISS_UM = 5.0
+#: Share of its margin that a name may be nearer to a cut: the chords of arcs.
+NAME_NEARER = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,13 +191,15 @@ def _judged(
     kind: Format,
     deployment: Deployment | None,
 ) -> Verification:
+    written, contents = contents, [_cuts_of(content) for content in contents]
     sheets = _copies_read(contents[-1].strokes, plan)
     physics = file_physics(sheets[0], plan, profile)
     voids = file_voids(sheets[0], plan, profile)
     jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
     times = work_of(strokes, plan.material).times
     findings = [
-        *_agreed(contents, strokes, version, kind),
+        *_agreed(contents, [_reader_findings(content, strokes, version, kind) for content in contents]),
+        *_agreed(contents, _name_findings(written, plan, profile, kind)),
         *_physics_findings(physics, plan),
         *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
@@ -212,9 +221,8 @@ def _judged(
     )
 
 
-def _agreed(contents: Sequence[FileContent], strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
+def _agreed(contents: Sequence[FileContent], by_reader: Sequence[Sequence[Finding]]) -> list[Finding]:
     """Each finding once where all readers agree to the last digit, else once for each reader by its name."""
-    by_reader = [_reader_findings(content, strokes, version, kind) for content in contents]
     found: list[Finding] = []
     for first, *others in zip(*by_reader, strict=True):
         if all(other == first for other in others):
@@ -223,6 +231,39 @@ def _agreed(contents: Sequence[FileContent], strokes: Sequence[Stroke], version:
             readers = [content.reader for content in contents]
             found += [replace(one, reader=reader) for one, reader in zip((first, *others), readers, strict=True)]
     return found
+
+
+def _cuts_of(content: FileContent) -> FileContent:
+    """What one reader found but for an engraved name."""
+    return replace(content, strokes=tuple(stroke for stroke in content.strokes if stroke.layer != NAME_LAYER))
+
+
+def _name_findings(
+    contents: Sequence[FileContent], plan: CutPlan, profile: Profile, kind: Format
+) -> list[list[Finding]]:
+    """What each reader says of an engraved name; nothing where none was meant and none was found."""
+    meant = name_strokes(plan, profile)
+    if not meant and all(_cuts_of(content).strokes == content.strokes for content in contents):
+        return [[] for _ in contents]
+    return [[_name_finding(content, meant, plan, kind)] for content in contents]
+
+
+def _name_finding(content: FileContent, meant: Sequence[Stroke], plan: CutPlan, kind: Format) -> Finding:
+    names = [stroke for stroke in content.strokes if stroke.layer == NAME_LAYER]
+    cuts = _cuts_of(content).strokes
+    told = {"name": "" if plan.engraving is None else plan.engraving.text, "layer": NAME_LAYER}
+    looks = [(stroke.layer, stroke.colour, stroke.closed) for stroke in names]
+    same = looks == [(stroke.layer, stroke.colour, stroke.closed) for stroke in meant]
+    first = [stroke.layer for stroke in content.strokes[: len(names)]] == [NAME_LAYER] * len(names)
+    if not (names and same and first and largest_shift(names, meant) <= kind.shift_mm):
+        return Finding.judged(False, "verify.name_differs", **told)
+    traced = [stroke.travelled(MEASURED_CHORD_MM) for stroke in cuts]
+    clear = nearest_cut([stroke.points for stroke in names], traced).distance_mm if traced else math.inf
+    shared = {stroke.colour for stroke in names} & {stroke.colour for stroke in cuts}
+    if shared or clear < clearance_mm(plan.kerf_mm) - NAME_NEARER * MARGIN_MM:
+        return Finding.judged(False, "verify.name_cuts", clear_mm=clear)
+    # Rounded as it is shown, so that readers that agree in print agree.
+    return Finding.judged(True, "verify.name", **told, clear_mm=round(clear, 2))
 
 
 def _reader_findings(content: FileContent, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
@@ -456,6 +497,8 @@ def _jam_findings(jam: float | None) -> list[Finding]:
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:
     """What a person should know about this profile and version."""
     found = [profile.note] if profile.note is not None else []
+    if plan.engraving is not None and profile.name_colour is None:
+        found.append(Note.of("profile.name_left_out", name=plan.engraving.text))
     if version == "R12" and path.suffix.lower() != ".svg":
         found.append(Note.of("verify.no_unit_in_r12"))
     if profile.slots:

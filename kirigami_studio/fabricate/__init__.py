@@ -30,6 +30,8 @@ kerf
     Full width of the cut.  Paths are centre lines of the beam.
 overcut
     How far an edge cut runs over the sheet's outline, so that its mouth is open.
+engraving
+    The name of a design in single strokes on one panel; no cut, so that nothing that is told of cuts counts it.
 note, problem
     What a person should know about a plan: a code with values; a problem also has a weight and a place.
 

@@ -25,6 +25,7 @@ from kirigami_studio.fabricate.endings import seats
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
+from kirigami_studio.fabricate.lettering import Engraving
 from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -88,6 +89,8 @@ class CutPlan:
         The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
     origin : mapping of str to str
         Where the design comes from, repeated in every file of the plan; decides nothing.
+    engraving : Engraving or None
+        A name on the sheet, which is engraved before anything is cut and counts as no cut.
     """
 
     paths: tuple[CutPath, ...]
@@ -105,6 +108,7 @@ class CutPlan:
     void_miss_mm: float | None = None
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    engraving: Engraving | None = None
 
     @cached_property
     def cut_length_mm(self) -> float:

@@ -68,6 +68,7 @@ class CutPlanner(QObject):
         self._timer.timeout.connect(self._plan)
         session.display.settled.connect(self.plan_soon)
         session.fabrication_changed.connect(self.plan_soon)
+        session.document_changed.connect(self._take_name)
 
     @property
     def request(self) -> CutRequest | None:
@@ -90,6 +91,14 @@ class CutPlanner(QObject):
         """Plan the cuts of the design on the stage, unless something changes again before."""
         self._wanted = self.request
         self._timer.start()
+
+    def _take_name(self, document: Document) -> None:
+        """Plan again where the design on the sheet is called otherwise now."""
+        before, now = self._wanted, self.request
+        if before is None or now is None or before.candidate is not now.candidate:
+            return
+        if document.fabrication.engrave and before.settings == now.settings and before.name != now.name:
+            self.plan_soon()
 
     def close(self) -> None:
         """Plan no more."""

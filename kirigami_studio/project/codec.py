@@ -269,6 +269,7 @@ def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
         **({} if settings.opened_mm is None else {"opened_mm": settings.opened_mm}),
         **({} if settings.paper == NO_PAPER else {"paper": settings.paper}),
         **({"markers": True} if settings.markers else {}),
+        **({"engrave": True} if settings.engrave else {}),
         "own": None if settings.own is None else asdict(settings.own),
     }
 
@@ -295,6 +296,7 @@ def _fabrication(record: Record) -> FabricationSettings:
         dxf_version=record.text("dxf_version"),
         paper=record.text("paper") if record.holds("paper") else NO_PAPER,
         markers=record.flag("markers") if record.holds("markers") else False,
+        engrave=record.flag("engrave") if record.holds("engrave") else False,
         own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
     )
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.material import Material, find_material, library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -22,6 +23,7 @@ def plan_of(
     settings: FabricationSettings,
     deployment: Deployment | None = None,
     cancel: Callable[[], bool] = lambda: False,
+    name: str = "",
 ) -> CutPlan:
     """Plan the cuts of a design; a trimmed one gets its trimmed outline.
 
@@ -33,6 +35,8 @@ def plan_of(
         Of the candidate's final sheet, if it is known already.
     cancel : function
         Asked between the steps of planning.
+    name : str
+        What the design is called, which the sheet gets engraved if the settings say so.
 
     Raises
     ------
@@ -43,7 +47,8 @@ def plan_of(
     """
     trim = candidate.trim
     kept = None if trim is None else trim.kept
-    return plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
+    plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
+    return engraved(plan, name) if settings.engrave and name else plan
 
 
 def plan_sheet(

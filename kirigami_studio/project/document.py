@@ -142,3 +142,8 @@ class Document:
         if found is None and candidate in self.candidates:
             found = self.candidates.index(candidate)
         return None if found is None else self.labels[found]
+
+    def name_of(self, candidate: Candidate) -> str:
+        """What a design is called; one that is not among the candidates stands for the chosen one, "" without any."""
+        label = self.label_of(candidate) or self.label
+        return "" if label is None else label.text

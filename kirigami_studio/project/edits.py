@@ -70,6 +70,7 @@ class FabricationChange(TypedDict, total=False):
     dxf_version: str
     paper: str
     markers: bool
+    engrave: bool
 
 
 class OptionsChange(TypedDict, total=False):
@@ -123,6 +124,7 @@ _LABELS = {
     "dxf_version": mark("Change the DXF version"),
     "paper": mark("Change the paper of PDFs"),
     "markers": mark("Change the connector markers"),
+    "engrave": mark("Change the engraving of the name"),
     "style": mark("Change the connector style"),
     "order": mark("Change the cutting order"),
     "tabs": mark("Change the number of tabs"),

@@ -124,6 +124,8 @@ class FabricationSettings:
         Key of the paper that PDFs are spread over; "none" for one page as large as the sheet.
     markers : bool
         Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
+    engrave : bool
+        Whether the design's name is engraved on the sheet.
     opened_mm : float or None
         Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
     own : Material or None
@@ -145,6 +147,7 @@ class FabricationSettings:
     dxf_version: str = "R2010"
     paper: str = NO_PAPER
     markers: bool = False
+    engrave: bool = False
     opened_mm: float | None = None
     own: Material | None = field(default=None, compare=False)
 
@@ -157,6 +160,8 @@ class FabricationSettings:
         _check_name("settings.paper_not_a_name", self.paper)
         if not isinstance(self.markers, bool):
             raise UsageError("settings.markers_not_true_or_false", value=self.markers)
+        if not isinstance(self.engrave, bool):
+            raise UsageError("settings.engrave_not_true_or_false", value=self.engrave)
         for code, value, zero_allowed in (
             ("settings.opened_size", self.opened_mm, False),
             ("settings.connector_width", self.connector_mm, False),

@@ -18,6 +18,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Import all files of the folder at one origin, so that their registration marks (layer REGISTRATION) lie upon "
         "each other, and cut them in the order of their numbers. The marks need not be cut."
     ),
+    "profile.name_left_out": mark(
+        "The name {name!r} is not in this file: with this machine profile, everything in a file is cut."
+    ),
     "profile.kerf_is_theirs": mark(
         "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
     ),
@@ -32,6 +35,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "paper.too_many_pages": mark("This sheet would need {pages} pages of {paper}. Choose one large page."),
     "lightburn.open_cuts_only": mark(
         "A LightBurn project holds open cuts, not slots. Write DXF or SVG for a cutting service."
+    ),
+    "lightburn.name_power": mark(
+        "The name is engraved in one pass at {percent:g} % of the power that cuts: try it on a scrap first."
     ),
     "lightburn.no_power": mark("The material {material!r} has no power: set it in LightBurn before cutting."),
     "gif.too_few_frames": mark("An animation needs at least 2 frames, got {frames}."),
@@ -245,6 +251,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
             "x = {x:.2f}, y = {y:.2f} mm. Make sure that they are meant."
         ),
     ),
+    "cut_file.name_differs": mark(
+        "The file promises a name engraved in {promised:.20} lines on layer {layer}, and has {count} there. Export it "
+        "again."
+    ),
+    "cut_file.name_cuts": mark(
+        "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
+    ),
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
     ),
@@ -292,6 +305,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.pieces": (
         mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece."),
         mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces."),
+    ),
+    "verify.name": mark(
+        "The name {name!r} is engraved first, on layer {layer}, {clear_mm:.2f} mm from the nearest cut; it counts as no "
+        "cut."
+    ),
+    "verify.name_differs": mark(
+        "The file should engrave the name {name!r} on layer {layer}, before anything is cut, and does not. Export again."
+    ),
+    "verify.name_cuts": mark(
+        "The engraved name comes within {clear_mm:.3f} mm of a cut, or has its colour. Export again."
     ),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."

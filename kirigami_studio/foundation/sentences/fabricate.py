@@ -228,6 +228,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Switch joining off when importing."
     ),
     # What a check of a plan finds
+    "plan.name_without_room": mark(
+        "The name {name!r} is not engraved: no whole panel has room for letters of {least_mm:g} mm."
+    ),
+    "plan.name_without_letters": mark("The name {name!r} is not engraved: the engraving font has none of its letters."),
+    "plan.name_letters_left_out": mark(
+        "The name {name!r} is engraved without {letters}: the engraving font has no such letters."
+    ),
     "plan.refused": mark("{reason}"),
     "plan.nothing_left": mark("Nothing is left of the sheet with a kerf of {kerf_mm:g} mm. Use a smaller kerf."),
     "plan.falls_apart": mark(

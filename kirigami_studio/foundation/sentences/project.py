@@ -87,6 +87,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.profile_not_a_name": mark("The machine profile must be a name, got {value!r:.40}."),
     "settings.dxf_version_not_a_name": mark("The DXF version must be a name, got {value!r:.40}."),
     "settings.paper_not_a_name": mark("The paper must be a name, got {value!r:.40}."),
+    "settings.engrave_not_true_or_false": mark("Engraving the name is on or off (true or false), got {value!r:.40}."),
     "settings.markers_not_true_or_false": mark("Connector markers are on or off (true or false), got {value!r:.40}."),
     "settings.connector_width": mark(
         "The connector width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."

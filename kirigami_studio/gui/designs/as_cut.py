@@ -63,6 +63,7 @@ def one_sheet(settings: FabricationSettings) -> FabricationSettings:
         dxf_version=plain.dxf_version,
         paper=plain.paper,
         markers=plain.markers,
+        engrave=plain.engrave,
     )
 
 

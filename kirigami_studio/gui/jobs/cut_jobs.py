@@ -136,6 +136,11 @@ class CutRequest:
     artwork: Artwork | None = None
     document: Document | None = None
 
+    @property
+    def name(self) -> str:
+        """What the design is called, "" where nobody knows."""
+        return "" if self.document is None else self.document.name_of(self.candidate)
+
 
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
@@ -149,7 +154,7 @@ def planned(request: CutRequest, cancel: Cancel) -> Planned:
     from kirigami_studio.project.cutting import plan_of
 
     trim = request.candidate.trim
-    plan = plan_of(request.candidate, request.settings, request.deployment, cancel)
+    plan = plan_of(request.candidate, request.settings, request.deployment, cancel, request.name)
     report = check_plan(plan, phi=request.candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share

@@ -58,6 +58,7 @@ class Palette:
     slits: str
     edge_slits: str
     relief: str
+    engraved: str
     current_cut: str
     widths: tuple[str, ...]
     diverging: tuple[str, ...]
@@ -122,6 +123,7 @@ LIGHT = Palette(
     slits="#0064a6",
     edge_slits="#c95000",
     relief="#008a66",
+    engraved="#b0126a",
     current_cut="#ffb000",
     widths=("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
     diverging=("#08407e", "#5a9bd5", "#f3f1ec", "#eb9a4a", "#a34300"),
@@ -162,6 +164,7 @@ DARK = Palette(
     slits="#56b4e9",
     edge_slits="#f09a3e",
     relief="#2fc79d",
+    engraved="#ff8cc6",
     current_cut="#ffe14d",
     widths=("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
     diverging=("#8fcbff", "#2f7fc4", "#262a30", "#c46a16", "#ffbe78"),

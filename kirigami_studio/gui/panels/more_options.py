@@ -116,6 +116,14 @@ class MoreOptions(QWidget):
         self.markers.setToolTip(
             tr("Mark connectors in LightBurn projects, on a tool layer: MeerK40t would engrave it.")
         )
+        self.engrave = QCheckBox(tr("Engrave the name"))
+        self.engrave.setObjectName("engraveName")
+        self.engrave.setToolTip(
+            tr(
+                "Engrave the design's name on one panel, before the cuts and on a layer of its own. Times and lengths "
+                "do not count it."
+            )
+        )
         self.rows = ElidedLabel()
         self.rows.setObjectName("muted")
         self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
@@ -141,7 +149,11 @@ class MoreOptions(QWidget):
         table.addLayout(captioned(tr("Gap, mm"), self.copy_gap, self.copy_gap), 3, 1)
         table.addWidget(self.rows, 3, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
         table.addLayout(captioned(tr("PDF pages"), self.paper, self.paper), 4, 0, 1, 2)
-        table.addWidget(self.markers, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
+        marks = QVBoxLayout()
+        marks.setSpacing(4)
+        marks.addWidget(self.engrave)
+        marks.addWidget(self.markers)
+        table.addLayout(marks, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
         for column in range(4):
             table.setColumnStretch(column, 1)
         whole = QVBoxLayout(self)
@@ -155,6 +167,7 @@ class MoreOptions(QWidget):
         for name, box in (("style", self.style_), ("order", self.order)):
             box.activated.connect(lambda _, name=name, box=box: self.options_changed.emit({name: box.currentData()}))
         self.markers.clicked.connect(lambda on: self.changed.emit({"markers": on}))
+        self.engrave.clicked.connect(lambda on: self.changed.emit({"engrave": on}))
         for name, box in (("profile", self.profile), ("dxf_version", self.dxf_version), ("paper", self.paper)):
             box.activated.connect(lambda _, name=name, box=box: self.changed.emit({name: box.currentData()}))
         self.tabs.valueChanged.connect(lambda value: self.options_changed.emit({"tabs": value}))
@@ -183,6 +196,7 @@ class MoreOptions(QWidget):
             self.tab_mm.setValue(options.tab_mm)
         self.tab_mm.setEnabled(options.tabs > 0)
         self.markers.setChecked(settings.markers)
+        self.engrave.setChecked(settings.engrave)
         with QSignalBlocker(self.copies), QSignalBlocker(self.copy_gap):
             self.copies.setValue(options.copies)
             self.copy_gap.setValue(options.copy_gap_mm)

@@ -49,6 +49,14 @@ class CutDrawing:
         return tuple(line_path(path.points, path.closed) for path in self.plan.paths)
 
     @cached_property
+    def name(self) -> QPainterPath:
+        """The strokes of the engraved name."""
+        whole = QPainterPath()
+        for line in () if self.plan.engraving is None else self.plan.engraving.lines:
+            whole.addPath(line_path(line, closed=False))
+        return whole
+
+    @cached_property
     def largest_arc(self) -> float:
         """How far an arc of the plan lies beside its chord at most, mm."""
         arcs = [(path, path.bulges) for path in self.plan.paths if path.bulges is not None]
@@ -154,6 +162,20 @@ def paint_cuts(
     if 0 < step < last:
         painter.setPen(round_pen(palette.current_cut, width + 3.0 / transform.scale))
         painter.drawPath(drawing.cuts[step - 1])
+    painter.restore()
+
+
+def paint_name(painter: QPainter, drawing: CutDrawing, transform: ViewTransform, palette: Palette) -> None:
+    """Draw the engraved name, fainter on the copies of the sheet."""
+    if drawing.name.isEmpty():
+        return
+    with_transform(painter, transform)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(round_pen(palette.engraved, drawing.pen_width(transform) / transform.scale))
+    for copy, (x, y) in enumerate(drawing.plan.copies.places.tolist()):
+        painter.setOpacity(COPY_OPACITY if copy else 1.0)
+        painter.drawPath(drawing.name.translated(x, y))
+    painter.setOpacity(1.0)
     painter.restore()
 
 

@@ -18,6 +18,7 @@ from kirigami_studio.gui.scene.cut_items import (
     layer_colour,
     paint_cut_sheet,
     paint_cuts,
+    paint_name,
     paint_start,
     paint_travel,
 )
@@ -142,6 +143,7 @@ class CutView(Canvas):
             return
         paint_cut_sheet(painter, self._drawing, transform, self.palette_)
         paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
+        paint_name(painter, self._drawing, transform, self.palette_)
         if CutOverlay.TRAVEL in self._overlays:
             paint_travel(painter, self._drawing, transform, self.palette_, self._step)
         if CutOverlay.CONNECTORS in self._overlays and self.rendering:
@@ -214,6 +216,8 @@ class CutView(Canvas):
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
         chips = [Chip((layer_colour(layer, self.palette_),), tr(LAYER_NAMES[layer])) for layer in layers]
+        if not self._drawing.name.isEmpty():
+            chips.append(Chip((self.palette_.engraved,), tr("engraved name")))
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             if self._connectors.varied:

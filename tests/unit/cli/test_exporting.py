@@ -20,7 +20,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.project.store import save
+from kirigami_studio.project.store import load, save
 
 
 @pytest.fixture
@@ -153,6 +153,51 @@ def test_that_the_project_chooses_the_version_unless_told(
     for more, release in (([], "R2010"), (["--dxf-version", "R12"], "R12")):
         assert run(capsys, "export", project, "--out", tmp_path / "x.dxf", *more)[0] == 0
         assert ezdxf.readfile(tmp_path / "x.dxf").acad_release == release
+
+
+def test_that_a_name_is_engraved_on_request_and_the_file_carries_it(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    def report(*options: object) -> dict[str, object]:
+        code, out, _ = run(capsys, "export", project, "--out", tmp_path / "cut.dxf", *options, "--json")
+        assert code == 0
+        found: dict[str, object] = json.loads(out)
+        return found
+
+    def layers() -> list[str]:
+        return [entity.dxf.layer for entity in ezdxf.readfile(tmp_path / "cut.dxf").modelspace()]
+
+    bare = report()
+    plain = (tmp_path / "cut.dxf").read_bytes()
+    assert "engraved" not in bare and "NAME" not in layers()
+    for options, text in ((["--engrave"], "A1"), (["--engrave", "For Ada"], "For Ada")):
+        named = report(*options)
+        assert named["engraved"]["text"] == text and layers()[0] == "NAME"  # type: ignore[index]
+        told = ("cut_length_mm", "travel_mm", "seconds_estimate", "pieces", "min_connector_mm", "jam_deg", "ok")
+        assert [named[key] for key in told] == [bare[key] for key in told]
+        carried = load(tmp_path / "cut.dxf")
+        assert carried.fabrication.engrave and carried.labels[0].text == text
+        save(carried, tmp_path / "carried.kiri")
+        judged = run(capsys, "check", tmp_path / "cut.dxf", "--design", tmp_path / "carried.kiri", "--json")[1]
+        assert json.loads(judged)["problems"] == []
+        assert json.loads(judged)["verdict"]["problems"] == bare["verdict"]["problems"]  # type: ignore[index]
+    report("--no-engrave")
+    assert (tmp_path / "cut.dxf").read_bytes() == plain
+    code, out, _ = run(
+        capsys, "export", tmp_path / "carried.kiri", "--out", tmp_path / "x.svg", "--no-engrave", "--json"
+    )
+    assert code == 0 and "engraved" not in json.loads(out) and 'id="NAME"' not in (tmp_path / "x.svg").read_text()
+
+
+def test_that_a_name_without_room_or_too_long_is_told(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    long = "A name that is much too long for it"
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "cut.dxf", "--engrave", long, "--json")
+    told = json.loads(out)
+    assert code == 0 and "engraved" not in told and any("no whole panel has room" in text for text in told["warnings"])
+    code, _, err = run(capsys, "export", project, "--out", tmp_path / "no.dxf", "--engrave", "x" * 41)
+    assert code == 1 and len(err.splitlines()) == 1 and not (tmp_path / "no.dxf").exists()
 
 
 def test_that_copies_fill_one_file_and_are_told(

@@ -1,0 +1,113 @@
+"""Text as single strokes, the way a beam or a pen writes it: open lines instead of outlines of letters.
+
+The letters are those of the Hershey Simplex font (``resources/lettering``, where its makers are named), with the marks
+of accented ones drawn on top.  A letter that has no strokes is left out, and told.
+"""
+
+from __future__ import annotations
+
+import json
+import unicodedata
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.resources import resource
+
+#: Room between a letter and its mark, in heights of a capital.
+MARK_GAP = 0.14
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lettering:
+    """A line of text.
+
+    Attributes
+    ----------
+    text : str
+        Without the letters that have no strokes.
+    missing : str
+        Those letters, each once, in their order.
+    lines : tuple of (P, 2) float, heights of a capital
+        Open strokes in the order of writing, y up from the base line.
+    """
+
+    text: str
+    missing: str
+    lines: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Engraving:
+    """A name where it is engraved.
+
+    Attributes
+    ----------
+    text : str
+    height_mm : float
+        Of its capitals.
+    panel : int
+        Row by row.
+    lines : tuple of (P, 2) float, mm
+        Open strokes in the frame of the plan, in the order of writing.
+    """
+
+    text: str
+    height_mm: float
+    panel: int
+    lines: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Font:
+    """Strokes of letters and marks, in heights of a capital; marks are centred at x = 0 and count y from their foot."""
+
+    advance: Mapping[str, float]
+    letters: Mapping[str, tuple[FloatArray, ...]]
+    marks: Mapping[str, tuple[FloatArray, ...]]
+
+
+def lettered(text: str) -> Lettering:
+    """Write a text in one line; letters with a mark that is not known are written without it."""
+    font = _font()
+    lines: list[FloatArray] = []
+    written, missing, x = "", "", 0.0
+    for letter in unicodedata.normalize("NFC", text):
+        apart = unicodedata.normalize("NFD", letter)
+        basic, marks = apart[0], apart[1:]
+        for part in (basic,) if basic in font.letters else basic.casefold():
+            if part not in font.letters:
+                missing += "" if letter in missing else letter
+                break
+            strokes = font.letters[part]
+            over = [stroke for mark in marks for stroke in _over(strokes, font.marks.get(mark, ()))]
+            lines += [np.add(stroke, (x, 0.0)) for stroke in (*strokes, *over)]
+            x += font.advance[part]
+        else:
+            written += letter
+    return Lettering(written, missing, tuple(lines))
+
+
+def _over(strokes: Sequence[FloatArray], mark: Sequence[FloatArray]) -> list[FloatArray]:
+    """A mark over the middle of a letter."""
+    points = np.concatenate(strokes)
+    middle = 0.5 * (points[:, 0].min() + points[:, 0].max())
+    return [np.add(stroke, (middle, points[:, 1].max() + MARK_GAP)) for stroke in mark]
+
+
+@cache
+def _font() -> _Font:
+    table = json.loads(resource("lettering", "hershey-simplex.json").read_text(encoding="utf-8"))
+    unit = float(table["cap_height"])
+
+    def scaled(strokes: Sequence[Sequence[Sequence[float]]]) -> tuple[FloatArray, ...]:
+        return tuple(np.array(stroke, dtype=np.float64) / unit for stroke in strokes)
+
+    return _Font(
+        advance={letter: glyph["advance"] / unit for letter, glyph in table["glyphs"].items()},
+        letters={letter: scaled(glyph["strokes"]) for letter, glyph in table["glyphs"].items()},
+        marks={mark: scaled(strokes) for mark, strokes in table["marks"].items()},
+    )
