@@ -369,7 +369,9 @@ class StateSheet(BoardStates):
         click(window.stage.hand)
 
     def cuts(self) -> None:
-        """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options."""
+        """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options and
+        the name engraved.
+        """
         stage, fabrication = self.window.stage, self.window.fabrication
         page, history = stage.cuts, self.window.controller.history
         click(stage.cuts_switch)
@@ -393,6 +395,13 @@ class StateSheet(BoardStates):
         click(stage.cuts_switch)
         fabrication.options.fold.setChecked(True)
         self.all_sizes("options")
+        click(fabrication.options.engrave)
+        self.until(lambda: page.view.shows_name, "the name was not engraved")
+        click(stage.cuts_switch)
+        self.all_sizes("cuts-name")
+        click(stage.cuts_switch)
+        self.window.commands["undo"].trigger()
+        self.until(lambda: not page.view.shows_name, "undo did not take the name off")
         fabrication.options.fold.setChecked(False)
 
     def exported(self) -> None:

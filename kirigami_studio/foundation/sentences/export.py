@@ -307,11 +307,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces."),
     ),
     "verify.name": mark(
-        "The name {name!r} is engraved first, on layer {layer}, {clear_mm:.2f} mm from the nearest cut; it counts as no "
-        "cut."
+        "The name {name!r} is engraved first, on layer {layer}, {clear_mm:.2f} mm from the nearest cut; it counts as "
+        "no cut."
     ),
     "verify.name_differs": mark(
-        "The file should engrave the name {name!r} on layer {layer}, before anything is cut, and does not. Export again."
+        "The file should engrave the name {name!r} on layer {layer}, before anything is cut, and does not. Export "
+        "again."
     ),
     "verify.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut, or has its colour. Export again."

@@ -96,6 +96,11 @@ class CutView(Canvas):
         """Numbers of the selected connectors."""
         return self.gestures.selected
 
+    @property
+    def shows_name(self) -> bool:
+        """Whether a name is engraved on the sheet."""
+        return self._drawing is not None and not self._drawing.name.isEmpty()
+
     def show_plan(self, plan: CutPlan | None, problems: tuple[Problem, ...]) -> None:
         """Show another plan, all cut; None shows the empty state."""
         self._drawing = None if plan is None else CutDrawing(plan)
@@ -216,7 +221,7 @@ class CutView(Canvas):
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
         chips = [Chip((layer_colour(layer, self.palette_),), tr(LAYER_NAMES[layer])) for layer in layers]
-        if not self._drawing.name.isEmpty():
+        if self.shows_name:
             chips.append(Chip((self.palette_.engraved,), tr("engraved name")))
         if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
             low, high = self._connectors.span_mm

@@ -262,6 +262,27 @@ def test_that_all_choices_about_the_cuts_come_back(document: Document, tmp_path:
     assert store.load(tmp_path / "cut.kiri").fabrication == settings
 
 
+def test_that_engraving_the_name_is_kept_and_projects_without_it_are_as_before(
+    document: Document, tmp_path: Path
+) -> None:
+    def fabrication(of: Document) -> dict[str, object]:
+        found: dict[str, object] = json.loads(members_of(of)["design.json"])["fabrication"]
+        return found
+
+    named = replace(document, fabrication=replace(document.fabrication, engrave=True))
+    assert fabrication(named) == {**fabrication(document), "engrave": True}
+    assert "engrave" not in fabrication(document)
+    store.save(named, tmp_path / "named.kiri")
+    assert store.load(tmp_path / "named.kiri").fabrication.engrave
+    assert not store.load(PROJECTS / "format_1.kiri").fabrication.engrave
+    members = members_of(document)
+    design = json.loads(members["design.json"])
+    design["fabrication"]["engrave"] = "loudly"
+    odd = write_members(tmp_path / "odd.kiri", {**members, "design.json": json.dumps(design).encode()})
+    with pytest.raises(ProjectError, match="true or false"):
+        store.load(odd)
+
+
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [
