@@ -7,9 +7,10 @@ from functools import partial
 import numpy as np
 from PIL import Image, ImageDraw
 from PySide6.QtCore import QPointF, QSize
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QPushButton
 
 from kirigami_studio.demonstrations.offscreen_session import Session, SessionError, click
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.sketching.point_tool import PointTool
 from kirigami_studio.gui.sketching.sketch_context import Change, PointerEvent
@@ -65,6 +66,7 @@ class BoardStates(Session):
         draw.ellipse((90, 60, 310, 240), fill=60)
         draw.ellipse((40, 110, 150, 190), fill=150)
         page.save(path)
+        self.window.controller.targeting.clear()  # what was drawn is not replaced without a question
         self.window.controller.targeting.open(str(path))
         self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
 
@@ -115,8 +117,19 @@ class BoardStates(Session):
         reshaping.take(Change("Draw shapes", lambda: Drawing(tuple(shapes), frozenset({0, 1}))))
         target.set_tool(Tool.POSE)
         self.all_sizes("editor-objects")
+        self.replacing()
         target.view.context.arrange("largest")
         reshaping.take(Change("Draw rectangle", lambda: Drawing((shapes[0],))))
+
+    def replacing(self) -> None:
+        """A star was opened while the board holds several objects: the question, and the star beside them."""
+        messages = self.window.messages
+        self.window.controller.targeting.open("star")
+        self.until(lambda: any(message.actions for message in messages.messages), "the window did not ask")
+        self.all_sizes("replace-question")
+        click(next(button for button in messages.findChildren(QPushButton) if button.text() == tr("Add beside")))
+        self.all_sizes("added-beside")
+        self.window.commands["undo"].trigger()
 
     def points_and_mirror(self) -> None:
         """Selected points with their handles, a selection box, and a shape that is mirrored as it is drawn."""

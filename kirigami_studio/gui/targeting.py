@@ -6,6 +6,7 @@ import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
+from enum import Enum
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
@@ -113,13 +114,21 @@ class PictureTracer(QObject):
             self.settled.emit()
 
 
+class Occasion(Enum):
+    """Why a target is read: the program starts with it, a person wants it, or other parts of the present one."""
+
+    START = "start"
+    WANTED = "wanted"
+    AGAIN = "again"
+
+
 class TargetReader(QObject):
     """Reads one target at a time and registers the picture or drawing that it came from.
 
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
     """
 
-    read = Signal(Outline, bool)  #: whether it is the first target of the session
+    read = Signal(Outline, Occasion)
     choice_wanted = Signal(PartsRead)
     design_read = Signal(Document, str)  #: that a cut file came from, and the file
     failed = Signal(str, str)  #: sentence, trace
@@ -129,18 +138,18 @@ class TargetReader(QObject):
         self._tracer = tracer
         self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
         self._drawings: OrderedDict[Outline, str] = OrderedDict()
-        self._asked = ("", False)
+        self._asked = ("", Occasion.WANTED)
         self.source = ""  #: of the target that was read last
 
-    def start(self, source: str, first: bool) -> None:
+    def start(self, source: str, occasion: Occasion) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._start(source, first, partial(reading_source, source))
+        self._start(source, occasion, partial(reading_source, source))
 
     def choose_again(self, outline: Outline) -> None:
         """Read the drawing again that an outline came from, and ask for its parts."""
         source = self.drawing_of(outline)
         if source:
-            self._start(source, False, partial(reading_parts, source))
+            self._start(source, Occasion.AGAIN, partial(reading_parts, source))
 
     def drawing_of(self, outline: Outline | None) -> str:
         """The drawing that an outline was read from, "" for none."""
@@ -148,30 +157,30 @@ class TargetReader(QObject):
 
     def take_chosen(self, outline: Outline, usual: bool) -> None:
         """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
-        source, first = self._asked
+        source, occasion = self._asked
         if usual and Path(source).suffix.lower() in PICTURES:
-            self._start(source, first, partial(reading_target, source))
+            self._start(source, occasion, partial(reading_target, source))
             return
         self._finish(*self._asked, TargetRead(outline))
 
-    def _start(self, source: str, first: bool, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
-        callbacks = JobCallbacks(partial(self._take, source, first), on_failed=self.failed.emit)
+    def _start(self, source: str, occasion: Occasion, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
+        callbacks = JobCallbacks(partial(self._take, source, occasion), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, first: bool, found: TargetRead | PartsRead | DesignRead) -> None:
+    def _take(self, source: str, occasion: Occasion, found: TargetRead | PartsRead | DesignRead) -> None:
         if isinstance(found, PartsRead):
-            self._asked = (source, first)
+            self._asked = (source, occasion)
             self.choice_wanted.emit(found)
         elif isinstance(found, DesignRead):
             self.design_read.emit(found.document, source)
         else:
-            self._finish(source, first, found)
+            self._finish(source, occasion, found)
 
-    def _finish(self, source: str, first: bool, found: TargetRead) -> None:
+    def _finish(self, source: str, occasion: Occasion, found: TargetRead) -> None:
         if Path(source).suffix.lower() in PART_READERS:
             self._drawings[found.outline] = source
             while len(self._drawings) > CAPACITY:
@@ -179,7 +188,7 @@ class TargetReader(QObject):
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
-        self.read.emit(found.outline, first)
+        self.read.emit(found.outline, occasion)
 
 
 class Wish(Generic[T]):
@@ -287,6 +296,7 @@ class Targeting(QObject):
     adjusted = Signal(Edit)  #: by a step of a threshold's drag
     begun = Signal(Document)  #: that the history is to start from
     source_read = Signal(str)  #: where a target was read from
+    question_wanted = Signal(Outline)  #: it would take the place of what was drawn by hand
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
@@ -304,10 +314,10 @@ class Targeting(QObject):
         self.reader.stop()
         self.tracer.stop()
 
-    def open(self, source: str, first: bool = False) -> None:
+    def open(self, source: str, occasion: Occasion = Occasion.WANTED) -> None:
         """Read a file, or a silhouette of the library by name."""
         self._session.set_status(tr("Reading {name} …", name=Path(source).name))
-        self.reader.start(source, first)
+        self.reader.start(source, occasion)
 
     def choose_parts(self) -> None:
         """Ask again for the parts of the drawing that the target was read from."""
@@ -321,7 +331,7 @@ class Targeting(QObject):
 
     def start_with(self, source: str) -> None:
         """Read the first target; in an untouched project it is where the history starts, no change to be undone."""
-        self.open(source, first=True)
+        self.open(source, Occasion.START)
 
     def change_threshold(self, threshold: float | None) -> None:
         """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
@@ -345,14 +355,23 @@ class Targeting(QObject):
         self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
-    def _take_read(self, outline: Outline, first: bool) -> None:
+    def _take_read(self, outline: Outline, occasion: Occasion) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
-        if first and untouched:
+        if occasion is Occasion.START and untouched:
             self.begun.emit(replace(document, target=outline))
+            self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
+            self._session.set_status(said)
+        elif document.drawing or (document.drawn_by_hand and occasion is not Occasion.AGAIN):
+            self._session.set_status(tr("Read {name}. Nothing has changed yet.", name=tr(outline.name)))
+            self.question_wanted.emit(outline)
         else:
-            self.replaced.emit(edits.set_target(document, outline))
-            said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
+            self.set_target(outline)
+
+    def set_target(self, outline: Outline) -> None:
+        """Take a target that was read in the place of the present one."""
+        self.replaced.emit(edits.set_target(self._session.document, outline))
         self.source_read.emit(self.reader.source)
+        said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
         self._session.set_status(said)

@@ -18,11 +18,15 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.combining import SNAP, Combine, combined
 from kirigami_studio.outlines.contour import as_contour, tidy
 from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed
 from kirigami_studio.outlines.placed import Placed
 
 #: How far a copy lies beside what it was made of, mm.
 COPY_SHIFT = (5.0, -5.0)
+#: How far an outline that is added lies beside the other objects, and how long it is where its size is not known: shares
+#: of their longer side.
+BESIDE, HALF = 0.08, 0.5
 BRIDGE = "bridge"
 
 
@@ -166,6 +170,20 @@ class Drawing:
         """Objects on top of the others, selected."""
         count = len(self.objects)
         return Drawing((*self.objects, *made), frozenset(range(count, count + len(made))))
+
+    def beside(self, outline: Outline) -> Drawing:
+        """An outline as one more object, on the right of the others: in its own size where that is known in mm, else half
+        as long as they are.
+        """
+        low, high = self.box(range(len(self.objects)))
+        length = float(np.max(high - low))
+        made = Placed.on_board(replace(outline, place=None))
+        if outline.size is None or outline.unit != "mm":
+            made = made.enlarged(HALF * length / max(made.size), (0.0, 0.0))
+        own_low, own_high = made.ring.min(axis=0), made.ring.max(axis=0)
+        x = float(high[0] - own_low[0]) + BESIDE * length
+        y = 0.5 * float(np.sum((low, high), axis=0)[1] - np.sum((own_low, own_high), axis=0)[1])
+        return self.added(made.moved((x, y)))
 
     def changed(self, change: Callable[[Placed], Placed]) -> Drawing:
         """Each selected object changed."""

@@ -122,6 +122,11 @@ class Document:
         object.__setattr__(self, "labels", labels)
 
     @property
+    def drawn_by_hand(self) -> bool:
+        """Whether the target holds work of the drawing board: several objects, or one that was drawn or changed there."""
+        return bool(self.drawing) or (self.target is not None and self.target.place is not None)
+
+    @property
     def candidate(self) -> Candidate | None:
         """The chosen candidate, or None."""
         return None if self.chosen is None else self.candidates[self.chosen]

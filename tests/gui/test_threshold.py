@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.jobs.target_jobs import reading_target
@@ -139,6 +139,8 @@ def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_tar
     assert traced.target.view.underlay is not None and not traced.target.threshold.isVisible()
     shown = traced.target.view.grab().toImage()
     traced.controller.targeting.open("heart")
+    until(lambda: bool(traced.messages.messages))  # it was smoothed by hand: the window asks
+    next(button for button in traced.messages.findChildren(QPushButton) if button.text() == "Replace").click()
     until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
     assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown
 

@@ -4,16 +4,21 @@ second target.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.reshaping import TargetReshaper
+from kirigami_studio.gui.sketching.sketch_context import Change
+from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import Document
 
@@ -29,6 +34,8 @@ class TargetConnections(QObject):
         self._window = window
         self._controller = controller
         self._errors: list[Message] = []
+        self._question: Message | None = None
+        self._asked_in = 0  # which project the question is about
         self._shown = Document()
         self.reshaping = TargetReshaper(window.target.view.context, controller.session, self)
         self.discarded = DiscardedDesigns(controller.session, self)
@@ -52,6 +59,7 @@ class TargetConnections(QObject):
         targeting.reader.choice_wanted.connect(window.dialogs.show_parts)
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)
+        targeting.question_wanted.connect(self._ask)
 
     def _connect_board(self) -> None:
         window, controller, reshaping = self._window, self._controller, self.reshaping
@@ -77,6 +85,41 @@ class TargetConnections(QObject):
         """A file could not be read as a target; the message stays until there is another target."""
         self._errors.append(Message(sentence, Tone.ERROR, trace))
 
+    def _ask(self, outline: Outline) -> None:
+        """A target was read while there is one that was drawn by hand: what is to become of that is for its owner to say."""
+        self._drop_question()
+        session, name = self._controller.session, tr(outline.name)
+        if session.document.drawing:
+            sentence = tr(
+                "The drawing board holds several objects. Replace them with {name}, or add it beside them?", name=name
+            )
+        else:
+            sentence = tr(
+                "You drew or changed the target by hand. Replace it with {name}, or add that beside it?", name=name
+            )
+        actions = (
+            (tr("Replace"), partial(self._controller.targeting.set_target, outline)),
+            (tr("Add beside"), partial(self._add_beside, outline)),
+            (tr("Cancel"), lambda: session.set_status(tr("Nothing changed."))),
+        )
+        self._question, self._asked_in = Message(sentence, Tone.WARNING, actions=actions), session.project
+        session.post(self._question)
+
+    def _drop_question(self) -> None:
+        if self._question is not None:
+            self._window.messages.drop(self._question)
+            self._question = None
+
+    def _add_beside(self, outline: Outline) -> None:
+        """Lay a target that was read on the board as one more object, selected, to be moved where it belongs."""
+        targeting, panel = self._controller.targeting, self._window.target
+        drawing = panel.view.context.drawing
+        self.reshaping.take(Change(tr("Add {name} beside", name=tr(outline.name)), lambda: drawing.beside(outline)))
+        targeting.source_read.emit(targeting.reader.source)
+        panel.set_editing(True)
+        panel.set_tool(Tool.POSE)
+        panel.view.fit()
+
     def _drop_errors(self) -> None:
         for error in self._errors:
             self._window.messages.drop(error)
@@ -88,6 +131,8 @@ class TargetConnections(QObject):
 
     def _show_document(self, document: Document) -> None:
         before, self._shown = self._shown, document
+        if not document.drawn_by_hand or self._asked_in != self._controller.session.project:
+            self._drop_question()
         if document.target is not before.target or document.drawing != before.drawing or _moved(document, before):
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:
