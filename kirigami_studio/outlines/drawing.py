@@ -24,10 +24,13 @@ from kirigami_studio.outlines.placed import Placed
 
 #: How far a copy lies beside what it was made of, mm.
 COPY_SHIFT = (5.0, -5.0)
-#: How far an outline that is added lies beside the other objects, and how long it is where its size is not known: shares
-#: of their longer side.
+#: How far an outline that is added lies beside the other objects, and how long it is where its size is not known:
+#: shares of their longer side.
 BESIDE, HALF = 0.08, 0.5
 BRIDGE = "bridge"
+#: Where guides of a drawing board lie, mm: x of the upright ones, y of the level ones.
+Guides = tuple[tuple[float, ...], tuple[float, ...]]
+NO_GUIDES: Guides = ((), ())
 
 
 class Order(Enum):
@@ -172,8 +175,8 @@ class Drawing:
         return Drawing((*self.objects, *made), frozenset(range(count, count + len(made))))
 
     def beside(self, outline: Outline) -> Drawing:
-        """An outline as one more object, on the right of the others: in its own size where that is known in mm, else half
-        as long as they are.
+        """An outline as one more object on the right of the others: in its own size where that is known in mm, else
+        half as long as they are.
         """
         low, high = self.box(range(len(self.objects)))
         length = float(np.max(high - low))

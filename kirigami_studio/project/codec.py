@@ -27,6 +27,7 @@ from kirigami_studio.lattice.deployment import check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import rim_json, sheet_json, sheet_of_json
+from kirigami_studio.outlines.drawing import NO_GUIDES, Guides
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
@@ -51,6 +52,7 @@ def encode(document: Document) -> dict[str, bytes]:
         "settings": _settings_json(document.settings, seconds),
         # Not there for a target that is one object, so that such projects stay as they were.
         **({"drawing": [_outline_json(entry) for entry in document.drawing]} if document.drawing else {}),
+        **({} if document.guides == NO_GUIDES else {"guides": dict(zip("xy", document.guides, strict=True))}),
         "fabrication": _fabrication_json(document.fabrication),
         "candidates": [_candidate_json(entry, runs, seconds) for entry in document.candidates],
         "runs": [dict(run) for run in runs],
@@ -97,6 +99,7 @@ def decode(members: Members) -> Document:
     return Document(
         target=target,
         drawing=_drawing(design),
+        guides=_guides(design),
         settings=DesignSettings(
             **_plain_fields(settings, DesignSettings),
             grid=(rows, columns),
@@ -221,6 +224,13 @@ def _drawing(design: Record) -> tuple[Outline, ...]:
         return ()
     place = f"{DESIGN}.drawing"
     return tuple(_outline(Record(entry, f"{place}[{k}]")) for k, entry in enumerate(design.list("drawing")))
+
+
+def _guides(design: Record) -> Guides:
+    if not design.holds("guides"):
+        return NO_GUIDES
+    guides = design.record("guides")
+    return guides.numbers("x"), guides.numbers("y")
 
 
 def _nodes_json(nodes: Nodes) -> dict[str, object]:

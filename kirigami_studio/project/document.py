@@ -10,10 +10,13 @@ from types import MappingProxyType
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.outlines.drawing import NO_GUIDES, Guides
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.labels import Label, run_labels
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 
+#: Guides lie within this distance of the middle of the board, mm, and there are no more of them along one axis.
+FARTHEST_GUIDE, MOST_GUIDES = 1e6, 1000
 #: A void by its row and column.
 Void = tuple[int, int]
 
@@ -55,6 +58,8 @@ class Document:
     drawing : tuple of Outline
         The objects of the drawing board that the target was made of, the lowest first; none for a target that is one
         object by itself.
+    guides : two tuples of float, mm
+        Of the drawing board: x of the upright ones and y of the level ones, ascending.
     labels : tuple of Label
         Name and note of each candidate; left out, they are named as those of one run.
     runs : int
@@ -64,7 +69,7 @@ class Document:
     ------
     ProjectError
         Candidates without a target or of different grids, a choice that is not among them, more or fewer marks or
-        labels than candidates, or a locked void that their grid does not have.
+        labels than candidates, a locked void that their grid does not have, or guides that no board has.
     """
 
     target: Outline | None = None
@@ -77,12 +82,14 @@ class Document:
     locked: frozenset[Void] = frozenset()
     artwork: Artwork | None = None
     drawing: tuple[Outline, ...] = ()
+    guides: Guides = NO_GUIDES
     labels: tuple[Label, ...] = ()
     runs: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))
         object.__setattr__(self, "drawing", tuple(self.drawing))
+        self._check_guides()
         object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
         if self.candidates and self.target is None:
             raise ProjectError("project.designs_without_target")
@@ -114,6 +121,14 @@ class Document:
             row, column = outside[0]
             raise ProjectError("project.no_such_void", row=row, column=column, rows=rows, columns=columns)
 
+    def _check_guides(self) -> None:
+        upright, level = (tuple(sorted({float(at) for at in places})) for places in self.guides)
+        if not all(abs(at) <= FARTHEST_GUIDE for at in (*upright, *level)):
+            raise ProjectError("project.guide_too_far", limit=FARTHEST_GUIDE)
+        if max(len(upright), len(level)) > MOST_GUIDES:
+            raise ProjectError("project.too_many_guides", limit=MOST_GUIDES)
+        object.__setattr__(self, "guides", (upright, level))
+
     def _check_labels(self, count: int) -> None:
         object.__setattr__(self, "runs", max(self.runs, 1 if count else 0))
         labels = tuple(self.labels) or run_labels(max(self.runs - 1, 0), count)
@@ -123,7 +138,7 @@ class Document:
 
     @property
     def drawn_by_hand(self) -> bool:
-        """Whether the target holds work of the drawing board: several objects, or one that was drawn or changed there."""
+        """Whether the target holds work of the drawing board: several objects, or one drawn or changed there."""
         return bool(self.drawing) or (self.target is not None and self.target.place is not None)
 
     @property

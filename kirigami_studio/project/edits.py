@@ -12,9 +12,10 @@ from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.outlines.drawing import Guides
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
-from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.document import FARTHEST_GUIDE, MOST_GUIDES, Document, Void
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -167,6 +168,14 @@ def as_drawn(document: Document, target: Outline) -> Document:
     if target.unit != "mm" or target.size is None or (before is not None and before.size == target.size):
         return document
     return replace(document, fabrication=replace(document.fabrication, opened_mm=max(target.size)))
+
+
+def set_guides(document: Document, guides: Guides, gesture: str) -> Edit:
+    """Let other guides lie on the drawing board, by a gesture such as "Move guide"; far off they lie at the limit."""
+    nearer = tuple(
+        tuple(min(max(at, -FARTHEST_GUIDE), FARTHEST_GUIDE) for at in places[:MOST_GUIDES]) for places in guides
+    )
+    return Edit(gesture, replace(document, guides=(nearer[0], nearer[1])))
 
 
 def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:

@@ -90,6 +90,12 @@ class Record:
             self._refuse("json.not_a_table_of_texts", name, value)
         return dict(value)
 
+    def numbers(self, name: str) -> tuple[float, ...]:
+        """A list of numbers."""
+        values = self.list(name)
+        each = Record({str(k): value for k, value in enumerate(values)}, f"{self._place}.{name}")
+        return tuple(each.number(str(k)) for k in range(len(values)))
+
     def pair(self, name: str) -> tuple[float, float]:
         """Two numbers."""
         values = self.list(name)

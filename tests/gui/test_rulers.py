@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 from PySide6.QtCore import QEvent
 
@@ -22,7 +25,7 @@ def pull(window: MainWindow, start: tuple[float, float], end: tuple[float, float
 
 
 def test_that_guides_come_out_of_both_rulers_and_go_back_into_them(plate: MainWindow) -> None:
-    context, before = plate.target.view.context, plate.controller.document
+    context, target = plate.target.view.context, plate.controller.document.target
     pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
     pull(plate, (5, 200), (pixel(plate, (31.7, 0))[0], 200))
     assert [*context.guides[0], *context.guides[1]] == pytest.approx([31.7, 23.3])
@@ -32,7 +35,57 @@ def test_that_guides_come_out_of_both_rulers_and_go_back_into_them(plate: MainWi
     assert context.guides[0][0] > 32
     pull(plate, (x + 30, 200), (5, 200))
     assert context.guides[0] == () and len(context.guides[1]) == 1
-    assert plate.controller.document is before
+    assert plate.controller.document.target is target
+
+
+def test_that_a_guide_is_a_step_that_is_undone_and_done_again(plate: MainWindow) -> None:
+    context, history = plate.target.view.context, plate.controller.history
+    steps = len(history.steps)
+    pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
+    assert history.steps[steps:] == ("Add guide",)
+    use(plate, Tool.POSE)
+    y = pixel(plate, (0, 23.3))[1]
+    pull(plate, (200, y), (200, y - 40))
+    pull(plate, (200, y - 40), (200, 5))
+    assert history.steps[steps:] == ("Add guide", "Move guide", "Remove guide")
+    plate.commands["undo"].trigger()
+    assert context.guides[1][0] > 23.3
+    plate.commands["undo"].trigger()
+    assert context.guides == ((), (pytest.approx(23.3),))
+    plate.commands["undo"].trigger()
+    assert context.guides == ((), ())
+    plate.commands["redo"].trigger()
+    assert len(context.guides[1]) == 1
+
+
+def test_that_a_guide_that_goes_back_into_its_ruler_at_once_is_no_step(plate: MainWindow) -> None:
+    before = plate.controller.document
+    pull(plate, (200, 5), (200, 9))
+    assert plate.controller.document is before and plate.target.view.context.guides == ((), ())
+
+
+def test_that_guides_are_saved_with_the_project_and_come_back_with_it(
+    plate: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
+) -> None:
+    context, path = plate.target.view.context, tmp_path / "plate.kiri"
+    pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
+    assert plate.controller.history.unsaved
+    plate.controller.save(path)
+    until(lambda: not plate.controller.history.unsaved)
+    kept = context.guides
+    plate.controller.new_project()
+    assert context.guides == ((), ())
+    plate.controller.open_project(path)
+    until(lambda: plate.controller.document.target is not None)
+    assert context.guides == kept != ((), ())
+    assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 20, 10))
+
+
+def test_that_guides_stay_while_the_target_is_another_one(plate: MainWindow) -> None:
+    pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
+    kept = plate.target.view.context.guides
+    plate.controller.targeting.clear()
+    assert plate.target.view.context.guides == kept == plate.controller.document.guides
 
 
 def test_that_guides_catch_what_is_drawn_and_what_is_moved(plate: MainWindow) -> None:

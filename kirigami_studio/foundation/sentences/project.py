@@ -115,6 +115,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "project.not_a_connector_with_width": mark("{value!r:.60} is not the number of a connector with its width."),
     "project.not_a_connector_width": mark("{value!r:.60} is not the width of a connector."),
     "project.not_a_void": mark("{value!r:.60} is not the row and column of a void."),
+    "project.guide_too_far": mark("Guides of the drawing board lie within {limit:g} mm of its middle."),
+    "project.too_many_guides": mark("A drawing board has at most {limit} guides along one axis."),
     "project.no_such_run": mark("A design belongs to run {number}, but the number of runs in the file is {runs}."),
     "project.array_not_readable": mark("Its member {name} is not a NumPy array file ({reason:.80})."),
     "project.array_of_wrong_shape": mark(

@@ -20,6 +20,7 @@ from kirigami_studio.gui.sketching.sketch_context import Change
 from kirigami_studio.gui.views.target_view import Tool
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
+from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ class TargetConnections(QObject):
     def _connect_board(self) -> None:
         window, controller, reshaping = self._window, self._controller, self.reshaping
         window.target.view.context.changed.connect(reshaping.take)
+        window.target.view.context.guides_changed.connect(self._take_guides)
         window.target.view.hint.connect(self._show_hint)
         window.target.tools.mirror_wanted.connect(reshaping.mirror)
         window.target.refine.previewed.connect(reshaping.preview)
@@ -76,6 +78,10 @@ class TargetConnections(QObject):
         reshaping.restarted.connect(window.target.refine.restart)
         controller.run.started.connect(lambda _: window.target.set_editing(False))
 
+    def _take_guides(self, gesture: str) -> None:
+        session = self._controller.session
+        session.apply(edits.set_guides(session.document, self._window.target.view.context.guides, gesture))
+
     def _refuse(self, error: KirigamiError) -> None:
         """A shape could not be made; the message stays until one can be."""
         self._errors.append(Message(str(error), Tone.ERROR))
@@ -86,7 +92,7 @@ class TargetConnections(QObject):
         self._errors.append(Message(sentence, Tone.ERROR, trace))
 
     def _ask(self, outline: Outline) -> None:
-        """A target was read while there is one that was drawn by hand: what is to become of that is for its owner to say."""
+        """A target was read while there is one that was drawn by hand: ask what is to become of that."""
         self._drop_question()
         session, name = self._controller.session, tr(outline.name)
         if session.document.drawing:
@@ -137,6 +143,8 @@ class TargetConnections(QObject):
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:
             self._window.target.show_reach(document.settings.grid)
+        if document.guides != before.guides:
+            self._window.target.view.context.show_guides(document.guides)
 
     def _show_target(self, document: Document) -> None:
         panel = self._window.target

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from kirigami_studio.foundation.words import number
+from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.sketching.sketch_context import SketchContext
@@ -27,14 +27,24 @@ X, Y = 0, 1
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """A guide that is being dragged: its axis, and where it lies, mm."""
+    """A guide that is being dragged.
+
+    Attributes
+    ----------
+    axis : int
+    at : float, mm
+        Where it lies.
+    new : bool
+        Whether it comes out of a ruler.
+    """
 
     axis: int
     at: float
+    new: bool
 
 
 class Rulers:
-    """Pulls guides out of the rulers, moves them, and puts them back; guides belong to the board that is open."""
+    """Pulls guides out of the rulers, moves them, and puts them back; whose board it is keeps them."""
 
     def __init__(self, context: SketchContext) -> None:
         self._context = context
@@ -55,12 +65,12 @@ class Rulers:
         """Begin to drag a guide out of a ruler, or the one that is there if it ``takes`` guides; whether one is."""
         axis, place = self.over(pixel), self._context.transform.to_world(pixel)
         if axis is not None:
-            self._held = Held(axis, place[axis])
+            self._held = Held(axis, place[axis], new=True)
             return True
         for way in (X, Y) if takes else ():
             near = [at for at in self._context.guides[way] if self._far(at, place[way]) <= REACH]
             if near:
-                self._held = Held(way, near[0])
+                self._held = Held(way, near[0], new=False)
                 self._put(way, [at for at in self._context.guides[way] if at != near[0]])
                 return True
         return False
@@ -71,7 +81,7 @@ class Rulers:
             return False
         at = self._context.transform.to_world(pixel)[self._held.axis]
         snaps = self._context.snapping and not free
-        self._held = Held(self._held.axis, self._context.snapped(at) if snaps else at)
+        self._held = replace(self._held, at=self._context.snapped(at) if snaps else at)
         return True
 
     def release(self, pixel: QPointF) -> bool:
@@ -79,8 +89,12 @@ class Rulers:
         held, self._held = self._held, None
         if held is None:
             return False
-        if pixel.x() >= RULER and pixel.y() >= RULER:
+        stays = pixel.x() >= RULER and pixel.y() >= RULER
+        if stays:
             self._put(held.axis, [*self._context.guides[held.axis], held.at])
+        if stays or not held.new:
+            gesture = tr("Add guide") if held.new else tr("Move guide") if stays else tr("Remove guide")
+            self._context.guides_changed.emit(gesture)
         return True
 
     def _far(self, one: float, other: float) -> float:

@@ -16,7 +16,7 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.sketching.arrangements import EVERY
 from kirigami_studio.outlines.combining import Combine
-from kirigami_studio.outlines.drawing import Drawing
+from kirigami_studio.outlines.drawing import NO_GUIDES, Drawing, Guides
 from kirigami_studio.outlines.figures import USUAL_WAIST, Figure
 from kirigami_studio.outlines.mirroring import Axis, Mirror
 from kirigami_studio.outlines.nodes import Kind
@@ -107,6 +107,7 @@ class SketchContext(QObject):
     mirror_changed = Signal()
     kind_wanted = Signal(Kind)  #: that the selected points shall have
     kinds_shown = Signal(frozenset)  #: kinds of the selected points
+    guides_changed = Signal(str)  #: by a finished gesture, as it follows the word Undo
     selection_changed = Signal()  #: other objects are selected, or others are there
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -122,7 +123,7 @@ class SketchContext(QObject):
         self.text = "K"
         self.family, self.bold, self.italic = "", True, False
         self.mirror = Mirror()
-        self.guides: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())  # x of upright ones, y of level ones, mm
+        self.guides = NO_GUIDES
         self._nudges = 0
         self._places: dict[tuple[object, ...], Placed] = {}
 
@@ -138,6 +139,12 @@ class SketchContext(QObject):
         self.placed, self.drawing = target, Drawing(objects, self.drawing.selected if same else frozenset())
         self.loose = self.drawing.united().loose if len(objects) > 1 else frozenset()
         self.selection_changed.emit()
+
+    def show_guides(self, guides: Guides) -> None:
+        """Lay other guides on the board."""
+        if guides != self.guides:
+            self.guides = guides
+            self.repaint.emit()
 
     def select(self, indices: Iterable[int]) -> None:
         """Select objects."""

@@ -18,8 +18,9 @@ from kirigami_studio.outlines.figures import Box, Figure, figure
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project import store
-from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.codec import DESIGN, encode
+from kirigami_studio.project.document import FARTHEST_GUIDE, Document
+from kirigami_studio.project.edits import Edit, set_guides
 from kirigami_studio.project.history import History
 
 
@@ -78,13 +79,42 @@ def test_that_points_that_no_drawing_has_are_a_sentence(
         store.load(changed(drawn, tmp_path, change))
 
 
-def changed(drawn: Placed, folder: Path, change: Callable[[dict[str, Any]], object]) -> Path:
-    """A project file whose target record was altered by hand."""
+def test_that_guides_come_back_and_a_project_without_any_says_nothing_of_them(drawn: Placed, tmp_path: Path) -> None:
+    document = Document(target=drawn.outline, guides=((12.5, -3.0), (7.25,)))
+    assert document.guides == ((-3.0, 12.5), (7.25,))
+    store.save(document, tmp_path / "guided.kiri")
+    assert store.load(tmp_path / "guided.kiri") == document
+    assert b"guides" not in encode(Document(target=drawn.outline))[DESIGN]
+
+
+@pytest.mark.parametrize(
+    ("guides", "said"),
+    [
+        ([1.0], "must be a JSON object"),
+        ({"x": [1.0]}, "no entry 'y'"),
+        ({"x": ["here"], "y": []}, "must be a number"),
+        ({"x": [], "y": [1e9]}, "within 1e"),
+        ({"x": list(range(2000)), "y": []}, "at most 1000 guides"),
+    ],
+)
+def test_that_guides_that_no_board_has_are_a_sentence(guides: object, said: str, drawn: Placed, tmp_path: Path) -> None:
+    path = changed(drawn, tmp_path, lambda design: design.update(guides=guides), "")
+    with pytest.raises(ProjectError, match=said):
+        store.load(path)
+
+
+def test_that_a_guide_that_is_dragged_far_off_stays_within_reach(drawn: Placed) -> None:
+    edit = set_guides(Document(target=drawn.outline), ((3e7,), ()), "Add guide")
+    assert edit.document.guides == ((FARTHEST_GUIDE,), ())
+
+
+def changed(drawn: Placed, folder: Path, change: Callable[[dict[str, Any]], object], record: str = "target") -> Path:
+    """A project file whose target record, or whole design, was altered by hand."""
     content = store.pack(Document(target=drawn.outline))
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     design = json.loads(members["design.json"])
-    change(design["target"])
+    change(design[record] if record else design)
     members["design.json"] = json.dumps(design).encode()
     path = folder / "changed.kiri"
     with zipfile.ZipFile(path, "w") as archive:
