@@ -101,7 +101,7 @@ class Controller(QObject):
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.targeting = Targeting(session, self)
         self.start = StartReader(session, self)
-        self.second = SecondReader(session)
+        self.second = SecondReader(session, self)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
         self._connect()

@@ -12,6 +12,7 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.jobs.cut_jobs import Exported
 from kirigami_studio.gui.look import theme
@@ -29,8 +30,9 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.part_picker import PartPicker
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.dialogs.start_board import StartBoard
-    from kirigami_studio.gui.jobs.part_jobs import PartsRead
+    from kirigami_studio.gui.jobs.part_jobs import PartsRead, Purpose
     from kirigami_studio.gui.main_window import MainWindow
+    from kirigami_studio.outlines.outline import Outline
 
 
 class Dialogs(QObject):
@@ -50,6 +52,7 @@ class Dialogs(QObject):
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
         self.parts: PartPicker | None = None
+        self._take_parts: Callable[[Outline, bool], None] = controller.targeting.reader.take_chosen
         self.artwork: ArtworkEditor | None = None
         self.label: LabelEditor | None = None
 
@@ -152,16 +155,17 @@ class Dialogs(QObject):
         self.pairs.read()
         bring_to_front(self.pairs)
 
-    def show_parts(self, read: PartsRead) -> None:
-        """Ask which parts of a drawing are the target."""
+    def show_parts(self, purpose: Purpose, take: Callable[[Outline, bool], None], read: PartsRead) -> None:
+        """Ask which parts of a drawing are the target, the start or the second target."""
         from kirigami_studio.gui.dialogs.part_picker import PartPicker
 
         if self.parts is None:
-            targeting = self._controller.targeting
+            session = self._controller.session
             self.parts = PartPicker(self._window, self._controller.queue)
-            self.parts.taken.connect(targeting.reader.take_chosen)
-            self.parts.rejected.connect(targeting.drop_choice)
-        self.parts.begin(read)
+            self.parts.taken.connect(lambda outline, usual: self._take_parts(outline, usual))
+            self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
+        self._take_parts = take
+        self.parts.begin(read, purpose)
         self._colour(self.parts)
         bring_to_front(self.parts)
 

@@ -16,7 +16,14 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.target_reader import next_run
-from kirigami_studio.gui.jobs.part_jobs import DesignRead, PartsRead, reading_parts, reading_source
+from kirigami_studio.gui.jobs.part_jobs import (
+    DesignRead,
+    PartsRead,
+    reading_parts,
+    reading_second,
+    reading_source,
+    reading_start,
+)
 from kirigami_studio.gui.jobs.queue import JobCallbacks, LatestJob, Steps
 from kirigami_studio.gui.jobs.target_jobs import (
     PICTURES,
@@ -24,7 +31,6 @@ from kirigami_studio.gui.jobs.target_jobs import (
     TargetRead,
     checking_start,
     making_start,
-    reading_start,
     reading_target,
     tracing,
 )
@@ -223,11 +229,12 @@ class StartReader(QObject):
     """Reads the outline that sheets are to have while they are flat; a shape that cannot be one changes nothing."""
 
     checked = Signal(Outline, str)  #: a shape that is being drawn, and why the next run would refuse it, or ""
+    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._wish = Wish[StartShape](session, self._take)
+        self._wish = Wish[StartShape | PartsRead](session, self._take)
         self._check = LatestJob[str](session.queue)
 
     def open(self, source: str) -> None:
@@ -241,6 +248,10 @@ class StartReader(QObject):
         callbacks: JobCallbacks[str] = JobCallbacks(partial(self.checked.emit, outline))
         self._check.start(tr("checking the start"), steps, callbacks)
 
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts, the usual one or another."""
+        self.draw(outline)
+
     def draw(self, outline: Outline) -> None:
         """Take a shape that was drawn."""
         self._wish.start(tr("reading the start"), partial(making_start, outline))
@@ -249,22 +260,38 @@ class StartReader(QObject):
         """Forget what is still being read: another start was chosen."""
         self._wish.stop()
 
-    def _take(self, start: StartShape) -> None:
-        self._session.apply(edits.set_settings(self._session.document, start=start))
+    def _take(self, found: StartShape | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self.choice_wanted.emit(found)
+            return
+        self._session.apply(edits.set_settings(self._session.document, start=found))
         self._session.history.end_drag()
-        self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=start.name))
+        self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=found.name))
 
 
-class SecondReader:
+class SecondReader(QObject):
     """Reads the second target; it is shown at the angle, and with the weight, of the one before."""
 
-    def __init__(self, session: Session) -> None:
+    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
         self._session = session
-        self._wish = Wish[TargetRead](session, lambda found: self.take(found.outline))
+        self._wish = Wish[TargetRead | PartsRead](session, self._take_read)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_target, source))
+        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
+
+    def _take_read(self, found: TargetRead | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self.choice_wanted.emit(found)
+        else:
+            self.take(found.outline)
+
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts, the usual one or another."""
+        self.take(outline)
 
     def take(self, outline: Outline) -> None:
         """Take a shape that was read or drawn."""
@@ -324,10 +351,6 @@ class Targeting(QObject):
         target = self._session.document.target
         if target is not None:
             self.reader.choose_again(target)
-
-    def drop_choice(self) -> None:
-        """The parts of a drawing were not chosen: everything stays as it was."""
-        self._session.set_status(tr("No part was taken; nothing changed."))
 
     def start_with(self, source: str) -> None:
         """Read the first target; in an untouched project it is where the history starts, no change to be undone."""

@@ -75,6 +75,56 @@ def click_part(picker: PartPicker, x: float, y: float) -> None:
     QTest.mouseClick(picker.view, Qt.MouseButton.LeftButton, pos=QPointF(px, py).toPoint())
 
 
+@pytest.mark.parametrize(
+    ("purpose", "asks", "button"),
+    [("start", "what the sheet is to start as", "&Use as start"), ("second", "second target", "&Use as second target")],
+)
+def test_that_start_and_second_target_are_chosen_among_the_parts_of_a_drawing_too(
+    purpose: str, asks: str, button: str, window: MainWindow, logo: Path, until: Until
+) -> None:
+    reader = {"start": window.target.start, "second": window.settings.second}[purpose]
+    reader.file_dropped.emit(str(logo))
+    picker = opened(window, until)
+    assert names(picker) == {"disc"} and asks in picker.about.text() and picker.take.text() == button
+    assert picker.size_.text() == "The outline is 40.0 \N{MULTIPLICATION SIGN} 40.0 mm; only its shape counts."
+    before = window.controller.document
+    picker.reject()
+    assert window.controller.document is before and window.status_text.text() == "No part was taken; nothing changed."
+    reader.file_dropped.emit(str(logo))
+    opened(window, until)
+    click_part(picker, 30, -40)
+    click_part(picker, 75, -40)
+    settled(picker, until)
+    picker.take.click()
+    settings = lambda: window.controller.document.settings  # noqa: E731
+    if purpose == "start":
+        until(lambda: settings().start.name == "plate")
+    else:
+        until(lambda: settings().second is not None and settings().second.outline.name == "plate")
+    assert window.controller.document.target is None and len(window.controller.history.steps) == 1
+
+
+def test_that_the_picker_for_a_start_is_that_for_a_target_the_next_time(
+    window: MainWindow, logo: Path, until: Until
+) -> None:
+    window.target.start.file_dropped.emit(str(logo))
+    opened(window, until).reject()
+    window.files.open(str(logo))
+    picker = opened(window, until)
+    assert picker.take.text() == "&Use as target" and told(picker) == (40.0, 40.0)
+    picker.take.click()
+    until(lambda: window.controller.document.target is not None)
+    assert window.controller.document.settings.start.is_plain
+
+
+def test_that_parts_too_hollow_for_a_start_are_refused(window: MainWindow, until: Until, tmp_path: Path) -> None:
+    ring = '<path id="sickle" d="M10 10h80v10h-70v60h70v10h-80z"/><circle id="dot" cx="70" cy="50" r="5"/>'
+    window.target.start.file_dropped.emit(str(written(tmp_path, ring)))
+    opened(window, until).take.click()
+    until(lambda: any("hollow" in message.sentence for message in window.messages.messages))
+    assert window.controller.document.settings.start.is_plain
+
+
 def test_that_a_drawing_of_several_parts_asks_with_the_largest_checked(window, picker) -> None:
     assert names(picker) == {"disc"}
     layers = [picker.list.topLevelItem(row).text(0) for row in range(picker.list.topLevelItemCount())]

@@ -13,6 +13,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
+from kirigami_studio.gui.jobs.part_jobs import Purpose
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.reshaping import TargetReshaper
@@ -57,7 +58,8 @@ class TargetConnections(QObject):
         window.target.threshold.automatic_wanted.connect(lambda: targeting.change_threshold(None))
         window.target.threshold.edited.connect(targeting.tracer.end_drag)
         targeting.reader.design_read.connect(window.files.open_design)
-        targeting.reader.choice_wanted.connect(window.dialogs.show_parts)
+        ask, reader = window.dialogs.show_parts, targeting.reader
+        reader.choice_wanted.connect(partial(ask, Purpose.TARGET, reader.take_chosen))
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)
         targeting.question_wanted.connect(self._ask)
@@ -176,6 +178,8 @@ class StartConnections(QObject):
         tile.chosen.connect(self._choose)
         tile.file_dropped.connect(controller.start.open)
         tile.other_wanted.connect(self.open_other)
+        ask, reader = window.dialogs.show_parts, controller.start
+        reader.choice_wanted.connect(partial(ask, Purpose.START, reader.take_chosen))
         window.settings.other_start_wanted.connect(self.open_other)
         controller.reader.known.connect(lambda _: self._show(controller.document))
         controller.session.document_changed.connect(self._show)
@@ -208,3 +212,5 @@ class SecondConnections(QObject):
         }
         row.other_wanted.connect(lambda kind: self._open[kind]())
         row.file_dropped.connect(controller.second.open)
+        ask, reader = window.dialogs.show_parts, controller.second
+        reader.choice_wanted.connect(partial(ask, Purpose.SECOND, reader.take_chosen))

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.foundation.words import mark, tr, tr_n
-from kirigami_studio.gui.jobs.part_jobs import PartsRead, merging_parts
+from kirigami_studio.gui.jobs.part_jobs import PartsRead, Purpose, merging_parts
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.look.theme import LIGHT, Palette
 from kirigami_studio.gui.panels.choice_box import ChoiceBox
@@ -48,12 +48,43 @@ JOINS = (
     (Join.HULL, mark("Hull"), mark("The outline of a rubber band around all chosen parts.")),
     (Join.TIGHT, mark("Tight hull"), mark("An outline around all chosen parts that follows them into hollows.")),
 )
+#: The button that takes the parts, and what is said of their outline.
+TAKE = {
+    Purpose.TARGET: (mark("&Use as target"), mark("The target will be {size}.")),
+    Purpose.START: (mark("&Use as start"), mark("The outline is {size}; only its shape counts.")),
+    Purpose.SECOND: (mark("&Use as second target"), mark("The outline is {size}; only its shape counts.")),
+}
 HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
     PartKind.FILLED: mark("filled"),
     PartKind.CLOSED: mark("closed line"),
     PartKind.STROKED: mark("open line"),
 }
+
+
+def about_parts(purpose: Purpose, count: int) -> str:
+    """How many parts there are, and what they are chosen for."""
+    if purpose is Purpose.START:
+        return tr_n(
+            "The drawing has {count} part. Check what the sheet is to start as, in the list or by a click in the "
+            "picture.",
+            "The drawing has {count} parts. Check what the sheet is to start as, in the list or by a click in the "
+            "picture.",
+            count,
+        )
+    if purpose is Purpose.SECOND:
+        return tr_n(
+            "The drawing has {count} part. Check what belongs to the second target, in the list or by a click in the "
+            "picture.",
+            "The drawing has {count} parts. Check what belongs to the second target, in the list or by a click in the "
+            "picture.",
+            count,
+        )
+    return tr_n(
+        "The drawing has {count} part. Check what belongs to the target, in the list or by a click in the picture.",
+        "The drawing has {count} parts. Check what belongs to the target, in the list or by a click in the picture.",
+        count,
+    )
 
 
 class PartPicker(QDialog):
@@ -71,6 +102,7 @@ class PartPicker(QDialog):
         self.resize(SIZE)
         self.result_: Merged | None = None
         self._read: PartsRead | None = None
+        self._purpose = Purpose.TARGET
         self._palette: Palette = LIGHT
         self._job = LatestJob[Merged](queue)
         self._items: dict[int, QTreeWidgetItem] = {}
@@ -103,7 +135,7 @@ class PartPicker(QDialog):
         self.notes.setWordWrap(True)
         self.notes.setObjectName("muted")
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
-        self.take = QPushButton(tr("&Use as target"))
+        self.take = QPushButton(tr(TAKE[Purpose.TARGET][0]))
         self.take.setObjectName("primary")
         self.take.setDefault(True)
         self.cancel = QPushButton(tr("Cancel"))
@@ -182,21 +214,14 @@ class PartPicker(QDialog):
         self.cancel.clicked.connect(self.reject)
         self.finished.connect(lambda _: self._stop())
 
-    def begin(self, read: PartsRead) -> None:
+    def begin(self, read: PartsRead, purpose: Purpose = Purpose.TARGET) -> None:
         """Show a drawing with what would be taken by itself: the largest closed part, else all lines as painted."""
         self._stop()
-        self._read, source = read, read.source
+        self._read, self._purpose, source = read, purpose, read.source
         closed = any(part.is_closed for part in source.parts)
         self.setWindowTitle(tr("Parts of {name}", name=source.name))
-        self.about.setText(
-            tr_n(
-                "The drawing has {count} part. Check what belongs to the target, in the list or by a click in the "
-                "picture.",
-                "The drawing has {count} parts. Check what belongs to the target, in the list or by a click in the "
-                "picture.",
-                len(source.parts),
-            )
-        )
+        self.about.setText(about_parts(purpose, len(source.parts)))
+        self.take.setText(tr(TAKE[purpose][0]))
         for field, share in ((self.bridge, USUAL_BRIDGE), (self.stroke, USUAL_STROKE)):
             self._set_range(field, share)
         self.join.blockSignals(True)
@@ -349,7 +374,7 @@ class PartPicker(QDialog):
         self.view.show_result(found)
         unit = self._read.source.unit
         if found.outline.size is not None:
-            self.size_.setText(tr("The target will be {size}.", size=_size(found.outline.size, unit)))
+            self.size_.setText(tr(TAKE[self._purpose][1], size=_size(found.outline.size, unit)))
         self._say(found.outline.notes, wrong=False)
         if self._accepts:
             self._take()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,8 @@ from kirigami_studio.gui.jobs.queue import Cancel
 from kirigami_studio.gui.jobs.target_jobs import PICTURES, TargetRead, reading_target
 from kirigami_studio.outlines.merging import Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts
-from kirigami_studio.outlines.read import PART_READERS, read_parts
+from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import CUT_FILES
 
@@ -23,6 +25,14 @@ from kirigami_studio.project.store import CUT_FILES
 DRAWN = 1.0 / 3000.0
 #: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
 ISLAND, MOST_ISLANDS = 0.1, 20
+
+
+class Purpose(Enum):
+    """What chosen parts of a drawing become."""
+
+    TARGET = "target"
+    START = "start"
+    SECOND = "second"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,10 +59,37 @@ class DesignRead:
 
 def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead | DesignRead]:
     """Read a target, the parts of a drawing that has several to choose from, or the design of a cut file."""
+    document = _design_of(source)
+    if document is not None:
+        yield DesignRead(document)
+    else:
+        yield from _reading_outline(source, cancel)
+
+
+def reading_second(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
+    """Read a second target, or the parts that it may be; of a cut file it is the target of the design there."""
+    document = _design_of(source)
+    if document is not None and document.target is not None:
+        yield TargetRead(document.target)
+    else:
+        yield from _reading_outline(source, cancel)
+
+
+def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRead]:
+    """Read a start outline, or the parts that it may be; of a cut file it is the outline of the sheet.
+
+    One that is too hollow is refused.
+    """
+    if _design_of(source) is not None:
+        yield outline_start(read_target(source))
+        return
+    for found in _reading_outline(source, cancel):
+        yield outline_start(found.outline) if isinstance(found, TargetRead) else found
+
+
+def _reading_outline(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
+    """Read an outline, or the parts of a drawing that has several to choose from."""
     if Path(source).suffix.lower() in PART_READERS:
-        if Path(source).suffix.lower() in CUT_FILES and (document := _design_of(Path(source))) is not None:
-            yield DesignRead(document)
-            return
         if Path(source).suffix.lower() in PICTURES:
             if _has_islands(source):
                 yield sketched(read_parts(source))
@@ -84,12 +121,14 @@ def _has_islands(source: str) -> bool:
     return len(areas) > 1 and areas[1] >= ISLAND * areas[0] and areas[0] >= 0.5 * sum(areas[MOST_ISLANDS:])
 
 
-def _design_of(path: Path) -> Document | None:
-    """The design that a cut file carries; None for any other drawing."""
+def _design_of(source: str) -> Document | None:
+    """The design that a cut file carries; None for anything else."""
     from kirigami_studio.project import store
 
+    if Path(source).suffix.lower() not in CUT_FILES:
+        return None
     try:
-        return store.load(path)
+        return store.load(Path(source))
     except KirigamiError:
         return None  # another program's drawing, or one that cannot be read: its reader says so
 

@@ -73,13 +73,6 @@ def reading_target(source: str, cancel: Cancel) -> Iterator[TargetRead]:
         yield TargetRead(read_target(source))
 
 
-def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape]:
-    """Read a file or a library silhouette as a start outline; one that is too hollow is refused."""
-    from kirigami_studio.outlines.read import read_target
-
-    yield outline_start(read_target(source))
-
-
 def making_start(outline: Outline, cancel: Cancel) -> Iterator[StartShape]:
     """Make a drawn shape a start outline; one that is too hollow is refused."""
     yield outline_start(outline)
