@@ -35,6 +35,16 @@ def sort_by(window: MainWindow, order: SortOrder) -> None:
     box.activated.emit(box.currentIndex())
 
 
+def test_that_what_is_won_over_equal_cuts_is_told_by_that_name(designed: MainWindow) -> None:
+    sort_by(designed, SortOrder.GAIN)
+    assert designed.gallery.bar.order.currentText() == "Better than equal cuts"
+    assert "cuts are all equal" in designed.gallery.bar.order.toolTip()
+    model = designed.gallery.view.model_
+    for row, entry in enumerate(model.entries):
+        points = f"{100 * entry.candidate.score.siou_gain:+.1f}"
+        assert model.index(row, 0).data(VALUE_ROLE) == f"{points} over equal cuts"
+
+
 def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: Document) -> None:
     for order in SortOrder:
         check_order(designed, designs, order)

@@ -223,7 +223,13 @@ def _rows() -> tuple[tuple[str, str], ...]:
             tr("Evenness: how much panel sizes vary, % (coefficient of variation); then the difference, points."),
         ),
         (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
-        (tr("Gained"), tr("Gain in sIoU over the uniform sheet, points; then the difference from the other design.")),
+        (
+            tr("Over equal cuts"),
+            tr(
+                "Points of sIoU above the uniform sheet, whose cuts are all equal; then the difference from the other "
+                "design."
+            ),
+        ),
         (
             tr("Roughness"),
             tr("Total variation (TV) of the ratios, lower is smoother; then the difference from the other design."),

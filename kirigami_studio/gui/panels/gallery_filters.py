@@ -148,7 +148,11 @@ def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
             tr("By evenness"),
             tr("The most even panels first: the smallest coefficient of variation of their areas."),
         ),
-        (SortOrder.GAIN, tr("By gain"), tr("The largest gain in sIoU over the uniform sheet first.")),
+        (
+            SortOrder.GAIN,
+            tr("Better than equal cuts"),
+            tr("What matches most points (of sIoU) better than the uniform sheet, whose cuts are all equal, first."),
+        ),
         (SortOrder.TV, tr("By smoothness"), tr("The lowest total variation (TV) of the ratios first.")),
         (
             SortOrder.PANEL,
