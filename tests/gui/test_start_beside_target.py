@@ -251,6 +251,27 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
     assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
 
 
+def test_that_the_tile_tells_the_size_of_the_design_on_the_stage_where_it_starts_so(
+    window: MainWindow, until: Until, of_two_starts: Document
+) -> None:
+    controller, tile = window.controller, window.target.start
+    plain = edits.set_settings(of_two_starts, start=RECTANGLE).document
+    controller.session.restart(replace(plain, settings=replace(plain.settings, grid=(4, 14))), None)
+    until(lambda: controller.stage is not None)
+    of_the_next = tile.size_text  # the circle is on the stage
+    assert of_the_next == f"100 {TIMES} 33.3 mm" and "on the stage" not in tile.toolTip()
+    controller.choose(of_two_starts.candidates[1])
+    assert controller.stage is not None
+    across, up = np.ptp(controller.stage.design.deployment.compact, axis=0).tolist()
+    assert tile.size_text == f"100 {TIMES} {100 * up / across:.3g} mm" != of_the_next
+    assert tile.size_text in window.stage.ends.start.accessibleName() and "on the stage" in tile.toolTip()
+    controller.fabrication.change(width_mm=50.0)
+    assert tile.size_text == f"50 {TIMES} {50 * up / across:.3g} mm"
+    controller.targeting.clear()
+    until(lambda: controller.stage is None)
+    assert "on the stage" not in tile.toolTip()
+
+
 @pytest.mark.torch
 def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart: MainWindow, until: Until) -> None:
     controller, model = heart.controller, heart.gallery.view.model_

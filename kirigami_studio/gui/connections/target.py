@@ -13,6 +13,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
+from kirigami_studio.gui.designs.two_states import flat_size, start_of, start_words
 from kirigami_studio.gui.jobs.part_jobs import Purpose
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
@@ -183,6 +184,7 @@ class StartConnections(QObject):
         window.settings.other_start_wanted.connect(self.open_other)
         controller.reader.known.connect(lambda _: self._show(controller.document))
         controller.session.document_changed.connect(self._show)
+        controller.session.display.stage_changed.connect(lambda _: self._show(controller.document))
         self._show(controller.document)
 
     def open_other(self, kind: str) -> None:
@@ -196,7 +198,11 @@ class StartConnections(QObject):
     def _show(self, document: Document) -> None:
         settings = self._window.settings
         grid = (settings.rows.value(), settings.columns.value())  # the one that the next run will choose, too
-        self._window.target.start.show_start(document.settings.start, grid, document.fabrication.width_mm)
+        start, width_mm = document.settings.start, document.fabrication.width_mm
+        stage, flat = self._controller.stage, None
+        if stage is not None and start_of(stage.candidate) == start_words(start.name):
+            flat = flat_size(stage.design.deployment, width_mm)
+        self._window.target.start.show_start(start, grid, width_mm, flat)
 
 
 class SecondConnections(QObject):

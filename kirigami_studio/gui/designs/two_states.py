@@ -16,6 +16,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.laying import start_match
 from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points
 from kirigami_studio.outlines.outline import Outline
@@ -66,6 +67,12 @@ def start_outline(start: StartShape, grid: tuple[int, int]) -> FloatArray:
     rows, columns = grid
     width = (columns + 1) / (rows + 1) if start.aspect is None else start.aspect
     return np.array([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)])
+
+
+def flat_size(deployment: Deployment, width_mm: float) -> tuple[float, float]:
+    """Width and height, mm, of a flat sheet that is ``width_mm`` wide."""
+    across, up = np.ptp(deployment.compact, axis=0).tolist()
+    return width_mm, up * width_mm / across
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,8 +200,7 @@ class TwoStates:
         """Those of a design whose flat sheet is ``width_mm`` wide."""
         sheet, trim, deployment = candidate.final_sheet, candidate.trim, design.deployment
         outline = RimPath(*sheet.grid, sheet.start, sheet.cell).outline()
-        across, up = np.ptp(deployment.compact, axis=0).tolist()
-        flat = (width_mm, up * width_mm / across)
+        flat = flat_size(deployment, width_mm)
         opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
             State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),

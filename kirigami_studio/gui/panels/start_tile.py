@@ -68,6 +68,7 @@ class StartTile(QAbstractButton):
         self._start = RECTANGLE
         self._grid = (10, 10)
         self._width_mm = 100.0
+        self._flat: tuple[float, float] | None = None
         self._palette: Palette = LIGHT
         self.setFixedWidth(WIDTH)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
@@ -107,11 +108,18 @@ class StartTile(QAbstractButton):
         action.triggered.connect(lambda _=False: self.other_wanted.emit(name))
         self.entries[name] = action
 
-    def show_start(self, start: StartShape, grid: tuple[int, int], width_mm: float) -> None:
-        """Show a start on a sheet of a width, mm; ``grid`` (rows, columns) gives a plain rectangle its height."""
-        self._start, self._grid, self._width_mm = start, grid, width_mm
+    def show_start(
+        self, start: StartShape, grid: tuple[int, int], width_mm: float, flat: tuple[float, float] | None = None
+    ) -> None:
+        """Show a start on a sheet of a width, mm.
+
+        ``flat`` (width and height, mm) is the size of a design that starts so, if there is one; without it ``grid``
+        (rows, columns) gives a plain rectangle its height.
+        """
+        self._start, self._grid, self._width_mm, self._flat = start, grid, width_mm, flat
         self.back.setVisible(not start.is_plain)
-        self.setToolTip(f"{tr(TIP)}\n{self.name}, {self.size_text}")
+        whose = "" if flat is None else "\n" + tr("The size is that of the flat sheet of the design on the stage.")
+        self.setToolTip(f"{tr(TIP)}\n{self.name}, {self.size_text}{whose}")
         self.setAccessibleName(tr("Start as {name}, {size}", name=self.name, size=self.size_text))
         self.update()
 
@@ -132,6 +140,8 @@ class StartTile(QAbstractButton):
 
     @property
     def _height_mm(self) -> float:
+        if self._flat is not None:
+            return self._flat[1]
         across, up = np.ptp(start_outline(self._start, self._grid), axis=0).tolist()
         return float(self._width_mm * up / across)
 
@@ -162,8 +172,12 @@ class StartTile(QAbstractButton):
             painter.end()
             self.entries[name].setIcon(QIcon(picture))
 
-    def _paint_shape(self, painter: QPainter, box: QRectF, start: StartShape, margin: float) -> None:
+    def _paint_shape(
+        self, painter: QPainter, box: QRectF, start: StartShape, margin: float, flat: tuple[float, float] | None = None
+    ) -> None:
         points = start_outline(start, self._grid)
+        if flat is not None:  # of the grid that the design has, and moved at its rim
+            points = points * (np.array(flat) / np.ptp(points, axis=0))
         transform = ViewTransform.fitting(Bounds.of(points), box, margin)
         paint_start_shape(painter, transform.to_pixels(points), self._palette, 1.4)
 
@@ -198,7 +212,7 @@ class StartTile(QAbstractButton):
         lines = 2 if self.height() >= 4 * LINE + 34 else 1 if self.height() >= 3 * LINE + 30 else 0
         caption = LINE + 4.0 if lines else 2.0
         box = QRectF(self.rect()).adjusted(0, caption, 0, -lines * LINE - (4.0 if lines else 0.0))
-        self._paint_shape(painter, box, self._start, MARGIN)
+        self._paint_shape(painter, box, self._start, MARGIN, self._flat)
         painter.setPen(QColor(palette.muted))
         left = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         if lines:
