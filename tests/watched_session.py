@@ -37,6 +37,7 @@ from kirigami_studio.project.document import Document
 
 PATIENCE = 40.0
 MANY, LARGE = 64, (24, 24)
+MOST, USUAL = 256, (10, 10)
 FULL_POLISH = max(steps for _, steps, _ in POLISH)
 
 
@@ -44,7 +45,7 @@ class Places:
     """Answers every question for a file."""
 
     def __init__(self, folder: Path) -> None:
-        self.project_ = folder / "large.kiri"
+        self.folder_, self.project_ = folder, folder / "large.kiri"
         self.saved, self.cut, self.everything = folder / "saved.kiri", folder / "cut.dxf", folder / "everything"
 
     def target(self) -> Path | None:
@@ -92,6 +93,7 @@ class WatchedSession:
     def prepare(cls, folder: Path) -> None:
         """Write the files that the session opens."""
         write_project(folder / "large.kiri", MANY, LARGE)
+        write_project(folder / "many.kiri", MOST, USUAL)
 
     def begin(self) -> None:
         """Show the window."""
@@ -124,9 +126,7 @@ class WatchedSession:
         self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
         self.step("generate 2 and search", self.generate, self.generated)
         controller.history.mark_saved()
-        self.step(
-            "open a large project", lambda: self.press("open_project"), lambda: self.shown(MANY) and self.planned()
-        )
+        self.open("open a large project", "large.kiri", MANY)
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
         self.step("move the balance over it", self.balance)
         self.step("show every look-alike", lambda: self.window.gallery.bar.filters.grouped.setChecked(False))
@@ -137,28 +137,44 @@ class WatchedSession:
         self.step("save it", lambda: self.press("save_as"), self.places.saved.exists)
         self.step("export its DXF", lambda: self.press("export"), self.told)
         self.step("export everything", lambda: self.press("export_all"), self.told)
+        controller.history.mark_saved()
+        self.open(f"open {MOST} designs", "many.kiri", MOST)
+        self.all_designs(MOST)
         self.step("switch the theme", lambda: self.press("theme"))
+
+    def open(self, step: str, name: str, designs: int) -> None:
+        """Open a project."""
+        self.places.project_ = self.places.folder_ / name
+        self.step(step, lambda: self.press("open_project"), lambda: self.shown(designs) and self.planned())
 
     def all_designs(self, designs: int) -> None:
         """The table of all designs: opened, walked through, scrolled, filtered, four of them compared."""
         press = self.press
+        assert self.window.gallery.view.model_.rowCount() == designs
         self.step(f"show all {designs} designs at once", lambda: press("all_designs"), self.pictured)
         page = self.window.connections.all_designs.page
         assert page is not None
         table = page.table
         self.step(
-            "walk through them", lambda: self.keys(table, *[Qt.Key.Key_Right] * 12, Qt.Key.Key_Down), self.pictured
+            f"walk through the {designs}",
+            lambda: self.keys(table, *[Qt.Key.Key_Right] * 12, Qt.Key.Key_Down),
+            self.pictured,
         )
-        self.step("scroll through them", self.scroll_all, self.pictured)
-        self.step("make the cards small", lambda: self.keys(table, Qt.Key.Key_Minus), self.pictured)
-        self.step("filter them", lambda: page.filters.least.setValue(1.0), self.pictured)
+        self.step(f"scroll through the {designs}", self.scroll_all, self.pictured)
+        self.step(f"make the {designs} cards small", lambda: self.keys(table, Qt.Key.Key_Minus), self.pictured)
+        self.step(f"filter the {designs}", lambda: page.filters.least.setValue(1.0), self.pictured)
         right, mark = Qt.Key.Key_Right, Qt.Key.Key_Space
-        self.step("mark four of them", lambda: self.keys(table, mark, right, mark, right, mark, right, mark))
-        self.step("compare the four", lambda: self.keys(table, Qt.Key.Key_C), lambda: page.comparing)
-        self.step("scrub the four", lambda: page.compare.bar.slider.setValue(900))
+        self.step(f"mark four of the {designs}", lambda: self.keys(table, mark, right, mark, right, mark, right, mark))
+        self.step(f"compare four of the {designs}", lambda: self.keys(table, Qt.Key.Key_C), lambda: page.comparing)
+        self.step(f"scrub four of the {designs}", lambda: page.compare.bar.slider.setValue(900))
         self.step(
-            "leave the table", lambda: press("all_designs"), lambda: not self.window.connections.all_designs.shown
+            f"leave the table of {designs}",
+            lambda: press("all_designs"),
+            lambda: not self.window.connections.all_designs.shown,
         )
+        page.card_size.setValue(1)  # as it was, for the next time
+        page.compare.bar.slider.setValue(0)
+        page.filters.least.setValue(0.0)
 
     def keys(self, widget: QWidget, *keys: Qt.Key) -> None:
         """Press keys, one in each turn of the event loop."""

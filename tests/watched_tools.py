@@ -18,13 +18,13 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QSlider, QWidget
-from watched_session import LARGE, MANY, WatchedSession, main, write_project
+from watched_session import LARGE, MANY, MOST, USUAL, WatchedSession, main, write_project
 
 WINDOW = (2560, 1440)
 #: Width of the gallery (pixels) in which all cards of the large project are seen at once.
 ALL_CARDS = 1700
 PHOTO = (4000, 3000)
-DESIGNS, MOST = 128, 256
+DESIGNS = 128
 STROKE = 60
 LEFT = Qt.MouseButton.LeftButton
 
@@ -37,7 +37,7 @@ class WatchedTools(WatchedSession):
     @classmethod
     def prepare(cls, folder: Path) -> None:
         write_project(folder / "large.kiri", MANY, LARGE)
-        write_project(folder / "many.kiri", MOST, (10, 10))
+        write_project(folder / "many.kiri", MOST, USUAL)
         write_photo(folder / "photo.png")
 
     def __init__(self, folder: Path) -> None:
@@ -196,11 +196,6 @@ class WatchedTools(WatchedSession):
         for name in names:
             self.step(f"open: {name}", partial(self.press, name))
         self.window.dialogs.close()
-
-    def open(self, step: str, name: str, designs: int) -> None:
-        """Open a project."""
-        self.places.project_ = self.folder / name
-        self.step(step, lambda: self.press("open_project"), lambda: self.shown(designs) and self.planned())
 
     def settled(self) -> bool:
         return not self.window.controller.hand.busy and self.planned()

@@ -27,6 +27,7 @@ from kirigami_studio.gui.commands.submenus import LanguageMenu
 from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.project import edits, preferences
+from tests.gui.test_parts import LOGO, opened, written
 
 Until = Callable[[Callable[[], bool]], None]
 #: The same in both languages: names, units, abbreviations of the field, numbers, keys; and single letters.
@@ -226,3 +227,14 @@ def test_that_one_letter_means_one_entry_in_each_german_menu(window: MainWindow)
     captions = [label for label in window.findChildren(QLabel) if label.buddy() is not None]
     said = [one.text() for one in (*captions, *window.findChildren(QPushButton))]
     assert [text for text in said if "&" in text and QKeySequence.mnemonic(text).toString() in menus] == []
+
+
+def test_that_sizes_of_parts_have_the_decimal_sign_of_the_language(
+    window: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    window.speak("de")
+    window.files.open(str(written(tmp_path, LOGO)))
+    picker = opened(window, until)
+    assert "40,0 \N{MULTIPLICATION SIGN} 40,0 mm" in picker.size_.text()
+    assert all("." not in item.text(0).splitlines()[1] for item in picker._items.values())
+    picker.reject()

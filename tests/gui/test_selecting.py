@@ -35,14 +35,14 @@ def sort_by(window: MainWindow, order: SortOrder) -> None:
     box.activated.emit(box.currentIndex())
 
 
-def test_that_what_is_won_over_equal_cuts_is_told_by_that_name(designed: MainWindow) -> None:
+def test_that_what_is_gained_is_match_over_a_sheet_of_equal_cuts(designed: MainWindow) -> None:
     sort_by(designed, SortOrder.GAIN)
-    assert designed.gallery.bar.order.currentText() == "Better than equal cuts"
-    assert "cuts are all equal" in designed.gallery.bar.order.toolTip()
+    assert designed.gallery.bar.order.currentText() == "By gained match"
+    assert "over a sheet of equal cuts" in designed.gallery.bar.order.toolTip()
     model = designed.gallery.view.model_
     for row, entry in enumerate(model.entries):
-        points = f"{100 * entry.candidate.score.siou_gain:+.1f}"
-        assert model.index(row, 0).data(VALUE_ROLE) == f"{points} over equal cuts"
+        score = entry.candidate.score
+        assert model.index(row, 0).data(VALUE_ROLE) == f"gained {100 * (score.siou - score.uniform_siou):+.1f}"
 
 
 def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: Document) -> None:

@@ -100,11 +100,12 @@ class TargetConnections(QObject):
         session, name = self._controller.session, tr(outline.name)
         if session.document.drawing:
             sentence = tr(
-                "The drawing board holds several objects. Replace them with {name}, or add it beside them?", name=name
+                "The drawing board holds several objects. Replace them with {name}, or add {name} beside them?",
+                name=name,
             )
         else:
             sentence = tr(
-                "You drew or changed the target by hand. Replace it with {name}, or add that beside it?", name=name
+                "You drew or changed the target by hand. Replace it with {name}, or add {name} beside it?", name=name
             )
         actions = (
             (tr("Replace"), partial(self._controller.targeting.set_target, outline)),

@@ -157,7 +157,7 @@ def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> st
     if selection.order is SortOrder.TV:
         return tr("roughness {value:.2f}", value=item.candidate.score.tv)
     if selection.order is SortOrder.GAIN:
-        return tr("{value:+.1f} over equal cuts", value=100.0 * item.candidate.score.siou_gain)
+        return tr("gained {value:+.1f}", value=100.0 * item.candidate.score.siou_gain)
     return tr("panels ±{percent:.0f} %", percent=100.0 * item.candidate.score.evenness.area_cv)
 
 

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.jobs.part_jobs import PartsRead, Purpose, merging_parts
 from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, LatestJob
@@ -433,5 +434,5 @@ def _state(checked: bool) -> Qt.CheckState:
 
 
 def _size(size: tuple[float, float], unit: str) -> str:
-    width, height = (f"{side:.1f}" if side >= 1.0 else f"{side:.3g}" for side in size)
+    width, height = (words.number(side, ".1f" if side >= 1.0 else ".3g") for side in size)
     return f"{width} \N{MULTIPLICATION SIGN} {height} {unit}".rstrip()

@@ -224,11 +224,8 @@ def _rows() -> tuple[tuple[str, str], ...]:
         ),
         (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
         (
-            tr("Over equal cuts"),
-            tr(
-                "Points of sIoU above the uniform sheet, whose cuts are all equal; then the difference from the other "
-                "design."
-            ),
+            tr("Match gained"),
+            tr("Points of sIoU gained over a sheet of equal cuts; then the difference from the other design."),
         ),
         (
             tr("Roughness"),

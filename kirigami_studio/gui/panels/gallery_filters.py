@@ -150,8 +150,8 @@ def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
         ),
         (
             SortOrder.GAIN,
-            tr("Better than equal cuts"),
-            tr("What matches most points (of sIoU) better than the uniform sheet, whose cuts are all equal, first."),
+            tr("By gained match"),
+            tr("The most match (sIoU) gained over a sheet of equal cuts first."),
         ),
         (SortOrder.TV, tr("By smoothness"), tr("The lowest total variation (TV) of the ratios first.")),
         (

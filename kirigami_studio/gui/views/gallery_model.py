@@ -412,7 +412,7 @@ def described(candidate: Candidate, name: str) -> str:
         rim_text(candidate),
         *symmetry_text(candidate),
         tr(
-            "Over equal cuts (the uniform sheet): {siou_gain:+.2f} points, from {uniform_siou:.2f} %",
+            "Match gained over a sheet of equal cuts: {siou_gain:+.2f} points (that has {uniform_siou:.2f} %)",
             siou_gain=100 * score.siou_gain,
             uniform_siou=100 * score.uniform_siou,
         ),
