@@ -94,10 +94,11 @@ class CutPlanner(QObject):
 
     def _take_name(self, document: Document) -> None:
         """Plan again where the design on the sheet is called otherwise now."""
-        before, now = self._wanted, self.request
-        if before is None or now is None or before.candidate is not now.candidate:
+        before = self._wanted
+        if not document.fabrication.engrave or before is None:
             return
-        if document.fabrication.engrave and before.settings == now.settings and before.name != now.name:
+        now = self.request
+        if now is not None and now.candidate is before.candidate and now.name != before.name:
             self.plan_soon()
 
     def close(self) -> None:
