@@ -14,13 +14,14 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test quick lint bench consumers demo states pairs pictures shapes messages clean
+.PHONY: help setup run test fuzz quick lint bench consumers demo states pairs pictures shapes messages clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make setup   create .venv with everything that the program and its tests need"
 	@echo "make run     open the window (without a display: play a session off-screen into out/)"
 	@echo "make test    run lint, then every test"
+	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
 	@echo "make bench   time the exact geometry"
@@ -61,6 +62,12 @@ test: setup
 	  $(MAKE) --no-print-directory lint; right=$$?; wait $$libraries && exit $$right
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
 	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock"
+
+#: Damaged files for every reader, until INPUTS are read: make fuzz INPUTS=20000 SEED=7
+INPUTS ?= 1000
+SEED ?= 0
+fuzz: setup
+	OMP_NUM_THREADS=1 $(BIN)/python tests/fuzzed_readers.py --inputs $(INPUTS) --seed $(SEED) --out build/fuzz
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

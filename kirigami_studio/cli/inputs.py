@@ -13,28 +13,34 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from kirigami_studio.cli.console import print_json
-from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, TargetError, UsageError
+from kirigami_studio.foundation.files import opened_file
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.lattice.sheet_files import LARGEST_FILE, SUFFIXES, named_sheet, read_sheet
+from kirigami_studio.lattice.sheet_files import SUFFIXES, named_sheet, read_sheet
 from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target, target_files
-from kirigami_studio.outlines.read_image import image_parts, outline_of_mask, read_image
+from kirigami_studio.outlines.read_image import image_parts, opened_image, outline_of_mask, read_image
 from kirigami_studio.outlines.silhouettes import names
+from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
+#: What masks may be, as Pillow calls them, and how many pixels.
+MASK_FORMATS, MOST_MASK_PIXELS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "PPM"), 25_000_000
+#: Largest .npz archive (bytes).
+LARGEST_ARCHIVE = 512 * 2**20
 #: What has a chosen design.
 PROJECTS = (PROJECT, *CUT_FILES)
 
@@ -245,18 +251,14 @@ def read_mask(path: Path) -> BoolArray:
     TargetError
         Missing, damaged, or not an image.
     """
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        with Image.open(path) as image:
-            deep = image.mode.startswith(("I", "F"))
-            grey = np.asarray(image if deep else image.convert("L"), dtype=np.float64)
-    except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
-        raise TargetError("mask.not_readable", path=path) from error
-    return _inside(grey)
+    content = read_bytes(path)
+    with decoding(path, "mask.not_readable"):
+        image = opened_image(content, MASK_FORMATS, MOST_MASK_PIXELS)
+        deep = image.mode.startswith(("I", "F"))
+        return _inside(np.asarray(image if deep else image.convert("L")))
 
 
-def _inside(levels: FloatArray) -> BoolArray:
+def _inside(levels: npt.NDArray[Any]) -> BoolArray:
     """Pixels above half of the highest level; of a bool mask or 0 and 1, those that are set."""
     highest = max(float(levels.max(initial=0.0)), 0.0)
     inside: BoolArray = levels > 0.5 * highest
@@ -277,9 +279,9 @@ def _outline_of(mask: npt.NDArray[np.generic], name: str) -> Outline:
 def _archive(path: Path, key: str, dimensions: int) -> npt.NDArray[np.generic]:
     """Read one array of an .npz archive."""
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise UsageError("archive.too_large", path=path, limit=LARGEST_FILE >> 20)
-        with np.load(path, allow_pickle=False) as archive:
+        if path.stat().st_size > LARGEST_ARCHIVE:
+            raise UsageError("archive.too_large", path=path, limit=LARGEST_ARCHIVE >> 20)
+        with opened_file(path, LARGEST_ARCHIVE) as file, np.load(file, allow_pickle=False) as archive:
             if key not in archive:
                 raise UsageError("archive.array_missing", name=path.name, key=key, found=", ".join(archive))
             values = np.asarray(archive[key])

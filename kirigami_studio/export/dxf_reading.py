@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from ezdxf import recover, units
+from ezdxf import units
 from ezdxf.document import Drawing
 from ezdxf.entities.arc import Arc
 from ezdxf.entities.circle import Circle
@@ -30,10 +30,17 @@ from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.fabricate.cut_path import edge_lengths
 from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.errors import ExportError, TargetError
+from kirigami_studio.foundation.files import read_at_most
+from kirigami_studio.outlines.read_dxf import opened_dxf
+from kirigami_studio.outlines.source_file import MEGABYTE, TimeBudget
 
 #: Largest file that is read (bytes); a 64 x 64 design is below 2 MB.
 LARGEST_FILE = 100_000_000
+#: Seconds of processor time that a file may take to be read; a 64 x 64 design has 1.5 MB and takes 1.2 s.
+LEAST_SECONDS, SECONDS_PER_MEGABYTE = 3.0, 2.5
+#: Curves that reach farther than this from the origin (mm) are not followed.
+LARGEST_CURVE_MM = 100_000.0
 #: Chord tolerance (mm) for curves.
 FLATTEN_MM = 0.005
 #: Facts about a file's making that its check needs; R12 files keep them among ezdxf's own records.
@@ -72,7 +79,7 @@ def read_with_ezdxf(path: Path) -> FileContent:
         The file does not read, or ezdxf's audit finds an error.
     """
     try:
-        content = path.read_bytes()
+        content = read_at_most(path, LARGEST_FILE)
     except OSError as error:
         raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
     found = _READ.get(content)
@@ -176,37 +183,42 @@ def read_content(path: Path) -> DxfContent:
     Raises
     ------
     ExportError
-        The file is missing, too large, or not a DXF.
+        The file is missing, too large, not a DXF, or takes too long to read.
     """
-    content = DxfContent()
-    document = _open(path, content)
+    content, file = DxfContent(), _bytes_of(path)
+    budget = TimeBudget(LEAST_SECONDS + SECONDS_PER_MEGABYTE * len(file) / MEGABYTE)
     try:
-        _collect(document, content)
+        _collect(_open(path, file, content, budget), content, budget)
+    except TargetError as error:
+        raise ExportError("cut_file.not_usable", path=path, reason=error) from error
     except PARSER_FAULTS as error:
         raise ExportError("cut_file.damaged", path=path) from error
     return content
 
 
-def _open(path: Path, content: DxfContent) -> Drawing:
+def _open(path: Path, file: bytes, content: DxfContent, budget: TimeBudget) -> Drawing:
+    try:
+        document, repaired = opened_dxf(path, file, budget)
+    except OSError as error:
+        # ezdxf raises a bare OSError for a file that is no DXF at all.
+        raise ExportError("dxf.no_dxf", path=path) from error
+    except PARSER_FAULTS as error:
+        raise ExportError("cut_file.damaged", path=path) from error
+    if repaired:
+        content.problems.append(Problem.error("cut_file.only_partly_readable"))
+    return document
+
+
+def _bytes_of(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise ExportError("dxf.too_large", path=path, limit=LARGEST_FILE // 1_000_000)
-        try:
-            return readfile(path)
-        except PARSER_FAULTS:
-            document, _ = recover.readfile(path)
-            content.problems.append(Problem.error("cut_file.only_partly_readable"))
-            return document
+        return read_at_most(path, LARGEST_FILE)
     except OSError as error:
-        # ezdxf raises a bare OSError for a file that is no DXF at all.
-        if error.strerror is None:
-            raise ExportError("dxf.no_dxf", path=path) from error
-        raise ExportError("dxf.cannot_open", path=path, reason=error.strerror) from error
-    except PARSER_FAULTS as error:
-        raise ExportError("cut_file.damaged", path=path) from error
+        raise ExportError("dxf.cannot_open", path=path, reason=error.strerror or str(error)) from error
 
 
-def _collect(document: Drawing, content: DxfContent) -> None:
+def _collect(document: Drawing, content: DxfContent, budget: TimeBudget) -> None:
     """Fill ``content`` from the document's header and model space."""
     factor = _unit_factor(document, content)
     content.facts = _facts(document)
@@ -215,6 +227,7 @@ def _collect(document: Drawing, content: DxfContent) -> None:
     others: Counter[str] = Counter()
     risky: Counter[str] = Counter()
     for entity in entities:
+        budget.check()
         kind = entity.dxftype()
         if kind not in CURVES:
             others[kind] += 1
@@ -265,6 +278,9 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
     name = {"kind": entity.dxftype(), "handle": str(entity.dxf.get("handle", "?")), "layer": layer}
     try:
         points = _flattened(entity, factor)
+    except _TooLargeError:
+        content.problems.append(Problem.error("cut_file.too_large_curve", limit=LARGEST_CURVE_MM / 1000.0, **name))
+        return
     except PARSER_FAULTS:
         content.problems.append(Problem.error("cut_file.no_curve", **name))
         return
@@ -300,6 +316,10 @@ def _exact_length(entity: DXFEntity) -> float | None:
     return None
 
 
+class _TooLargeError(Exception):
+    """A curve beyond what any machine cuts; its chords would have no end."""
+
+
 def _flattened(entity: DXFEntity, factor: float) -> FloatArray:
     """Points of a curve in mm: (P, 2); raises what ezdxf raises for impossible curves."""
     if isinstance(entity, LWPolyline) and not entity.has_arc:
@@ -311,7 +331,11 @@ def _flattened(entity: DXFEntity, factor: float) -> FloatArray:
         for value in entity.dxf.all_existing_dxf_attribs().values():
             if isinstance(value, float) and not math.isfinite(value):
                 return np.array([[math.nan, math.nan]])
-        points = [(v.x, v.y) for v in make_path(entity).flattening(FLATTEN_MM / factor)]
+        path = make_path(entity)
+        reach = max((max(abs(v.x), abs(v.y)) for v in path.control_vertices()), default=0.0) * factor
+        if not reach <= LARGEST_CURVE_MM:  # numbers that overflow are none any more
+            raise _TooLargeError
+        points = [(v.x, v.y) for v in path.flattening(FLATTEN_MM / factor)]
     return np.array(points, dtype=np.float64).reshape(-1, 2) * factor
 
 

@@ -12,9 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
+from kirigami_studio.export.dxf_reading import LARGEST_FILE
 from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import read_at_most
 
 Pair = tuple[int, str]
 CLOSED_FLAG = 1
@@ -41,7 +43,7 @@ def read_group_codes(path: Path) -> FileContent:
         Not a list of pairs, or a polyline without coordinates.
     """
     try:
-        sections = _sections(list(_pairs(path.read_text(encoding="latin-1"))))
+        sections = _sections(list(_pairs(read_at_most(path, LARGEST_FILE).decode("latin-1"))))
         header = _header(sections.get("HEADER", []))
         layers = {
             entity.first(2, ""): int(entity.first(62, "0"))
@@ -51,16 +53,18 @@ def read_group_codes(path: Path) -> FileContent:
         entities = _with_vertices(_entities(sections.get("ENTITIES", [])))
         polylines = [entity for entity in entities if entity.kind in ("LWPOLYLINE", "POLYLINE")]
         strokes = tuple(_stroke(entity) for entity in polylines)
-    except (ValueError, OSError) as error:
+        unit = header.get("$INSUNITS", {}).get(70)
+        code = None if unit is None else int(unit)
+        corner = header.get("$EXTMAX", {})
+        size = (float(corner[10]), float(corner[20])) if 10 in corner and 20 in corner else None
+    except (ValueError, ArithmeticError, LookupError, OSError) as error:
         raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
-    unit = header.get("$INSUNITS", {}).get(70)
-    corner = header.get("$EXTMAX", {})
     others = tuple(entity.kind for entity in entities if entity.kind not in ("LWPOLYLINE", "POLYLINE"))
     return FileContent(
         reader="the group-code reader",
         strokes=strokes,
-        unit=None if unit is None else int(unit),
-        extent=(float(corner[10]), float(corner[20])) if 10 in corner and 20 in corner else None,
+        unit=code,
+        extent=size,
         layers=layers,
         others=others,
     )

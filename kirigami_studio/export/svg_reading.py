@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from collections.abc import Iterator
@@ -17,11 +18,15 @@ from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import read_at_most
+from kirigami_studio.outlines.svg_safety import refuse_long_numbers
 
 MM_PER_PX = 25.4 / 96.0
 #: A scale that differs from mm by less than this is mm; svgelements rounds lengths to six digits.
 SAME_SCALE = 1e-5
 _COLOURS = {"#{:02x}{:02x}{:02x}".format(*colour): index for index, colour in ACI_COLOUR.items()}
+#: Largest file that is read (bytes).
+LARGEST_FILE = 100_000_000
 #: Colour of a stroke in none of the profiles' colours.
 UNKNOWN_COLOUR = -1
 _WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
@@ -38,15 +43,17 @@ def read_with_svgelements(path: Path) -> FileContent:
         No readable SVG.
     """
     try:
+        content = read_at_most(path, LARGEST_FILE)
+        refuse_long_numbers(content)
         # svgelements carries no types.
-        svg: Any = cast(Any, SVG).parse(path, reify=False)
+        svg: Any = cast(Any, SVG).parse(io.BytesIO(content), reify=False)
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
         width, height = float(box.width), float(box.height)
         strokes = tuple(
             _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
         )
-    except (OSError, ElementTree.ParseError, AttributeError, ValueError, TypeError, ZeroDivisionError) as error:
+    except Exception as error:  # svgelements raises a dozen kinds on damaged files
         raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
     unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
     return FileContent("svgelements", strokes, unit, (width, height), _layers(strokes))
@@ -61,7 +68,7 @@ def read_with_xml(path: Path) -> FileContent:
         No readable SVG, or path data with other words.
     """
     try:
-        root = ElementTree.parse(path).getroot()
+        root = ElementTree.fromstring(read_at_most(path, LARGEST_FILE))
         width, height = (str(root.get(name)) for name in ("width", "height"))
         box = [float(number) for number in str(root.get("viewBox")).split()]
         size = (_millimetres(width), _millimetres(height))
@@ -70,7 +77,7 @@ def read_with_xml(path: Path) -> FileContent:
             for group in root.findall(f"{{{NAMESPACE}}}g")
             for element in group.findall(f"{{{NAMESPACE}}}path")
         )
-    except (OSError, ElementTree.ParseError, ValueError, StopIteration) as error:
+    except (OSError, ElementTree.ParseError, ArithmeticError, LookupError, ValueError, RuntimeError) as error:
         raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
     millimetres = width.endswith("mm") and height.endswith("mm") and tuple(box) == (0.0, 0.0, *size)
     others = tuple(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from datetime import date
@@ -20,6 +19,7 @@ import platformdirs
 
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.foundation.files import read_toml
 from kirigami_studio.foundation.resources import resource
 
 #: The preset that a new project starts with: the film of the paper's specimens.
@@ -239,8 +239,8 @@ def read_preset(path: Path) -> Material:
         Unreadable, not TOML, or with missing, unknown or impossible entries.
     """
     try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        entries = read_toml(path)
+    except (OSError, ValueError) as error:
         raise FabricationError("material.file_not_readable", path=path, reason=str(error)) from error
     expected = {field.name: field.default is MISSING for field in fields(Material) if field.name != "key"}
     if missing := {name for name, needed in expected.items() if needed} - entries.keys():

@@ -1,19 +1,96 @@
-"""Atomic writing: a file appears whole or not at all, and an old one survives a failure.  Folders for one writer."""
+"""Atomic writing: a file appears whole or not at all, and an old one survives a failure.  Folders for one writer.
+
+Reading with limits: regular files only, because a pipe or a device may have no end, and no more than can be meant.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import stat
 import sys
 import tempfile
+import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any, BinaryIO
 
 from kirigami_studio.foundation.errors import ExportError
 
 #: Permissions of files that did not exist before: everybody may read them.
 NEW_FILE_MODE = 0o644
+#: Largest settings file (bytes).
+LARGEST_SETTINGS = 1_000_000
+
+
+@contextlib.contextmanager
+def opened_file(path: Path, most_bytes: int) -> Iterator[BinaryIO]:
+    """Open a regular file, or the one that a link leads to, for reading.
+
+    Raises
+    ------
+    OSError
+        It is missing, a folder, a pipe or a device, larger than ``most_bytes``, or cannot be read.
+    ValueError
+        A null character in the name.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
+    handle = os.open(path, flags)
+    try:
+        found = os.fstat(handle)
+        if stat.S_ISDIR(found.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, "it is a pipe or a device, not a file", str(path))
+        if found.st_size > most_bytes:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), str(path))
+        with open(handle, "rb", closefd=False) as stream:
+            yield stream
+    finally:
+        os.close(handle)
+
+
+def read_at_most(path: Path, most_bytes: int) -> bytes:
+    """Return the content of a regular file.
+
+    Raises
+    ------
+    OSError, ValueError
+        As :func:`opened_file`.
+    """
+    with opened_file(path, most_bytes) as stream:
+        return stream.read(most_bytes)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the entries of a settings file.
+
+    Raises
+    ------
+    OSError
+        As :func:`read_at_most`.
+    ValueError
+        It is not TOML in UTF-8, or one that is nested too deep or holds too long numbers.
+    """
+    content = read_at_most(path, LARGEST_SETTINGS)
+    try:
+        entries = tomllib.loads(content.decode("utf-8"))
+        _check_whole_numbers(entries)
+    except RecursionError as error:
+        raise ValueError("it is nested too deep") from error
+    return entries
+
+
+def _check_whole_numbers(entry: object) -> None:
+    """TOML's whole numbers have 64 bits; Python's reader takes longer ones, which no float can hold."""
+    if isinstance(entry, dict):
+        entry = list(entry.values())
+    if isinstance(entry, list):
+        for part in entry:
+            _check_whole_numbers(part)
+    elif isinstance(entry, int) and not -(2**63) <= entry < 2**63:
+        raise ValueError("it holds a number of more than 64 bits")
 
 
 def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] | None = None) -> None:

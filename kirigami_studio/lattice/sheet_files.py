@@ -8,20 +8,24 @@ table of ratios, as JSON or .npy, is a sheet too.
 
 from __future__ import annotations
 
+import io
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from kirigami_studio.foundation.errors import GridError, RatioError, SheetError, UsageError
+from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import SIDES, Rim, Sheet
 
 #: What :func:`read_sheet` reads.
 SUFFIXES = (".json", ".npy")
-LARGEST_FILE = 512 * 1024 * 1024
+LARGEST_FILE = 64 * 1024 * 1024
 
 
 def sheet_json(sheet: Sheet) -> dict[str, object]:
@@ -86,10 +90,10 @@ def read_sheet(path: Path) -> Sheet:
         if path.stat().st_size > LARGEST_FILE:
             raise RatioError("ratios.file_too_large", path=path, limit=LARGEST_FILE >> 20)
         if suffix == ".npy":
-            content: object = np.load(path, allow_pickle=False)
+            content: object = _array(read_at_most(path, LARGEST_FILE))
         else:
-            content = json.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, EOFError, RecursionError) as error:
+            content = json.loads(read_at_most(path, LARGEST_FILE).decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
         if isinstance(error, OSError) and error.strerror:
             raise RatioError("ratios.not_readable", path=path, reason=error.strerror) from error
         raise RatioError("ratios.damaged", path=path) from error
@@ -98,6 +102,28 @@ def read_sheet(path: Path) -> Sheet:
     if not isinstance(content, dict) or not isinstance(content.get("ratio"), (list, np.ndarray)):
         raise RatioError("ratios.not_a_table", name=path.name)
     return named_sheet(content, path.name)
+
+
+def _array(content: bytes) -> npt.NDArray[np.generic]:
+    """The table of an .npy file; its header may not claim more numbers than follow.
+
+    Raises
+    ------
+    ValueError
+        It does, or it is damaged.
+    """
+    stream = io.BytesIO(content)
+    try:
+        version = np.lib.format.read_magic(stream)
+        header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, kind = header(stream)
+        if kind.hasobject or math.prod(shape) * kind.itemsize > len(content) - stream.tell():
+            raise ValueError("the header claims more than there is")
+        stream.seek(0)
+        table: npt.NDArray[np.generic] = np.lib.format.read_array(stream, allow_pickle=False)
+        return table
+    except Exception as error:  # NumPy evaluates the header as Python text: it may raise a dozen kinds
+        raise ValueError(str(error)) from error
 
 
 def named_sheet(entries: Mapping[str, Any], name: str) -> Sheet:

@@ -156,7 +156,10 @@ def _read(path: Path, content: bytes, with_texts: bool = False) -> Read:
         No DXF file, one that takes too much to read, or no lines.
     """
     budget = TimeBudget()
-    drawing, notes = _opened(path, content, budget)
+    drawing, repaired = opened_dxf(path, content, budget)
+    notes: tuple[str, ...] = ()
+    if repaired:
+        notes = (tr("The file was damaged and was repaired while reading. Check the shape."),)
     curves, texts, hidden = _visible(drawing, budget)
     written = [text for entity in texts[:MOST_LETTERS] for text in _texts(entity)] if with_texts else []
     if not curves and not written:
@@ -198,20 +201,28 @@ class _TimedBytes(io.BytesIO):
         return super().read1(size)
 
 
-def _opened(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing, tuple[str, ...]]:
-    """Read strictly, then with ezdxf's recover mode."""
+def opened_dxf(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing, bool]:
+    """Read strictly, then with ezdxf's recover mode; whether that was needed.
+
+    Raises
+    ------
+    TargetError
+        Too large for its kind, or it takes too long.
+    Exception
+        Whatever ezdxf raises on damaged files.
+    """
     try:
         if content.startswith(BINARY):
             if len(content) > MOST_BINARY_MEGABYTES * 1_000_000:
                 megabytes = len(content) / 1_000_000
                 raise TargetError("source.too_large", path=path, megabytes=megabytes, limit=MOST_BINARY_MEGABYTES)
-            return readfile(path), ()
+            return readfile(path), False
         encoding = dxf_stream_info(io.StringIO(content[:100_000].decode("utf-8", errors="ignore"))).encoding
         raw = _TimedBytes(content, budget, TEXT_TIME)
-        return read(io.TextIOWrapper(raw, encoding=encoding, errors="surrogateescape")), ()
+        return read(io.TextIOWrapper(raw, encoding=encoding, errors="surrogateescape")), False
     except (DXFError, OSError, ValueError, LookupError, TypeError, AttributeError):
         drawing, _ = recover.read(_TimedBytes(content, budget))
-        return drawing, (tr("The file was damaged and was repaired while reading. Check the shape."),)
+        return drawing, True
 
 
 def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], list[DXFGraphic], set[str]]:

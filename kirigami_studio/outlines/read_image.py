@@ -247,7 +247,7 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
     return Outline.from_points(ring, name=name, notes=notes, unit="px")
 
 
-def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS) -> Image.Image:
+def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels: int = MOST_PIXELS) -> Image.Image:
     """Decode a picture, all of it.
 
     Parameters
@@ -255,6 +255,7 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS) -> Image.Im
     content : bytes
     formats : tuple of str
         Those that are read, as Pillow calls them.
+    most_pixels : int
 
     Raises
     ------
@@ -274,8 +275,8 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS) -> Image.Im
             # Pillow's own words name the object in memory and not the file.
             raise ValueError("it does not begin like one") from None
         width, height = image.size
-        if width * height > MOST_PIXELS:
-            raise TargetError("image.too_many_pixels", width=width, height=height, limit=MOST_PIXELS // 10**6)
+        if width * height > most_pixels:
+            raise TargetError("image.too_many_pixels", width=width, height=height, limit=most_pixels // 10**6)
         image.load()
     return image
 

@@ -9,11 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.files import read_at_most
 
 MEGABYTE = 1_000_000
 
-#: Seconds of processor time that one source may take to be read, and seconds by the clock.
-MOST_SECONDS, MOST_WAITING = 3.5, 8.0
+#: Seconds of processor time that one source may take to be read, and how many times as long by the clock.
+MOST_SECONDS, WAITING = 3.5, 2.3
 
 
 class TimeBudget:
@@ -22,7 +23,8 @@ class TimeBudget:
     Counted in the processor time of the thread first, so that a busy machine refuses no ordinary file.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, seconds: float = MOST_SECONDS) -> None:
+        self._seconds = seconds
         self._begun = time.thread_time(), time.monotonic()
 
     def check(self, share: float = 1.0) -> None:
@@ -34,8 +36,8 @@ class TimeBudget:
             It is.
         """
         used, waited = time.thread_time() - self._begun[0], time.monotonic() - self._begun[1]
-        if used > share * MOST_SECONDS or waited > share * MOST_WAITING:
-            raise TargetError("source.too_slow", seconds=MOST_SECONDS)
+        if used > share * self._seconds or waited > share * WAITING * self._seconds:
+            raise TargetError("source.too_slow", seconds=self._seconds)
 
 
 def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
@@ -52,7 +54,7 @@ def read_bytes(path: Path, most_megabytes: int = 20) -> bytes:
         size = path.stat().st_size
         if size > most_megabytes * MEGABYTE:
             raise TargetError("source.too_large", path=path, megabytes=size / MEGABYTE, limit=most_megabytes)
-        content = path.read_bytes()
+        content = read_at_most(path, most_megabytes * MEGABYTE)
     except FileNotFoundError:
         raise TargetError("source.missing", path=path) from None
     except OSError as error:

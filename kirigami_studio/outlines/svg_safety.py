@@ -46,8 +46,7 @@ def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
     # Without the zero bytes UTF-16 text is searched as well.
     if b"<!entity" in content.replace(b"\0", b"").lower():
         raise TargetError("svg.entities")
-    if DIGITS.search(content.replace(b"\0", b"")):
-        raise TargetError("svg.number_too_long", limit=MOST_DIGITS)
+    refuse_long_numbers(content)
     try:
         root = ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
@@ -61,6 +60,19 @@ def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
     width = REAL_LENGTH.fullmatch(root.get("width", ""))
     width_mm = float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
     return ElementTree.tostring(root), width_mm, notes
+
+
+def refuse_long_numbers(content: bytes) -> None:
+    """Refuse a document with numbers of more than ``MOST_DIGITS`` digits: svgelements needs hours for them.
+
+    Raises
+    ------
+    TargetError
+        It has one.
+    """
+    # Without the zero bytes UTF-16 text is searched as well.
+    if DIGITS.search(content.replace(b"\0", b"")):
+        raise TargetError("svg.number_too_long", limit=MOST_DIGITS)
 
 
 def _tag(element: Element) -> str:

@@ -482,7 +482,7 @@ def _read_ratios(members: Members, name: str, count: int) -> list[RatioField]:
         if np.lib.format.read_magic(stream) != (1, 0):
             raise ValueError("version of the NPY format")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
-    except (ValueError, SyntaxError, TypeError, KeyError, RecursionError, MemoryError) as error:
+    except Exception as error:  # NumPy evaluates the header as Python text: it may raise a dozen kinds
         raise ProjectError("project.array_not_readable", name=name, reason=str(error)) from error
     if len(shape) != 3 or shape[0] != count or fortran or dtype != np.dtype("<f8"):
         raise ProjectError("project.array_of_wrong_shape", name=name, designs=count, shape=shape, dtype=str(dtype))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import tomli_w
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import read_toml, write_atomically
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -121,10 +120,10 @@ def load(path: Path) -> Preferences:
         Unreadable, not TOML, or with entries that are no preferences.
     """
     try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
+        entries = read_toml(path)
     except FileNotFoundError:
         return Preferences()
-    except (OSError, ValueError, RecursionError, OverflowError) as error:
+    except (OSError, ValueError) as error:
         raise ProjectError("preferences.not_readable", path=path, reason=str(error)) from error
     if unknown := entries.keys() - asdict(Preferences()).keys():
         raise ProjectError("preferences.unknown_entries", path=path, names=", ".join(sorted(unknown)))

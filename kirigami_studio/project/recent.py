@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import tomli_w
 
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import read_toml, write_atomically
 
 #: Files of each kind that are remembered.
 MOST = 10
@@ -62,10 +61,10 @@ def load(path: Path) -> Recent:
         Unreadable, not TOML, or with other entries.
     """
     try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
+        entries = read_toml(path)
     except FileNotFoundError:
         return Recent()
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise ProjectError("recent.not_readable", path=path, reason=str(error)) from error
     if unknown := entries.keys() - {"projects", "targets"}:
         raise ProjectError("recent.unknown_entries", path=path, names=", ".join(sorted(unknown)))

@@ -14,7 +14,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import opened_file, write_atomically
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.picture_record import TracedPicture
@@ -22,6 +22,8 @@ from kirigami_studio.project.picture_record import TracedPicture
 NOTE = "recovery.json"
 #: A note is a few hundred bytes; whatever is longer is none.
 LONGEST_NOTE = 64 * 2**10
+#: Largest recovery file, the picture that it traces included (bytes).
+LARGEST_FILE = 256 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +82,15 @@ def read_note(path: Path) -> Note:
         Unreadable, damaged, or not a recovery file.
     """
     try:
-        with zipfile.ZipFile(path) as archive, archive.open(NOTE) as stream:
+        with (
+            opened_file(path, LARGEST_FILE) as packed,
+            zipfile.ZipFile(packed) as archive,
+            archive.open(NOTE) as stream,
+        ):
             content = stream.read(LONGEST_NOTE)
     except OSError as error:
         raise ProjectError("recovery.not_readable", path=path, reason=error.strerror or str(error)) from error
-    except (KeyError, ValueError, RuntimeError, zipfile.BadZipFile) as error:
+    except Exception as error:  # zipfile and its decoders raise a dozen kinds on damaged files
         raise ProjectError("recovery.damaged", path=path, reason=str(error)) from error
     try:
         record = Record(read_json(content, NOTE), NOTE)

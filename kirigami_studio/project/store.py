@@ -13,7 +13,7 @@ from kirigami_studio import __version__
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.design_record import record_in
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.project import migrations
 from kirigami_studio.project.artwork_record import PICTURES, artwork_members, artwork_of
 from kirigami_studio.project.codec import decode, encode
@@ -151,7 +151,7 @@ def _read_file(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise ProjectError("project.file_too_large", path=path, limit=LARGEST_FILE // 2**20)
-        return path.read_bytes()
+        return read_at_most(path, LARGEST_FILE)
     except OSError as error:
         raise ProjectError("project.not_readable", path=path, reason=error.strerror or str(error)) from error
     except ValueError as error:  # a null character in the name

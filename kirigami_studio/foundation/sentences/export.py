@@ -184,6 +184,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.not_a_number": mark(
         "The {kind} {handle:.20} on layer {layer:.40} has a coordinate that is not a number. Draw it again."
     ),
+    "cut_file.not_usable": mark("{path}: {reason}"),
+    "cut_file.too_large_curve": mark(
+        "The {kind} {handle:.20} on layer {layer:.40} reaches farther than {limit:g} m. Remove it."
+    ),
     "cut_file.no_length": mark("The {kind} {handle:.20} on layer {layer:.40} has no length. Remove it."),
     "cut_file.empty": mark("The file holds nothing that can be cut."),
     "cut_file.trap_layers": mark(

@@ -24,7 +24,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "ratios.not_readable": mark("Cannot read a sheet from {path}: {reason}."),
     "ratios.damaged": mark("Cannot read a sheet from {path}: the file is damaged or of another kind."),
     "ratios.not_a_table": mark('{name} must contain {{"ratio": [[...], ...]}}, the top row first.'),
-    "mask.not_readable": mark("Cannot read the mask image {path}: it is missing, damaged or not an image."),
+    "mask.not_readable": mark(
+        "Cannot read the mask image {name}: it is damaged or not an image. Save it again as PNG."
+    ),
     "input.mask_not_finite": mark("The mask is not finite in row {row}, column {column}. Every pixel must be finite."),
     "archive.not_readable": mark("Cannot read {path}: it is missing, damaged or not an .npz archive."),
     "archive.too_large": mark("{path} is larger than {limit} MB. Split it."),
