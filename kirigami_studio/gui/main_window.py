@@ -34,6 +34,7 @@ from kirigami_studio.gui.language import Language
 from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.open_dialogs import Dialogs
+from kirigami_studio.gui.panels.card import ElidedLabel
 from kirigami_studio.gui.panels.fabrication_panel import Extent, FabricationPanel
 from kirigami_studio.gui.panels.gallery_panel import GalleryPanel
 from kirigami_studio.gui.panels.generate_bar import GenerateBar
@@ -140,9 +141,9 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(body)
 
     def _build_status(self) -> None:
-        self.status_text = QLabel()
+        self.status_text = ElidedLabel(Qt.TextElideMode.ElideRight)
         self.status_text.setAccessibleName(tr("Status"))
-        self.status_text.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.status_text.setContentsMargins(12, 0, 8, 0)
         self.facts = QLabel()
         bar = self.statusBar()
         bar.setSizeGripEnabled(False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.application import create_window
+from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
@@ -130,6 +132,17 @@ def until(qtbot: QtBot) -> Callable[[Callable[[], bool]], None]:
         qtbot.waitUntil(happened, timeout=PATIENCE)
 
     return wait
+
+
+@pytest.fixture
+def english_afterwards() -> Iterator[None]:
+    """Speak the desktop's language again when the test is over."""
+    wanted = os.environ.get("LANGUAGE")
+    yield
+    os.environ.pop("LANGUAGE", None)
+    if wanted is not None:
+        os.environ["LANGUAGE"] = wanted
+    speak(SYSTEM)
 
 
 @pytest.fixture

@@ -7,16 +7,21 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
+from kirigami_studio.gui.look.theme import LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.panels.cuts_page import CutsPage
 from kirigami_studio.gui.panels.hinge_bar import RULES
+from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
+from kirigami_studio.gui.scene.view_transform import ViewTransform
 from kirigami_studio.gui.views.hinge_gestures import HingeDrag
 from kirigami_studio.project.settings import FabricationSettings
+from tests.gui.test_cut_preview import plan_of
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT, SHIFT = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.ShiftModifier
@@ -272,3 +277,28 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     assert page.hinges.selection_text.text() == "2 connectors, 1 cut through" and page.hinges.remove.isEnabled()
     cutting.commands["undo"].trigger()
     until(lambda: page.hinges.selection_text.text() == "2 connectors")
+
+
+@pytest.mark.parametrize("size", [(260, 260), (700, 700), (1600, 1200)])
+@pytest.mark.parametrize("cells", [3, 8, 20])
+def test_that_a_dot_is_no_wider_than_a_third_of_nine_panels_in_ten(cells: int, size: tuple[int, int]) -> None:
+    plan = plan_of(cells, cells)
+    connectors, transform = Connectors(plan), ViewTransform(size[1] / plan.size_mm[1], (0.0, size[1]))
+    sides = [np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1).min() for panel in plan.panels]
+    width = 2.0 * connectors.radius(transform)
+    too_small = [side for side in sides if transform.scale * side < 3.0 * width - 1e-9]
+    assert 2.4 <= width <= 8.0
+    assert width == pytest.approx(2.4) or len(too_small) <= 0.1 * len(sides)
+
+
+def test_that_dots_are_drawn_as_wide_as_they_are_said_to_be() -> None:
+    plan = plan_of(4, 4)
+    connectors, transform = Connectors(plan), ViewTransform(1.0, (20.0, plan.size_mm[1] + 20.0))
+    picture = QImage(round(plan.size_mm[0]) + 40, round(plan.size_mm[1]) + 40, QImage.Format.Format_RGB32)
+    picture.fill(QColor("white"))
+    painter = QPainter(picture)
+    paint_connectors(painter, connectors, transform, LIGHT, frozenset())
+    painter.end()
+    x, y = np.rint(transform.to_pixels(plan.hinges.position)[0]).astype(int).tolist()
+    inked = sum(picture.pixelColor(x + step, y).lightness() < 200 for step in range(-15, 16))
+    assert abs(inked - 2.0 * connectors.radius(transform)) <= 1.5

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Iterator
 
 import pytest
 from PIL import Image
@@ -15,19 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.dialogs.help import GuideWindow
-from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.main_window import MainWindow
-
-
-@pytest.fixture
-def english_afterwards() -> Iterator[None]:
-    """Speak the desktop's language again when the test is over."""
-    wanted = os.environ.get("LANGUAGE")
-    yield
-    os.environ.pop("LANGUAGE", None)
-    if wanted is not None:
-        os.environ["LANGUAGE"] = wanted
-    speak(SYSTEM)
 
 
 @pytest.fixture

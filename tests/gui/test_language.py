@@ -26,6 +26,7 @@ from kirigami_studio.foundation.words import again, language, number, tr
 from kirigami_studio.gui.commands.submenus import LanguageMenu
 from kirigami_studio.gui.language import SYSTEM, speak
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.views.target_view import TargetView
 from kirigami_studio.project import edits, preferences
 from tests.gui.test_parts import LOGO, opened, written
 
@@ -36,7 +37,7 @@ NEUTRAL = re.compile(
     r"System|English|Deutsch|Status|Text|Layout|Prior|Ellipse|[A-Za-z])\b|[^a-zA-Z]"
 )
 #: Names of materials and machines are data.
-DATA = re.compile(r"QComboBox material|ChoiceBox machineProfile|QLabel muted|FittingLabel|QAction $|QAction recent")
+DATA = re.compile(r"ComboBox material|ChoiceBox machineProfile|QLabel muted|FittingLabel|QAction $|QAction recent")
 #: What a person reads or is read to, by the property that holds it.
 PROPERTIES = ("toolTip", "statusTip", "accessibleName", "accessibleDescription", "placeholderText", "suffix", "title")
 
@@ -145,6 +146,68 @@ def test_that_texts_in_the_drawing_board_follow_the_language(heart: MainWindow) 
     heart.speak("de")
     assert heart.target.tools.done_button.text() == "Fertig"
     assert heart.target.editing
+
+
+def test_that_the_empty_gallery_follows_the_language(window: MainWindow) -> None:
+    assert window.gallery.view.hint[0] == "No designs yet"
+    window.speak("de")
+    assert window.gallery.view.hint[0] == "Noch keine Entwürfe"
+    assert window.gallery.view.hint[1].startswith("Hier erscheinen die Entwürfe")
+
+
+def test_that_every_step_of_the_tour_is_said_in_the_language_of_the_moment(designed: MainWindow) -> None:
+    designed.speak("de")
+    designed.tour.start()
+    assert designed.tour.callout.title.text() == "Ein Ziel wählen"
+    designed.tour.callout.next.click()
+    assert designed.tour.callout.title.text() == "Entwürfe erzeugen"
+    designed.speak("en")
+    assert designed.tour.callout.title.text() == "Generate designs"
+    designed.tour.end()
+
+
+def test_that_sizes_of_parts_have_the_decimal_sign_of_the_language(
+    window: MainWindow, tmp_path: Path, until: Until
+) -> None:
+    path = tmp_path / "two.svg"
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="40mm" viewBox="0 0 90 40">'
+        '<path id="a" d="M0 0h40.5v30.5h-40.5z"/><path id="b" d="M50 0h30.5v20.5h-30.5z"/></svg>',
+        encoding="utf-8",
+    )
+    window.speak("de")
+    window.files.open(str(path))
+    until(lambda: window.dialogs.parts is not None and window.dialogs.parts.complete)
+    assert window.dialogs.parts is not None
+    assert window.dialogs.parts.size_.text() == "Das Ziel wird 40,5 \N{MULTIPLICATION SIGN} 30,5 mm."
+    window.dialogs.parts.reject()
+
+
+@pytest.mark.parametrize("code", ["en", "de"])
+def test_that_what_has_no_room_ends_with_dots(designed: MainWindow, code: str) -> None:
+    designed.speak(code)
+    designed.resize(1280, 720)
+    material, order = designed.fabrication.material, designed.gallery.bar.order
+    assert material.currentText().startswith(material.shown_text().removesuffix("…"))
+    assert material.shown_text().endswith("…") and order.shown_text() == order.currentText()
+    designed.status_text.setText(100 * "words ")
+    assert designed.status_text.drawn_text().endswith("…") and designed.status_text.toolTip() == 100 * "words "
+    material.setFixedWidth(400)
+    assert material.shown_text() == material.currentText()
+
+
+@pytest.mark.parametrize("code", ["en", "de"])
+@pytest.mark.parametrize("height", [40, 120, 190, 264, 500])
+def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(
+    window: MainWindow, code: str, height: int
+) -> None:
+    window.speak(code)
+    view = TargetView()
+    view.resize(146, height)
+    picture = view.grab().toImage()
+    darkest = [min(picture.pixelColor(x, y).lightness() for x in range(4, 142)) for y in range(4, height - 3)]
+    assert min(darkest) < 100 < min(darkest[-2:])
+    view.deleteLater()
 
 
 def test_that_numbers_have_the_decimal_sign_of_the_language(designed: MainWindow) -> None:

@@ -161,3 +161,16 @@ def test_that_many_designs_are_compared_in_the_worker(
     until(lambda: len(model.all_entries) == 5)
     until(lambda: model.rowCount() == 3)
     assert model.index(head(window), 0).data(ALIKE_ROLE) == 2
+
+
+def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(
+    stacked: MainWindow, english_afterwards: None
+) -> None:
+    stacked.speak("de")
+    stacked.commands["all_designs"].trigger()
+    page = stacked.connections.all_designs.page
+    assert page is not None
+    table = page.table
+    index = next(at for row in range(table.model_.rowCount()) if (at := table.model_.index(row, 0)).data(ALIKE_ROLE))
+    box = table.cards.alike_box(table.visualRect(index), index)
+    assert box.width() >= table.fontMetrics().horizontalAdvance("+2 gleiche") + 8

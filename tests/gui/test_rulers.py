@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtCore import QEvent
 
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.sketching.rulers import RULER, fits
 from kirigami_studio.gui.views.target_view import Tool
 from tests.gui.test_drawing_board import CTRL, LEFT, NONE, PLAIN, board, drag, pixel, placed, plate, send, use
 
@@ -98,3 +99,8 @@ def test_that_guides_catch_what_is_drawn_and_what_is_moved(plate: MainWindow) ->
     drag(plate, (33.1, 23.5), (60, 60), PLAIN)
     assert context.active is not None
     assert context.active.polygon.bounds[:2] == pytest.approx((33.3, 23.3))
+
+
+def test_that_a_number_is_written_where_it_lies_whole_on_its_ruler() -> None:
+    assert fits(0, 100.0, 20, 123.0) and not fits(0, 100.0, 20, 122.0)
+    assert fits(1, 100.0, 20, 100.0) and not fits(1, 101.0, 20, 100.0) and not fits(1, RULER + 22.0, 20, 100.0)

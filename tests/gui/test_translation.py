@@ -25,7 +25,7 @@ NEUTRAL = re.compile(
     r"Ctrl|Shift|Alt|Esc|Del|PgDown|PgUp|Space|Left|Right|Up|Down)\b"
 )
 #: Names of materials and machines are data, and what the rooms below the window say is English.
-DATA = re.compile(r"(QComboBox material|ChoiceBox machineProfile)|QLabel warning")
+DATA = re.compile(r"(ComboBox material|ChoiceBox machineProfile)|QLabel warning")
 #: Opens a window with designs and prints every text that a person could read or be read to.
 PROGRAM = """
 import json, sys

@@ -294,7 +294,7 @@ class ShortcutSheet(QWidget):
         self._fill(commands)
         self.search.textChanged.connect(self._filter)
         self._filter("")
-        self.resize(720, 640)
+        self.resize(860, 640)
 
     def _fill(self, commands: Iterable[Command]) -> None:
         for command in commands:

@@ -86,10 +86,11 @@ class ToolButton(QToolButton):
 class ElidedLabel(QLabel):
     """One muted line, shorter or with an ellipsis where it does not fit; the tooltip has it whole."""
 
-    def __init__(self) -> None:
+    def __init__(self, cut_off: Qt.TextElideMode = Qt.TextElideMode.ElideMiddle) -> None:
         super().__init__()
         self.setObjectName("muted")
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._cut_off = cut_off
         self._shorter: tuple[str, ...] = ()
 
     def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
@@ -105,15 +106,15 @@ class ElidedLabel(QLabel):
 
     def drawn_text(self) -> str:
         """What is shown at the present width."""
-        metrics, versions = self.fontMetrics(), (self.text(), *self._shorter)
-        fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= self.width()), versions[-1])
-        return metrics.elidedText(fitting, Qt.TextElideMode.ElideMiddle, self.width())
+        metrics, versions, room = self.fontMetrics(), (self.text(), *self._shorter), self.contentsRect().width()
+        fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= room), versions[-1])
+        return metrics.elidedText(fitting, self._cut_off, room)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setPen(self.palette().color(self.foregroundRole()))
         painter.drawText(
-            self.rect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
+            self.contentsRect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
         )
         painter.end()
 

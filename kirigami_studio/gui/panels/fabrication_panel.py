@@ -38,6 +38,7 @@ from kirigami_studio.gui.panels.card import (
     compact,
     muted_label,
 )
+from kirigami_studio.gui.panels.choice_box import ComboBox
 from kirigami_studio.gui.panels.export_row import ExportRow
 from kirigami_studio.gui.panels.more_options import MoreOptions
 from kirigami_studio.gui.panels.number_field import LengthField
@@ -131,7 +132,7 @@ class FabricationPanel(Card):
         self._extent, self._by_hand = Extent.ALL, False
         self._summaries = ("", "")  # with the live numbers in sight, and without
         self._presets = library().materials
-        self.material = QComboBox()
+        self.material = ComboBox()
         self.material.setObjectName("material")
         self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.material.setAccessibleName(tr("Material preset"))

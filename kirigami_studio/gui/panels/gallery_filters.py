@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QSizePo
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder
+from kirigami_studio.gui.panels.choice_box import ComboBox
 from kirigami_studio.gui.panels.number_field import DecimalField, number_field
 
 
@@ -126,7 +127,7 @@ class FilterControls(QObject):
 
 def order_box(name: str) -> QComboBox:
     """The list of sort orders."""
-    box = QComboBox()
+    box = ComboBox()
     box.setObjectName(name)
     box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     box.setAccessibleName(tr("Sort designs by"))

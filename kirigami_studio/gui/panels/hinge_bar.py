@@ -177,7 +177,7 @@ class HingeBar(QWidget):
 def _selection_texts(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
     """What the row says of the selected connectors, ``cut`` of them cut through; longest first."""
     if not hinges:
-        return (tr("No connector selected"), tr("None"))
+        return (tr("No connector selected"), tr("No connector"))
     count, number = len(hinges), min(hinges)
     if count == 1:
         named = tr("Connector {number}", number=number)

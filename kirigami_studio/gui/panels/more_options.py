@@ -76,7 +76,7 @@ class MoreOptions(QWidget):
         self.tabs = QSpinBox()
         self.tabs.setObjectName("tabs")
         self.tabs.setRange(0, MOST_TABS)
-        self.tabs.setSpecialValueText(tr("None"))
+        self.tabs.setSpecialValueText(tr("Off"))
         self.tabs.setAccessibleName(tr("Number of tabs"))
         self.tabs.setToolTip(
             tr(

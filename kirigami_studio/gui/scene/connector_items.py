@@ -17,16 +17,19 @@ from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.colour_scale import ColourScale
 from kirigami_studio.gui.scene.view_transform import ViewTransform
 
-#: Smallest and largest radius (pixels) of a marker, its share of the usual distance between two, and how far from its
-#: middle it still takes a click.
-RADII, SHARE, REACH = (1.6, 3.2), 0.16, 9.0
+#: Smallest and largest radius (pixels) of a marker with its rim, and how far from its middle it still takes a click.
+RADII, REACH = (1.2, 4.0), 9.0
+#: A marker is as wide as this share of the short side of a small panel, of which this share are smaller.
+SHARE, SMALL = 1.0 / 3.0, 0.1
+#: Width of a rim, in radii.
+RIM = 0.2
 #: Widths closer than this (mm) get one colour.
 SAME_MM = 2e-3
 STRETCH_TITLE = mark("connector stretch, widths")
-#: Smallest and largest radius (pixels) of a dot, and its share of the usual distance between two connectors.
-STRETCH_RADII, STRETCH_SHARE = (2.0, 5.0), 0.13
-#: By how much (pixels) the dots of connectors that stretch too far are larger.
-LARGER = 2.0
+#: Smallest and largest radius (pixels) of a dot with its rim, and its share of the usual distance between two.
+STRETCH_RADII, STRETCH_SHARE = (1.6, 5.0), 0.14
+#: How much larger the dots of connectors that stretch too far are, in radii.
+LARGER = 1.5
 #: Colours that dots have, from no stretch to what is tolerated.
 STRETCH_SHADES = 10
 
@@ -68,11 +71,18 @@ class Connectors:
         shade: IntArray = np.minimum((share * count).astype(np.intp), count - 1)
         return shade
 
-    def radius(self, transform: ViewTransform) -> float:
-        """Pixels; smaller where the markers would hide the cuts."""
+    @cached_property
+    def short_side_mm(self) -> float:
+        """Short side of a panel smaller than most; without panels, as if the sheet were cut into squares."""
+        sides = [np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1).min() for panel in self.plan.panels]
+        if sides:
+            return float(np.quantile(sides, SMALL))
         width, height = self.plan.size_mm
-        apart = transform.scale * math.sqrt(width * height / max(len(self), 1))
-        return min(max(SHARE * apart, RADII[0]), RADII[1])
+        return math.sqrt(2.0 * width * height / max(len(self), 1))
+
+    def radius(self, transform: ViewTransform) -> float:
+        """Pixels, the rim included; smaller where the markers would hide the cuts."""
+        return min(max(0.5 * SHARE * transform.scale * self.short_side_mm, RADII[0]), RADII[1])
 
     def asked_mm(self, hinge: int) -> float:
         """Finished width that is asked for, mm; not a number where the connector was removed."""
@@ -114,9 +124,9 @@ def paint_connectors(
     colours = palette.widths
     shade = connectors.shade(len(colours))
     # A rim, so that the palest width stands out from the sheet.
-    _paint_dots(painter, pixels[~connectors.removed], palette.muted, 2.0 * radius + 1.6)
+    _paint_dots(painter, pixels[~connectors.removed], palette.muted, 2.0 * radius)
     for index, colour in enumerate(colours):
-        _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * radius)
+        _paint_dots(painter, pixels[(shade == index) & ~connectors.removed], colour, 2.0 * (1.0 - RIM) * radius)
     painter.setPen(QPen(QColor(palette.text), 1.6))
     painter.drawLines(_crosses(pixels[connectors.removed & ~connectors.plan.hinges.lost], radius + 1.0))
     painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -167,9 +177,9 @@ def paint_stretch(
     within = stretch <= tolerated
     # Dots of one colour are drawn at once, over their rims.
     step = np.rint(scale.share(stretch) * (STRETCH_SHADES - 1)).astype(np.intp)
-    _paint_dots(painter, pixels[within], palette.muted, 2.0 * radius + 1.2)
+    _paint_dots(painter, pixels[within], palette.muted, 2.0 * radius)
     colours = scale.shades(np.linspace(scale.low, scale.high, STRETCH_SHADES))
     for number, colour in enumerate(colours):
-        _paint_dots(painter, pixels[within & (step == number)], colour.name(), 2.0 * radius)
-    _paint_dots(painter, pixels[~within], palette.fault_line, 2.0 * (radius + LARGER) + 2.4)
-    _paint_dots(painter, pixels[~within], palette.fault, 2.0 * (radius + LARGER))
+        _paint_dots(painter, pixels[within & (step == number)], colour.name(), 2.0 * (1.0 - RIM) * radius)
+    _paint_dots(painter, pixels[~within], palette.fault_line, 2.0 * LARGER * radius)
+    _paint_dots(painter, pixels[~within], palette.fault, 2.0 * LARGER * (1.0 - RIM) * radius)

@@ -144,13 +144,19 @@ class Rulers:
                 painter.drawLine(QPointF(pixel, RULER - reach), QPointF(pixel, RULER))
             else:
                 painter.drawLine(QPointF(RULER - reach, pixel), QPointF(RULER, pixel))
-            if numbered:
+            written = number(at + 0.0, ".6g")
+            if numbered and fits(axis, pixel, painter.fontMetrics().horizontalAdvance(written), length):
                 painter.save()
                 painter.translate(*((pixel + 3, 11.0) if axis == X else (11.0, pixel - 3)))
                 painter.rotate(0.0 if axis == X else -90.0)
-                painter.drawText(QPointF(0.0, 0.0), number(at + 0.0, ".6g"))
+                painter.drawText(QPointF(0.0, 0.0), written)
                 painter.restore()
         painter.setFont(font)
+
+
+def fits(axis: int, pixel: float, room: int, length: float) -> bool:
+    """Whether a number beside a tick, ``room`` pixels long, lies whole on the ruler."""
+    return pixel + 3 + room <= length if axis == X else pixel - 3 - room >= RULER and pixel <= length
 
 
 def _pixel(transform: ViewTransform, axis: int, at: float) -> float:

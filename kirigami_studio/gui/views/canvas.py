@@ -24,6 +24,8 @@ GRID_STEP = 22
 #: Height of a row of these dots, pixels.
 DOT_ROW = 6
 ICON_EDGE = 40
+#: Height of the picture of an empty view with what is below it, and a width that leaves little room beside words.
+ICON_ROOM, NARROW = 52, 200
 
 
 class Canvas(QWidget):
@@ -255,18 +257,29 @@ class Canvas(QWidget):
         name, headline, hint = self.empty_state()
         if not headline:
             return
-        box = QRectF(self.rect()).adjusted(16, 0, -16, 0)
-        top = box.center().y() - 64
-        picture = icons.pixmap(name, self.palette_.strong_border, ICON_EDGE, self.devicePixelRatioF())
-        painter.drawPixmap(QPointF(box.center().x() - ICON_EDGE / 2, top), picture)
+        margin = 16 if self.width() > NARROW else 6
+        box = QRectF(self.rect()).adjusted(margin, 0, -margin, 0)
         bold = QFont(self.font())
         bold.setPointSizeF(bold.pointSizeF() * 1.15)
         bold.setWeight(QFont.Weight.DemiBold)
         flags = int(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
+        room = QRectF(0.0, 0.0, box.width(), 1000.0)
+        painter.setFont(self.font())
+        below = painter.boundingRect(room, flags, hint).height() + 6
         painter.setFont(bold)
+        needed = painter.boundingRect(room, flags, headline).height() + below
+        pictured = self.height() - 2 * 6 >= needed + ICON_ROOM
+        if pictured:
+            top = min(box.center().y() - 64, self.height() - 6 - needed - ICON_ROOM)
+            picture = icons.pixmap(name, self.palette_.strong_border, ICON_EDGE, self.devicePixelRatioF())
+            painter.drawPixmap(QPointF(box.center().x() - ICON_EDGE / 2, top), picture)
+            top += ICON_ROOM
+        else:  # in a low view words come first, and of them the headline
+            top = max(0.0, box.center().y() - needed / 2)
         painter.setPen(QColor(self.palette_.text))
-        used = painter.boundingRect(QRectF(box.left(), top + 52, box.width(), 80), flags, headline)
+        used = painter.boundingRect(QRectF(box.left(), top, box.width(), 80), flags, headline)
         painter.drawText(used, flags, headline)
         painter.setFont(self.font())
         painter.setPen(QColor(self.palette_.muted))
-        painter.drawText(QRectF(box.left(), used.bottom() + 6, box.width(), 120), flags, hint)
+        if used.bottom() + below <= self.height():
+            painter.drawText(QRectF(box.left(), used.bottom() + 6, box.width(), 1000.0), flags, hint)

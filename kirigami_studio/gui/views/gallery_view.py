@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QContextMenuEvent, QKeyEvent, QMouseEvent, QPa
 from PySide6.QtWidgets import QListView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import again, tr
 from kirigami_studio.gui.designs.gallery_selection import Selection
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.session import Entry
@@ -58,6 +58,12 @@ class GalleryView(QListView):
         """Draw in other colours."""
         self.cards.palette_ = palette
         self.viewport().update()
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        """What is drawn in the empty gallery follows the language."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.LanguageChange:
+            self.set_hint(again(self._hint[0]), again(self._hint[1]))
 
     def set_hint(self, headline: str, hint: str) -> None:
         """Say in the empty gallery what to do next."""

@@ -60,6 +60,7 @@ class TableCards(QStyledItemDelegate):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
+        self._view = parent
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
         self.card = card_size(300)
@@ -243,7 +244,8 @@ class TableCards(QStyledItemDelegate):
         text = "  ·  ".join(parts)
         metrics = painter.fontMetrics()
         middle = int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft)
-        room = box.width() - (84 if index.data(ALIKE_ROLE) else 0)
+        taken = self.alike_box(card, index).width() + 6 if index.data(ALIKE_ROLE) else 0
+        room = box.width() - taken
         painter.drawText(box, middle, metrics.elidedText(text, Qt.TextElideMode.ElideRight, room))
 
     # badges and buttons -------------------------------------------------------------------------------------------
@@ -271,19 +273,23 @@ class TableCards(QStyledItemDelegate):
         painter.drawText(box.adjusted(22, 0, 0, 0), int(Qt.AlignmentFlag.AlignVCenter), badge.text)
 
     def alike_box(self, rect: QRect, index: Index) -> QRect:
-        """Place of the mark of look-alikes in a cell of the list: at the right of the figures."""
+        """Place of the mark of look-alikes in a cell of the list: at the right of the figures, as wide as its text."""
         card = _card_of(rect)
-        return QRect(card.right() - INSET - 78, card.bottom() - BADGES - FIGURES + 1, 78, 20)
+        width = max(78, self._view.fontMetrics().horizontalAdvance(_alike_text(index)) + 12)
+        return QRect(card.right() - INSET - width, card.bottom() - BADGES - FIGURES + 1, width, 20)
 
     def _paint_alike(self, painter: QPainter, box: QRect, index: Index) -> None:
         """How many more designs look the same, as a button."""
-        text = tr("hide alike") if index.data(OPEN_ROLE) else tr("+{count} alike", count=index.data(ALIKE_ROLE))
         painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
         painter.setBrush(QColor(self.palette_.raised))
         painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 5, 5)
         painter.setPen(QColor(self.palette_.text))
-        fitted = painter.fontMetrics().elidedText(text, Qt.TextElideMode.ElideRight, box.width() - 8)
-        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), fitted)
+        painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), _alike_text(index))
+
+
+def _alike_text(index: Index) -> str:
+    """What the button for look-alikes says."""
+    return tr("hide alike") if index.data(OPEN_ROLE) else tr("+{count} alike", count=index.data(ALIKE_ROLE))
 
 
 def card_size(width: int) -> QSize:
