@@ -105,6 +105,9 @@ pictures: setup
 	cp out/pictures/pairs.png docs/pictures/pairs.png
 	cp out/pictures/pairs-small.png resources/guide/pairs.png
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --out resources/guide
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --language de --out resources/guide/de
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
+	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
 	$(BIN)/python -m kirigami_studio.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
 	  --out docs/pictures/artwork.png

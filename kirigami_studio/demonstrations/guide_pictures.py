@@ -1,4 +1,5 @@
-"""The pictures of the user guide, taken from the real window: ``make pictures`` writes them into ``resources/guide``.
+"""The pictures of the user guide, taken from the real window: ``make pictures`` writes them into ``resources/guide``,
+those of the German window into ``resources/guide/de``.
 
 They are taken as a reader of the guide sees the program, on the bundled sample, and kept small: few colours, no wider
 than the guide's text.

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.language import SYSTEM
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import FIRST, MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -256,6 +257,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for screenshots, DXF and project")
     parser.add_argument("--pairs", action="store_true", help="picture the bundled pairs instead")
     parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel, such as 2 (default 1)")
+    parser.add_argument("--language", default=SYSTEM, help="language of the window, such as de (default the desktop's)")
     chosen = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     if chosen.scale != 1.0:
@@ -264,6 +266,8 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         session = PairPictures(chosen.out) if chosen.pairs else kind(chosen.out)
+        if chosen.language != SYSTEM:
+            session.window.speak(chosen.language)
         files = session.play()
     except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")

@@ -79,6 +79,19 @@ def test_that_words_are_found_marked_and_walked_through(guide: GuideWindow, qtbo
     assert not guide.isVisible()
 
 
+def test_that_the_german_guide_shows_pictures_of_the_german_window(
+    guide: GuideWindow, window: MainWindow, english_afterwards: None
+) -> None:
+    names = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", resource("guide", "guide.md").read_text(encoding="utf-8"))
+    kind = QTextDocument.ResourceType.ImageResource.value
+    english = {name: bytes(guide.text.loadResource(kind, QUrl(name)).data()) for name in names}
+    assert english == {name: resource("guide", name).read_bytes() for name in names}
+    window.speak("de")
+    german = {name: bytes(guide.text.loadResource(kind, QUrl(name)).data()) for name in names}
+    assert german == {name: resource("guide", "de", name).read_bytes() for name in names}
+    assert all(german[name] != english[name] and len(german[name]) < 100_000 for name in names)
+
+
 def test_that_every_picture_is_shown_and_small(guide: GuideWindow) -> None:
     markdown = resource("guide", "guide.md").read_text(encoding="utf-8")
     pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", markdown)

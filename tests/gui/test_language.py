@@ -166,23 +166,6 @@ def test_that_every_step_of_the_tour_is_said_in_the_language_of_the_moment(desig
     designed.tour.end()
 
 
-def test_that_sizes_of_parts_have_the_decimal_sign_of_the_language(
-    window: MainWindow, tmp_path: Path, until: Until
-) -> None:
-    path = tmp_path / "two.svg"
-    path.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="40mm" viewBox="0 0 90 40">'
-        '<path id="a" d="M0 0h40.5v30.5h-40.5z"/><path id="b" d="M50 0h30.5v20.5h-30.5z"/></svg>',
-        encoding="utf-8",
-    )
-    window.speak("de")
-    window.files.open(str(path))
-    until(lambda: window.dialogs.parts is not None and window.dialogs.parts.complete)
-    assert window.dialogs.parts is not None
-    assert window.dialogs.parts.size_.text() == "Das Ziel wird 40,5 \N{MULTIPLICATION SIGN} 30,5 mm."
-    window.dialogs.parts.reject()
-
-
 @pytest.mark.parametrize("code", ["en", "de"])
 def test_that_what_has_no_room_ends_with_dots(designed: MainWindow, code: str) -> None:
     designed.speak(code)

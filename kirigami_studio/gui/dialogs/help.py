@@ -50,7 +50,6 @@ class GuideWindow(QWidget):
         self.text.setObjectName("guideText")
         self.text.setAccessibleName(tr("User guide"))
         self.text.setOpenExternalLinks(True)
-        self.text.setSearchPaths([str(resource("guide"))])  # for its pictures
         self.search = QLineEdit()
         self.search.setPlaceholderText(tr("Search the guide"))
         self.search.setAccessibleName(tr("Search the guide"))
@@ -93,6 +92,8 @@ class GuideWindow(QWidget):
     def _read(self) -> None:
         """Show the guide of the present language."""
         self._file = guide_file()
+        # Pictures of the window in its own language are in a folder beside the others.
+        self.text.setSearchPaths([str(resource("guide", language().split("_")[0])), str(resource("guide"))])
         self.text.setMarkdown(self._file.read_text(encoding="utf-8"))
         self._list_contents()
 

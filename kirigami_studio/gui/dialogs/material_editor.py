@@ -27,7 +27,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.dialogs.material_form import TEXTS, GapRow, MaterialForm
 
-SIZE = QSize(760, 560)
+SIZE = QSize(820, 560)
 NEW = mark("Presets are read-only. Copy one to change it.")
 
 
@@ -47,7 +47,7 @@ class MaterialEditor(QDialog):
         self.list = QListWidget()
         self.list.setAccessibleName(tr("Materials"))
         self.list.setObjectName("materialList")
-        self.list.setFixedWidth(260)
+        self.list.setFixedWidth(300)
         self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.form = MaterialForm()

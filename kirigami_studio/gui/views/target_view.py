@@ -212,7 +212,7 @@ class TargetView(Canvas):
         return (
             "target",
             tr("No target yet"),
-            tr("Drop an image, SVG or DXF here,\nchoose one from the library, or draw."),
+            tr("Drop an image, SVG or DXF here, choose one from the library, or draw."),
         )
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
