@@ -296,3 +296,23 @@ def test_that_a_picture_of_two_shapes_asks_and_the_usual_one_keeps_its_threshold
     QApplication.processEvents()
     target = window.controller.document.target
     assert target is not None and target.size is not None and target.size[0] == pytest.approx(200, abs=2)
+
+
+def test_that_a_cut_file_is_the_second_target_of_its_design_or_a_start_like_its_sheet_unasked(
+    designed: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    controller, path = designed.controller, tmp_path / "cut.dxf"
+    controller.export(path)
+    until(lambda: path.exists() and not controller.queue.busy)
+    target, stage = controller.document.target, controller.stage
+    assert target is not None and stage is not None
+    designed.settings.second.file_dropped.emit(str(path))
+    until(lambda: controller.document.settings.second is not None)
+    second = controller.document.settings.second
+    assert second is not None and second.outline == target
+    designed.target.start.file_dropped.emit(str(path))
+    until(lambda: not controller.document.settings.start.is_plain)
+    start = controller.document.settings.start.outline
+    assert start is not None and designed.dialogs.parts is None
+    sheet, outline = np.ptp(stage.design.deployment.compact, axis=0), np.ptp(start.points, axis=0)
+    assert outline[1] / outline[0] == pytest.approx(sheet[1] / sheet[0], rel=0.01)
