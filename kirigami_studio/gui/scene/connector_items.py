@@ -27,7 +27,7 @@ RIM = 0.2
 SAME_MM = 2e-3
 STRETCH_TITLE = mark("connector stretch, widths")
 #: Smallest and largest radius (pixels) of a dot with its rim, and its share of the usual distance between two.
-STRETCH_RADII, STRETCH_SHARE = (1.6, 5.0), 0.14
+STRETCH_RADII, STRETCH_SHARE = (1.6, 5.0), 0.2
 #: How much larger the dots of connectors that stretch too far are, in radii.
 LARGER = 1.5
 #: Colours that dots have, from no stretch to what is tolerated.
