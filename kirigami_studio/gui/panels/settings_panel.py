@@ -41,6 +41,9 @@ VARIANTS = {
         mark("As in the paper"),
         mark("The paper's own way: a small U-Net, trained with optimal-transport pairing. To compare with."),
     ),
+    "paper-accuracy": (mark("Paper, for match"), mark("As in the paper, tuned by its GRPO for the closest match.")),
+    "paper-balanced": (mark("Paper, for both"), mark("As in the paper, tuned by its GRPO for match and even panels.")),
+    "paper-regularity": (mark("Paper, for evenness"), mark("As in the paper, tuned by its GRPO for even panels.")),
 }
 
 
