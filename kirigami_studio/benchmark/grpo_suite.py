@@ -41,6 +41,8 @@ MAY_LACK = 0.005
 CONTROL = "none"
 #: Samples of a target by which variety is measured: as many as the sampler draws together anyway.
 SAMPLES = 8
+#: Bundled variants that runs of GRPO begin with.
+STARTS = ("prior", "paper")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +89,8 @@ class AlignedRun:
     name : str
         That of the folder.
     start : str
-        What it began with: ``bundled prior``, or the network's kind and the first digits of the weights' SHA-256.
+        What it began with: ``bundled prior``, ``bundled paper``, or the network's kind and the first digits of the
+        weights' SHA-256.
     reward : str
     settings : dict
         As it was trained.
@@ -127,7 +130,8 @@ class AlignedRun:
         settings = dict(next(iter(kept.values()))["settings"])
         digest = str(settings["start"])
         backbone = backbone_of(load_weights(Path(snapshots[0].source)).network.shape)
-        start = "bundled prior" if digest == digest_of("prior") else f"{backbone} {digest[:8]}"
+        bundled = {digest_of(variant): f"bundled {variant}" for variant in STARTS}
+        start = bundled.get(digest, f"{backbone} {digest[:8]}")
         return cls(folder.resolve().name, start, str(settings["reward"]), settings, tuple(snapshots))
 
 

@@ -762,7 +762,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="folder with solvers/ (best-of-k, too), grid-sweep/, generators/, grpo/ (--out of these suites), "
                     "shapes/*.json and *.png (designs), as-cut.json, and training/, one run in each folder there"),
         option("--quick", action="store_true", help="run every suite but grpo first, as small as it can be"),
-        option("--out", required=True, help="Markdown file to write; pictures come beside it"),
+        option("--out", required=True, help="Markdown file to write; pictures go into the folder of that name"),
         JSON,
     ), ("kirigami-studio benchmark report --runs runs --out report.md",
         "kirigami-studio benchmark report --quick --runs quick --out quick/report.md")),

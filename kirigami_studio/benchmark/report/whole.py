@@ -40,7 +40,7 @@ class Report:
     Attributes
     ----------
     text : str
-        Markdown, with links to the pictures by their names.
+        Markdown, with links to the pictures by their names alone.
     pictures : dict of str to bytes
         SVG files by name.
     """
@@ -49,19 +49,19 @@ class Report:
     pictures: dict[str, bytes]
 
     def save(self, path: Path) -> tuple[Path, ...]:
-        """Write the text to ``path`` and the pictures beside it; returns all files.
+        """Write the text to ``path`` and the pictures into the folder of that name beside it; returns all files.
 
         Raises
         ------
         ExportError
             They cannot be written.
         """
-        path.parent.mkdir(parents=True, exist_ok=True)
-        written = []
+        text, written = self.text, []
         for name, content in self.pictures.items():
-            written.append(path.parent / name)
+            written.append(path.with_suffix("") / name)
             write_atomically(written[-1], content)
-        write_atomically(path, self.text.encode())
+            text = text.replace(f"]({name})", f"]({path.stem}/{name})")
+        write_atomically(path, text.encode())
         return (path, *written)
 
 
@@ -120,7 +120,7 @@ SECTIONS: tuple[tuple[Path, Callable[[Figures, dict[str, bytes]], Iterator[str]]
 OPENING = (
     "# The paper's experiments",
     "",
-    "Written by `kirigami-studio benchmark report` from the JSON beside it; numbers in brackets are the paper's.",
+    "Written by `kirigami-studio benchmark report` from the JSON in the folder beside it; numbers in brackets are the paper's.",
     "Shares are in percent. Intervals: bootstrap over targets, 95 %; +- is the standard deviation over runs.",
     "*Success*: sIoU of 0.85 or more and a feasible design. Times are processor times of one core of a shared machine.",
     "",

@@ -43,7 +43,7 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     text = out.read_text()
     sections = ("Table 1: solvers", "Best of K", "Sizes of the grid", "Table 2: conditional generators", "Training")
     assert all(f"## {section}" in text for section in (*sections, "Shape by shape", "As cut"))
-    assert all(f"]({Path(picture).name})" in text for picture in files[1:]) and len(files) == 10
+    assert all(f"](report/{Path(picture).name})" in text for picture in files[1:]) and len(files) == 10
     solvers = json.loads((runs / "solvers" / "solvers.json").read_text())["families"]
     generators = json.loads((runs / "generators" / "generators.json").read_text())["families"]
     for family in ("structured", "sobol"):
@@ -66,7 +66,7 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
         name for name, row in solvers["sobol"]["rows"].items() if row["paper"] and row["siou"] < row["paper"]["siou"]
     ]
     assert behind and all(name in text.partition("Why rows are behind:")[2].partition("##")[0] for name in behind)
-    with Image.open(out.parent / "benchmark-samples.png") as picture:
+    with Image.open(out.with_suffix("") / "benchmark-samples.png") as picture:
         assert picture.width > 3 * 150 and picture.height > 2 * 150, "three samples for a target of each family"
     curves = json.loads((runs / "solvers" / "best-of-k.json").read_text())["families"]["sobol"]
     assert [at["k"] for at in curves["sample-fit"]] == [1, 2]
