@@ -56,7 +56,7 @@ def write_tiles(tiles: Sequence[Tile], side: int, columns: int, path: Path) -> N
 def write_samples(
     targets: Mapping[str, Sequence[Outline]], generators: Sequence[Generator], seed: int, path: Path
 ) -> None:
-    """Write a PNG of samples over their targets: a row for a target of each family.
+    """Write a PNG of samples over their targets: a row for each generator, the families side by side.
 
     Parameters
     ----------
@@ -72,8 +72,8 @@ def write_samples(
         The place cannot be written.
     """
     tiles: list[Tile] = []
-    for family, (target, *_) in targets.items():
-        for generator in generators:
+    for generator in generators:
+        for target, *_ in targets.values():
             for field in generator.draw(target, SHOWN, seed, generator.steps):
                 (score,) = evaluate_many([deploy(field)], target)
                 candidate = Candidate(Sheet(field), score, seed, 0)
@@ -81,5 +81,5 @@ def write_samples(
                 panels = job.posed.parts(job.phi)
                 frame = PictureFrame.around([*panels, target.points], TILE)
                 agreement = f"sIoU {100.0 * score.siou:.1f} %" if score.feasible else "not feasible"
-                tiles.append((draw_polygons(panels, frame, target.points), (f"{generator.name}, {family}", agreement)))
-    write_tiles(tiles, TILE, SHOWN * len(generators), path)
+                tiles.append((draw_polygons(panels, frame, target.points), (generator.name, agreement)))
+    write_tiles(tiles, TILE, SHOWN * len(targets), path)

@@ -45,8 +45,8 @@ def dead_links(document: Path, text: str) -> list[str]:
     return [place for place in places if not (document.parent / place).exists()]
 
 
-def missing_paths(repository: Path, text: str) -> list[str]:
-    """Paths in a document that begin in the repository or in the package, or name a module, and do not exist."""
+def missing_paths(repository: Path, text: str, *beside: Path) -> list[str]:
+    """Paths in a document that begin in repository or package, or name a module, and are not there or beside."""
     roots = (repository, repository / "kirigami_studio")
     places = [place.rstrip("/") for place in PATH.findall(text) if not place.startswith(MADE)]
     ours = [
@@ -54,7 +54,7 @@ def missing_paths(repository: Path, text: str) -> list[str]:
         for place in places
         if place.endswith(".py") or any((root / place.partition("/")[0]).is_dir() for root in roots)
     ]
-    return [place for place in ours if not any((root / place).exists() for root in roots)]
+    return [place for place in ours if not any((root / place).exists() for root in (*roots, *beside))]
 
 
 def refused_commands(text: str) -> list[str]:
@@ -210,7 +210,9 @@ def test_that_every_relative_link_and_picture_exists(documents: dict[Path, str])
 
 def test_that_every_path_in_the_documents_exists(present: dict[Path, str], repository: Path) -> None:
     assert {
-        path.as_posix(): found for path, text in present.items() if (found := missing_paths(repository, text))
+        path.as_posix(): found
+        for path, text in present.items()
+        if (found := missing_paths(repository, text, path.parent))
     } == {}
 
 

@@ -60,7 +60,7 @@ def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
         "reward, in which every design weighs the same. Differences are in points of sIoU, paired by target and "
         "noise; TV is the paper's sum / (m n), *log* the mean "
         f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
-        "`kirigami-studio benchmark grpo`"
+        "`kirigami-studio benchmark grpo RUN ...`"
     )
     for family, table in figures["families"].items():
         for start, runs in table["starts"].items():

@@ -87,7 +87,8 @@ def made_from(folder: Path) -> Report:
                 lines += section(figures, pictures)
             if name == GENERATORS and (folder / SAMPLES).exists():
                 pictures[SAMPLES.name] = (folder / SAMPLES).read_bytes()
-                lines += [f"![Three samples for a target of each family]({SAMPLES.name})", ""]
+                title = "Three samples of each generator for a structured target, left, and a Sobol one"
+                lines += [f"![{title}]({SAMPLES.name})", ""]
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         if logs:
             told = {name: _read(folder / TRAINING / name / ABOUT) for name in logs}
@@ -120,7 +121,8 @@ SECTIONS: tuple[tuple[Path, Callable[[Figures, dict[str, bytes]], Iterator[str]]
 OPENING = (
     "# The paper's experiments",
     "",
-    "Written by `kirigami-studio benchmark report` from the JSON in the folder beside it; numbers in brackets are the paper's.",
+    "Written by `kirigami-studio benchmark report --runs FOLDER --out FILE.md` from the JSON in the folder beside it.",
+    "Numbers in brackets are the paper's.",
     "Shares are in percent. Intervals: bootstrap over targets, 95 %; +- is the standard deviation over runs.",
     "*Success*: sIoU of 0.85 or more and a feasible design. Times are processor times of one core of a shared machine.",
     "",
