@@ -25,7 +25,9 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.foundation.words import again, language, number, tr
 from kirigami_studio.gui.commands.submenus import LanguageMenu
 from kirigami_studio.gui.language import SYSTEM, speak
+from kirigami_studio.gui.look.theme import DARK
 from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.views.target_view import TargetView
 from kirigami_studio.project import edits, preferences
 from tests.gui.test_parts import LOGO, opened, written
@@ -125,6 +127,15 @@ def test_that_no_text_of_the_window_is_left_in_the_language_before(designed: Mai
     assert {(whose, text) for whose, text in kept if not DATA.match(whose)} == set()
     designed.speak("en")
     assert {text for _, _, text in texts(designed)} == english
+
+
+def test_that_an_open_question_follows_the_language_and_stays_in_it(window: MainWindow) -> None:
+    sentence, messages = tr("No connector selected"), window.messages
+    messages.add(Message(sentence, Tone.WARNING, actions=((tr("Replace"), window.update),)))
+    window.speak("de")
+    window.set_theme(DARK)  # the bar shows its message anew
+    assert messages.sentence.text() == again(sentence) != sentence
+    assert "Ersetzen" in [button.text() for button in messages.findChildren(QPushButton)]
 
 
 def test_that_what_is_told_of_the_cut_sheet_follows_the_language(designed: MainWindow, until: Until) -> None:

@@ -299,7 +299,7 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QColor(self.palette_.muted))
         metrics, line = painter.fontMetrics(), text.adjusted(0, 0, -22, 0)
         painter.drawText(line, right | bottom, apart)
-        room = line.width() - (metrics.horizontalAdvance(apart) + 6 if apart else -22)
+        room = line.width() - (metrics.horizontalAdvance(apart) + 6 if apart else -2)
         painter.drawText(text, left | bottom, metrics.elidedText(value, Qt.TextElideMode.ElideRight, room))
 
     def _paint_badge(self, painter: QPainter, card: QRect, cuttable: bool) -> None:
