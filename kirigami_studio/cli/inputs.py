@@ -37,8 +37,8 @@ from kirigami_studio.project.store import SUFFIX as PROJECT
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
-#: What masks may be, as Pillow calls them, and how many pixels.
-MASK_FORMATS, MOST_MASK_PIXELS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "PPM"), 25_000_000
+#: What masks may be, as Pillow calls them, how many pixels, and how many megabytes: 64 bits a pixel, uncompressed.
+MASK_FORMATS, MOST_MASK_PIXELS, MOST_MASK_MEGABYTES = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "PPM"), 25_000_000, 220
 #: Largest .npz archive (bytes).
 LARGEST_ARCHIVE = 512 * 2**20
 #: What has a chosen design.
@@ -251,7 +251,7 @@ def read_mask(path: Path) -> BoolArray:
     TargetError
         Missing, damaged, or not an image.
     """
-    content = read_bytes(path)
+    content = read_bytes(path, MOST_MASK_MEGABYTES)
     with decoding(path, "mask.not_readable"):
         image = opened_image(content, MASK_FORMATS, MOST_MASK_PIXELS)
         deep = image.mode.startswith(("I", "F"))

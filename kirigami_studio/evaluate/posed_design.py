@@ -26,14 +26,18 @@ from kirigami_studio.lattice.deployment import Deployment
 
 #: Angles at which the motion's extent is sampled; the extent is smooth in the angle.
 EXTENT_SAMPLES = 9
+#: A flat rectangle is turned by this much (radians) more than an eighth before its next side counts as the lower one:
+#: designs over a square are often posed at 45 degrees, and what a hand edit changes there must not turn the sheet.
+SLACK = math.radians(1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PosedDesign:
     """One design over its target at ``phi_target``, and at every other angle with the same centre (mean of all nodes).
 
-    From ``phi_target`` to the flat sheet it turns with the angle until the flat sheet is upright: rectangles by at most
-    an eighth of a turn, so that they may stand on their short side; other start outlines to the side that is theirs.
+    From ``phi_target`` to the flat sheet it turns with the angle until the flat sheet is upright: rectangles by an
+    eighth of a turn or a degree more, so that they may stand on their short side; other start outlines to the side that
+    is theirs.
 
     Attributes
     ----------
@@ -52,9 +56,14 @@ class PosedDesign:
 
     @property
     def turn(self) -> float:
-        """How far the flat sheet is turned back, so that it stands upright; radians, counter-clockwise."""
+        """How far the flat sheet is turned back, so that it stands upright; radians, counter-clockwise.
+
+        A rectangle that could be turned either way, posed at 45 degrees, keeps its long side where it is.
+        """
         whole = 0.5 * math.pi if self.deployment.sheet.start is None else 2.0 * math.pi
-        return math.remainder(-self.pose.angle, whole)
+        angle = abs(self.pose.angle)
+        upright = whole * math.floor((angle + 0.5 * whole - SLACK) / whole)
+        return math.copysign(1.0, self.pose.angle) * (upright - angle)
 
     def pose_at(self, phi: float) -> Similarity:
         """Layout frame at angle ``phi`` -> world."""

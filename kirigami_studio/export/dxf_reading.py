@@ -38,8 +38,10 @@ from kirigami_studio.outlines.source_file import MEGABYTE, TimeBudget
 #: Largest file that is read (bytes); a 64 x 64 design is below 2 MB.
 LARGEST_FILE = 100_000_000
 #: Seconds of processor time that a file may take to be read; a 64 x 64 design has 1.5 MB and takes 1.2 s.
-LEAST_SECONDS, SECONDS_PER_MEGABYTE = 3.0, 2.5
-#: Curves that reach farther than this from the origin (mm) are not followed.
+LEAST_SECONDS, SECONDS_PER_MEGABYTE = 3.0, 5.0
+#: Numbers beyond this (mm) are none that a coordinate can have; sums of their squares would overflow.
+FARTHEST_MM = 1e12
+#: Curves that are larger than this (mm) are not followed.
 LARGEST_CURVE_MM = 100_000.0
 #: Chord tolerance (mm) for curves.
 FLATTEN_MM = 0.005
@@ -190,7 +192,9 @@ def read_content(path: Path) -> DxfContent:
     try:
         _collect(_open(path, file, content, budget), content, budget)
     except TargetError as error:
-        raise ExportError("cut_file.not_usable", path=path, reason=error) from error
+        if error.code == "source.too_slow":
+            raise ExportError("cut_file.too_slow", path=path, **error.fields) from error
+        raise ExportError(error.code, **error.fields) from error
     except PARSER_FAULTS as error:
         raise ExportError("cut_file.damaged", path=path) from error
     return content
@@ -198,7 +202,7 @@ def read_content(path: Path) -> DxfContent:
 
 def _open(path: Path, file: bytes, content: DxfContent, budget: TimeBudget) -> Drawing:
     try:
-        document, repaired = opened_dxf(path, file, budget)
+        document, repaired = opened_dxf(path, file, budget, strict_share=1.0)
     except OSError as error:
         # ezdxf raises a bare OSError for a file that is no DXF at all.
         raise ExportError("dxf.no_dxf", path=path) from error
@@ -284,7 +288,7 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
     except PARSER_FAULTS:
         content.problems.append(Problem.error("cut_file.no_curve", **name))
         return
-    if not np.all(np.isfinite(points)):
+    if not np.all(np.abs(points) < FARTHEST_MM):
         content.problems.append(Problem.error("cut_file.not_a_number", **name))
         return
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) if len(points) > 1 else 0.0
@@ -332,8 +336,10 @@ def _flattened(entity: DXFEntity, factor: float) -> FloatArray:
             if isinstance(value, float) and not math.isfinite(value):
                 return np.array([[math.nan, math.nan]])
         path = make_path(entity)
-        reach = max((max(abs(v.x), abs(v.y)) for v in path.control_vertices()), default=0.0) * factor
-        if not reach <= LARGEST_CURVE_MM:  # numbers that overflow are none any more
+        reached = np.array([(v.x, v.y) for v in path.control_vertices()], dtype=np.float64).reshape(-1, 2)
+        if np.isnan(reached).any():
+            return reached
+        if len(reached) and not np.ptp(reached, axis=0).max() * factor <= LARGEST_CURVE_MM:  # infinite ones, too
             raise _TooLargeError
         points = [(v.x, v.y) for v in path.flattening(FLATTEN_MM / factor)]
     return np.array(points, dtype=np.float64).reshape(-1, 2) * factor

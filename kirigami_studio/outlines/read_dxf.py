@@ -52,7 +52,7 @@ MOST_ENTITIES = 100_000
 DEEPEST_BLOCK = 16
 MOST_MEGABYTES = 50
 #: Share of the time for the text of a file; its entities take as long again.
-TEXT_TIME = 0.5
+STRICT_SHARE = 0.5
 #: Distance of two lines of a text, heights of its capitals.
 LINE = 5.0 / 3.0
 BINARY = b"AutoCAD Binary DXF"
@@ -201,8 +201,10 @@ class _TimedBytes(io.BytesIO):
         return super().read1(size)
 
 
-def opened_dxf(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing, bool]:
-    """Read strictly, then with ezdxf's recover mode; whether that was needed.
+def opened_dxf(
+    path: Path, content: bytes, budget: TimeBudget, strict_share: float = STRICT_SHARE
+) -> tuple[Drawing, bool]:
+    """Read strictly, for a share of the time at most, then with ezdxf's recover mode; whether that was needed.
 
     Raises
     ------
@@ -218,7 +220,7 @@ def opened_dxf(path: Path, content: bytes, budget: TimeBudget) -> tuple[Drawing,
                 raise TargetError("source.too_large", path=path, megabytes=megabytes, limit=MOST_BINARY_MEGABYTES)
             return readfile(path), False
         encoding = dxf_stream_info(io.StringIO(content[:100_000].decode("utf-8", errors="ignore"))).encoding
-        raw = _TimedBytes(content, budget, TEXT_TIME)
+        raw = _TimedBytes(content, budget, strict_share)
         return read(io.TextIOWrapper(raw, encoding=encoding, errors="surrogateescape")), False
     except (DXFError, OSError, ValueError, LookupError, TypeError, AttributeError):
         drawing, _ = recover.read(_TimedBytes(content, budget))

@@ -19,7 +19,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import SheetError
 from kirigami_studio.gui.designs.generation import own_start
-from kirigami_studio.gui.designs.two_states import size_words, start_words
+from kirigami_studio.gui.designs.two_states import size_words, start_words, starts_as
 from kirigami_studio.gui.dialogs.start_board import StartBoard
 from kirigami_studio.gui.look.readable import TIMES
 from kirigami_studio.gui.main_window import MainWindow
@@ -31,7 +31,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
-from kirigami_studio.outlines.starts import RECTANGLE, outline_start, start_shape
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape, outline_start, start_shape
 from kirigami_studio.polish.flat_sheet import first_sheet, uniform_sheet
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -327,3 +327,15 @@ def test_that_sizes_are_told_as_exactly_as_they_are_read(size: tuple[float, floa
 )
 def test_that_names_of_starts_are_words(name: str, words: str) -> None:
     assert start_words(name) == words
+
+
+def test_that_a_design_starts_as_its_own_outline_and_not_as_another_of_the_same_name(designed: MainWindow) -> None:
+    candidate = designed.controller.document.candidates[0]
+    corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 4.0)]
+    drawn, other = (
+        StartShape("drawing", Outline.from_points([(side * x, y) for x, y in corners], name="drawing"))
+        for side in (1.0, 2.0)
+    )
+    made = replace(candidate, made_with=(("start", "drawing"), ("start_sha256", drawn.digest)))
+    assert starts_as(made, drawn) and not starts_as(made, other)
+    assert starts_as(candidate, RECTANGLE) and not starts_as(made, RECTANGLE)

@@ -184,9 +184,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.not_a_number": mark(
         "The {kind} {handle:.20} on layer {layer:.40} has a coordinate that is not a number. Draw it again."
     ),
-    "cut_file.not_usable": mark("{path}: {reason}"),
+    "cut_file.too_slow": mark(
+        "{path} takes longer than {seconds:.0f} s to read. Export it again with fewer or simpler curves."
+    ),
     "cut_file.too_large_curve": mark(
-        "The {kind} {handle:.20} on layer {layer:.40} reaches farther than {limit:g} m. Remove it."
+        "The {kind} {handle:.20} on layer {layer:.40} is larger than {limit:g} m. Remove it."
     ),
     "cut_file.no_length": mark("The {kind} {handle:.20} on layer {layer:.40} has no length. Remove it."),
     "cut_file.empty": mark("The file holds nothing that can be cut."),

@@ -13,7 +13,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.controller import Controller
 from kirigami_studio.gui.designs.collection import DiscardedDesigns
-from kirigami_studio.gui.designs.two_states import flat_size, start_of, start_words
+from kirigami_studio.gui.designs.two_states import flat_size, starts_as
 from kirigami_studio.gui.jobs.part_jobs import Purpose
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.panels.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
@@ -201,7 +201,7 @@ class StartConnections(QObject):
         grid = (settings.rows.value(), settings.columns.value())  # the one that the next run will choose, too
         start, width_mm = document.settings.start, document.fabrication.width_mm
         stage, flat = self._controller.stage, None
-        if stage is not None and start_of(stage.candidate) == start_words(start.name):
+        if stage is not None and starts_as(stage.candidate, start):
             flat = flat_size(stage.design.deployment, width_mm)
         self._window.target.start.show_start(start, grid, width_mm, flat)
 

@@ -48,6 +48,13 @@ def start_of(candidate: Candidate) -> str:
     return start_words(RECTANGLE.name) if sheet.start is None else tr("own shape")
 
 
+def starts_as(candidate: Candidate, start: StartShape) -> bool:
+    """Whether a design was made with this start; outlines may share a name."""
+    if start.outline is not None:
+        return dict(candidate.made_with).get("start_sha256") == start.digest
+    return start_of(candidate) == start_words(start.name)
+
+
 def size_words(width_mm: float, height_mm: float) -> str:
     """A size as people read it: in whole millimetres from 100 on, below in tenths."""
     width, height = (round(length, 0 if length >= 100.0 else 1) for length in (width_mm, height_mm))

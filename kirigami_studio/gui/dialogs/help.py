@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QPoint, Qt
@@ -149,7 +150,7 @@ class GuideWindow(QWidget):
     def _follow(self) -> None:
         """The text was scrolled: the contents show where."""
         top = self.text.verticalScrollBar().value() + 12
-        passed = [line for line in self.headings if self._height(line) <= top]
+        passed = list(takewhile(lambda line: self._height(line) <= top, self.headings))  # those below wait for layout
         if passed:
             self.contents.setCurrentItem(passed[-1])
 

@@ -219,3 +219,12 @@ def test_that_a_mask_image_may_use_any_range(high: int, kind: type, tmp_path: Pa
     expected[5:15, 8:20] = True
     Image.fromarray(np.where(expected, high, high // 3).astype(kind)).save(tmp_path / "mask.png")
     assert np.array_equal(read_mask(tmp_path / "mask.png"), expected)
+
+
+def test_that_a_large_mask_may_be_uncompressed(tmp_path: Path) -> None:
+    path = tmp_path / "large.pgm"
+    with Image.new("L", (5000, 4900)) as picture:
+        picture.paste(255, (1000, 1000, 4000, 3000))
+        picture.save(path)
+    assert path.stat().st_size > 24_000_000
+    assert read_mask(path).sum() == 3000 * 2000

@@ -279,3 +279,14 @@ def test_that_a_closed_cut_that_frees_a_disc_is_told_with_its_place(tmp_path: Pa
     slot = foreign()
     slot.modelspace().add_lwpolyline([(25, 30), (35, 30), (35, 30.3), (25, 30.3)], close=True)
     assert "fall out" not in sentences(checked(slot, tmp_path))
+
+
+@pytest.mark.parametrize(("radius", "dropped"), [(5.0, False), (60_000.0, True), (1e12, True)])
+def test_that_curves_are_left_out_for_their_size_and_not_for_their_place(
+    tmp_path: Path, radius: float, dropped: bool
+) -> None:
+    drawing = ezdxf.new("R2010", units=4)
+    drawing.modelspace().add_circle((450_000.0, 0.0), radius)
+    drawing.saveas(tmp_path / "far.dxf")
+    problems = " ".join(str(problem.text) for problem in check_file(tmp_path / "far.dxf").problems)
+    assert ("larger than 100 m" in problems) is dropped
