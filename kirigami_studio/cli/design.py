@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import checked_plan, material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
-from kirigami_studio.cli.option_types import parse_grid_or_auto
+from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.export.exporter import ExportJob
@@ -45,6 +45,7 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
 from kirigami_studio.project.design_facts import design_facts, with_run
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import packed_design, save
 from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
@@ -56,6 +57,7 @@ def design(arguments: argparse.Namespace) -> int:
     start = replace(start_shape(arguments.start), weight=arguments.start_weight)
     second = second_target(arguments)
     fabrication = material_settings(arguments)
+    check_name(arguments.name, run_labels(0, 1)[0].code)
     regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
@@ -88,7 +90,7 @@ def design(arguments: argparse.Namespace) -> int:
         )
         material_named = arguments.material is not None
         as_cut, files = material_named, arguments.out is not None
-        return Job(request, fabrication, arguments.least_panel_mm, as_cut, files, arguments.engrave or "")
+        return Job(request, fabrication, arguments.least_panel_mm, as_cut, files, arguments.name or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
@@ -109,7 +111,7 @@ def design(arguments: argparse.Namespace) -> int:
         design = designed(job_for(target), line)
         files: dict[str, str] = {}
         if arguments.out:
-            files = write_files(design.result, fabrication, folder_for(name), arguments.engrave or "")
+            files = write_files(design.result, fabrication, folder_for(name), arguments.name or "")
         tell(name, design, files)
 
     def one_from_cluster(name: str, design: Design) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.cli.option_types import check_name
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
@@ -76,8 +77,9 @@ def export(arguments: argparse.Namespace) -> int:
         find_exporter(arguments.out)
     document = load(arguments.project)
     chosen_candidate(document)
-    if arguments.engrave and document.chosen is not None and document.label is not None:
-        document = set_label(document, document.chosen, arguments.engrave, document.label.note).document
+    if arguments.name is not None and document.chosen is not None and document.label is not None:
+        check_name(arguments.name, document.label.code)
+        document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
     _check_hinges(chosen_candidate(document), settings.options)
     try:
@@ -364,7 +366,7 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
         name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version", "paper") if name in given
     }
     if "engrave" in given:
-        changes["engrave"] = given["engrave"] is not False
+        changes["engrave"] = given["engrave"]
     if arguments.material is not None:
         changes["material"] = find_material(arguments.material).key
     try:

@@ -7,9 +7,10 @@ import math
 import re
 
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT
-from kirigami_studio.foundation.errors import GridError, UsageError
+from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
 from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.project.labels import Label, cleaned_name, reads_as_code
 
 
 def parse_grid(text: str) -> tuple[int, int]:
@@ -122,3 +123,23 @@ def workers(arguments: argparse.Namespace) -> Workers:
 def copies(text: str) -> int:
     """A number of copies from 1 on; 0 for ``fit``."""
     return AS_MANY_AS_FIT if text.strip().casefold() == "fit" else count(text)
+
+
+def name(text: str) -> str:
+    """A design's name as its label takes it; "" for the one that it got by itself."""
+    try:
+        return Label("A1", cleaned_name(text)).name
+    except ProjectError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def check_name(wanted: str | None, code: str) -> None:
+    """Refuse a name that reads as another design's code than ``code``, that of the design which is to have it.
+
+    Raises
+    ------
+    UsageError
+        It does.
+    """
+    if wanted and wanted.upper() != code and reads_as_code(wanted):
+        raise UsageError("option.name_reads_as_code", name=wanted)

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.option_types import amount, angle, copies, count, number, positive, share, whole
+from kirigami_studio.cli.option_types import amount, angle, copies, count, name, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.starts import USUAL_WEIGHT
@@ -99,10 +99,11 @@ CUTS = (
 
 #: A name on the sheet.
 ENGRAVE = (
-    option("--engrave", nargs="?", const="", default=None, metavar="TEXT",
-           help="engrave the design's name (A1, ...) on one panel, on layer NAME and before the cuts; TEXT names the "
-                "design so (default: the project's choice)"),
-    option("--no-engrave", dest="engrave", action="store_const", const=False, default=None, help="engrave no name"),
+    option("--engrave", action=argparse.BooleanOptionalAction, default=None,
+           help="engrave the design's name on one panel, on layer NAME and before the cuts (default: the project's "
+                "choice, or no)"),
+    option("--name", type=name, default=None, metavar="TEXT",
+           help="call the design TEXT; for design, the best one (default: the name that it has, such as A1)"),
 )  # fmt: skip
 
 #: Several sheets in one file.
@@ -404,7 +405,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
-        "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave 'For Ada'",
+        "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave --name 'For Ada'",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
         "mechanics:mechanics", (

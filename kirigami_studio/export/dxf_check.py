@@ -110,9 +110,11 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     content = _read(Path(path))
     kerf = _kerf(content, kerf_mm)
     problems = [*content.problems, *_layer_problems(content.layers)]
+    drawn = content.paths
     content = _without_name(content, kerf, problems)
     if not content.paths:
-        problems.append(Problem.error("cut_file.empty"))
+        of_the_name = drawn and "PART" in content.facts
+        problems.append(Problem.warning("cut_file.name_alone") if of_the_name else Problem.error("cut_file.empty"))
         return FileReport(Path(path), tuple(problems), content.unit, content.layers, 0, 0.0, 0.0, (0.0, 0.0), kerf,
                           None, None)  # fmt: skip
     lines = [LineString(path.points) for path in content.paths]
@@ -181,13 +183,16 @@ def _without_marks(content: DxfContent) -> DxfContent:
 
 
 def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
-    """The cuts alone of a file that says in how many lines it engraves a name; those have to be there, and clear."""
+    """The cuts alone of a file that says in how many lines it engraves a name; those have to be there, and clear.
+
+    Of files for single layers one holds all of the name, and the others nothing of it.
+    """
     promised = content.facts.get("ENGRAVED_LINES")
-    if promised is None or "PART" in content.facts:
+    if promised is None:
         return content
     names = [path for path in content.paths if path.layer == NAME_LAYER]
     cuts = [path for path in content.paths if path.layer != NAME_LAYER]
-    if f"{len(names)}" != promised:
+    if f"{len(names)}" != promised and (names or "PART" not in content.facts):
         problems.append(Problem.error("cut_file.name_differs", promised=promised, layer=NAME_LAYER, count=len(names)))
     if names and cuts:
         clear = nearest_cut([path.points for path in names], [path.points for path in cuts])

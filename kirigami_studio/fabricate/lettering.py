@@ -1,7 +1,7 @@
 """Text as single strokes, the way a beam or a pen writes it: open lines instead of outlines of letters.
 
 The letters are those of the Hershey Simplex font (``resources/lettering``, where its makers are named), with the marks
-of accented ones drawn on top.  A letter that has no strokes is left out, and told.
+of accented ones drawn on top.  A letter or a mark that has no strokes is left out, and told.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from kirigami_studio.foundation.resources import resource
 
 #: Room between a letter and its mark, in heights of a capital.
 MARK_GAP = 0.14
+#: What a mark without its letter is shown on.
+DOTTED_CIRCLE = "\N{DOTTED CIRCLE}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,9 +30,9 @@ class Lettering:
     Attributes
     ----------
     text : str
-        Without the letters that have no strokes.
+        Without the letters and marks that have no strokes.
     missing : str
-        Those letters, each once, in their order.
+        Those letters and marks, each once, in their order; a mark stands on a dotted circle.
     lines : tuple of (P, 2) float, heights of a capital
         Open strokes in the order of writing, y up from the base line.
     """
@@ -71,24 +73,39 @@ class _Font:
 
 
 def lettered(text: str) -> Lettering:
-    """Write a text in one line; letters with a mark that is not known are written without it."""
+    """Write a text in one line; a letter with a mark that has no strokes is written without it."""
     font = _font()
     lines: list[FloatArray] = []
     written, missing, x = "", "", 0.0
-    for letter in unicodedata.normalize("NFC", text):
+    for letter in _letters(text):
         apart = unicodedata.normalize("NFD", letter)
-        basic, marks = apart[0], apart[1:]
+        basic, known = apart[0], [mark for mark in apart[1:] if mark in font.marks]
         for part in (basic,) if basic in font.letters else basic.casefold():
             if part not in font.letters:
                 missing += "" if letter in missing else letter
                 break
             strokes = font.letters[part]
-            over = [stroke for mark in marks for stroke in _over(strokes, font.marks.get(mark, ()))]
+            over = [stroke for mark in known for stroke in _over(strokes, font.marks[mark])]
             lines += [np.add(stroke, (x, 0.0)) for stroke in (*strokes, *over)]
             x += font.advance[part]
         else:
-            written += letter
+            written += unicodedata.normalize("NFC", "".join((basic, *known)))
+            for mark in apart[1:]:
+                missing += "" if mark in missing or mark in known else f"{DOTTED_CIRCLE}{mark}"
     return Lettering(written, missing, tuple(lines))
+
+
+def _letters(text: str) -> list[str]:
+    """Letters, each with the marks that go with it; marks without a letter are on a dotted circle."""
+    letters: list[str] = []
+    for letter in unicodedata.normalize("NFC", text):
+        if not unicodedata.combining(letter):
+            letters.append(letter)
+        elif letters and letters[-1].strip():
+            letters[-1] += letter
+        else:
+            letters.append(f"{DOTTED_CIRCLE}{letter}")
+    return letters
 
 
 def _over(strokes: Sequence[FloatArray], mark: Sequence[FloatArray]) -> list[FloatArray]:

@@ -14,6 +14,8 @@ from kirigami_studio.foundation.errors import ProjectError
 
 #: The name that a design gets by itself.
 CODE = re.compile(r"[A-Z]{1,8}[1-9][0-9]{0,5}")
+#: What reads as such a name, however it is written: after two letters there were 702 runs.
+READS_AS_CODE = re.compile(r"[A-Za-z]{1,2}[1-9][0-9]{0,5}")
 #: Letters that a name and a note have at most.
 LONGEST_NAME, LONGEST_NOTE = 40, 2000
 ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -78,6 +80,11 @@ def run_labels(run: int, count: int, taken: Iterable[Label] = ()) -> tuple[Label
         if code not in known:
             labels.append(Label(code))
     return tuple(labels)
+
+
+def reads_as_code(name: str) -> bool:
+    """Whether a person would take it for the name that a design gets by itself: ``B2`` and ``b2``, not ``Heart2``."""
+    return READS_AS_CODE.fullmatch(name) is not None
 
 
 def cleaned_name(text: str) -> str:

@@ -261,6 +261,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file promises a name engraved in {promised:.20} lines on layer {layer}, and has {count} there. Export it "
         "again."
     ),
+    "cut_file.name_alone": mark("The file holds only an engraved name and no cuts."),
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
     ),

@@ -233,7 +233,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "plan.name_without_letters": mark("The name {name!r} is not engraved: the engraving font has none of its letters."),
     "plan.name_letters_left_out": mark(
-        "The name {name!r} is engraved without {letters}: the engraving font has no such letters."
+        "The name {name!r} is engraved without {letters}: the engraving font has no strokes for that."
     ),
     "plan.refused": mark("{reason}"),
     "plan.nothing_left": mark("Nothing is left of the sheet with a kerf of {kerf_mm:g} mm. Use a smaller kerf."),

@@ -11,6 +11,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cli.file_not_usable": mark("Cannot read or write {path}: {reason}."),
     "cli.output_not_usable": mark("Cannot read or write the output: {reason}."),
     # Options
+    "option.name_reads_as_code": mark(
+        "The name {name} would be taken for another design's: choose one that is more than letters and a number."
+    ),
     "option.grid": mark("A grid is written ROWSxCOLUMNS, for example 10x10; got '{text:.40}'."),
     "option.angle": mark("An angle is a number of radians (0.5, pi/3) or degrees (30deg); got '{text:.40}'."),
     "option.angle_divided_by_zero": mark("An angle cannot be divided by zero: '{text:.40}'."),

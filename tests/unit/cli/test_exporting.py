@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.cli import main
+from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.profile import PROFILES
@@ -170,7 +171,7 @@ def test_that_a_name_is_engraved_on_request_and_the_file_carries_it(
     bare = report()
     plain = (tmp_path / "cut.dxf").read_bytes()
     assert "engraved" not in bare and "NAME" not in layers()
-    for options, text in ((["--engrave"], "A1"), (["--engrave", "For Ada"], "For Ada")):
+    for options, text in ((["--engrave"], "A1"), (["--engrave", "--name", "For Ada"], "For Ada")):
         named = report(*options)
         assert named["engraved"]["text"] == text and layers()[0] == "NAME"  # type: ignore[index]
         told = ("cut_length_mm", "travel_mm", "seconds_estimate", "pieces", "min_connector_mm", "jam_deg", "ok")
@@ -189,15 +190,41 @@ def test_that_a_name_is_engraved_on_request_and_the_file_carries_it(
     assert code == 0 and "engraved" not in json.loads(out) and 'id="NAME"' not in (tmp_path / "x.svg").read_text()
 
 
-def test_that_a_name_without_room_or_too_long_is_told(
-    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
-) -> None:
+def test_that_a_name_without_room_is_told(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
     long = "A name that is much too long for it"
-    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "cut.dxf", "--engrave", long, "--json")
+    code, out, _ = run(capsys, "export", project, "--out", tmp_path / "cut.dxf", "--engrave", "--name", long, "--json")
     told = json.loads(out)
     assert code == 0 and "engraved" not in told and any("no whole panel has room" in text for text in told["warnings"])
-    code, _, err = run(capsys, "export", project, "--out", tmp_path / "no.dxf", "--engrave", "x" * 41)
-    assert code == 1 and len(err.splitlines()) == 1 and not (tmp_path / "no.dxf").exists()
+
+
+def test_that_a_name_alone_renames_the_design_and_engraves_nothing(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    for name, text in ((" For\tAda ", "For Ada"), ("", "A1"), ("a1", "a1")):
+        assert run(capsys, "export", project, "--out", tmp_path / "cut.dxf", "--name", name)[0] == 0
+        carried = load(tmp_path / "cut.dxf")
+        assert carried.labels[0].text == text and not carried.fabrication.engrave
+
+
+@pytest.mark.parametrize(("name", "said"), [("x" * 41, "41 letters; the limit is 40"), ("B2", "B2"), ("a12", "a12")])
+def test_that_a_name_that_no_design_may_have_is_refused_before_anything_is_done(
+    name: str, said: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    # A target that is not there would be told otherwise: it has not been read yet.
+    for command in (["design", "no-such-target"], ["export", str(project)]):
+        try:
+            code = main([*command, "--out", str(tmp_path / "no.dxf"), "--name", name])
+        except SystemExit as stopped:
+            code = int(str(stopped.code))
+        (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("kirigami-studio")]
+        assert code == 2 and said in line and line.count(".") == 1
+        assert not (tmp_path / "no.dxf").exists()
+
+
+@pytest.mark.parametrize("switch", [["--engrave"], ["--no-engrave"], ["--engrave", "--name", "Hex"]])
+def test_that_the_switch_to_engrave_takes_no_target(switch: list[str]) -> None:
+    read = build_parser().parse_args(["design", *switch, "a.svg", "b.svg"])
+    assert read.targets == ["a.svg", "b.svg"] and read.engrave is (switch[0] == "--engrave")
 
 
 def test_that_copies_fill_one_file_and_are_told(

@@ -115,11 +115,11 @@ def test_that_a_grid_left_to_the_program_is_stored_as_such(tmp_path: Path, capsy
     assert project.provenance["grid_choice"] == "auto"
 
 
-def test_that_a_text_to_engrave_names_the_best_design_and_is_in_its_cut_file(
+def test_that_a_name_to_engrave_is_the_best_design_s_and_is_in_its_cut_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    wish = ["design", "hexagon", "--grid", "6x6", "--k", "2", "--no-polish", "--out", str(tmp_path), "--engrave", "Hex"]
-    assert main(wish) == 0
+    wish = ["design", "--engrave", "hexagon", "--name", "Hex", "--grid", "6x6", "--k", "2", "--no-polish"]
+    assert main([*wish, "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out
     project = load(tmp_path / "design.kiri")
     assert project.fabrication.engrave and [label.text for label in project.labels] == ["Hex", "A2"]

@@ -200,3 +200,24 @@ def test_that_a_foreign_layer_of_that_name_is_cut(bare: CutPlan, tmp_path: Path)
     document.modelspace().add_lwpolyline([(5.0, 5.0), (6.0, 5.0)], dxfattribs={"layer": NAME_LAYER})
     document.saveas(tmp_path / "foreign.dxf")
     assert check_file(tmp_path / "foreign.dxf").cut_length_mm == pytest.approx(before.cut_length_mm + 1.0)
+
+
+def test_that_each_file_of_a_single_layer_is_checked_by_its_cuts_alone(
+    design: Deployment, bare: CutPlan, named: CutPlan, tmp_path: Path
+) -> None:
+    plain = export(ExportJob(design, plan=bare, profile="layers"), tmp_path / "bare.dxf")
+    folder = export(ExportJob(design, plan=named, profile="layers"), tmp_path / "named.dxf")
+    name, *cuts = sorted(folder.iterdir())
+    alone = check_file(name)
+    assert name.name == "1_NAME.dxf" and alone.ok
+    assert (alone.path_count, alone.cut_length_mm, alone.bounds_mm) == (0, 0.0, (0.0, 0.0))
+    assert [problem.code for problem in alone.problems] == ["cut_file.name_alone"]
+    kept = ("path_count", "cut_length_mm", "overlap_mm", "bounds_mm", "pieces", "min_ligament_mm", "problems")
+    for one, before in zip(cuts, sorted(plain.iterdir()), strict=True):
+        assert one.name[2:] == before.name[2:]
+        report, expected = check_file(one), check_file(before)
+        assert report.ok and [getattr(report, key) for key in kept] == [getattr(expected, key) for key in kept]
+    document = ezdxf.readfile(name)
+    document.modelspace().delete_entity(document.modelspace()[-1])
+    document.saveas(name)
+    assert "cut_file.name_differs" in [problem.code for problem in check_file(name).problems]

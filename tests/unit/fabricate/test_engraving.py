@@ -131,6 +131,33 @@ def test_that_accented_letters_are_their_letters_with_a_mark_above() -> None:
     assert len(lettered("\N{LATIN SMALL LETTER SHARP S}").lines) == len(lettered("ss").lines)
 
 
+@pytest.mark.parametrize(
+    ("text", "written", "missing"),
+    [
+        ("\N{LATIN CAPITAL LETTER I WITH DOT ABOVE}z\N{LATIN CAPITAL LETTER I WITH DOT ABOVE}", "IzI", "\u25cc\u0307"),
+        ("\N{LATIN CAPITAL LETTER A WITH DOT BELOW}", "A", "\u25cc\u0323"),
+        (
+            "A\N{COMBINING DOT BELOW}\N{COMBINING DIAERESIS}",
+            "\N{LATIN CAPITAL LETTER A WITH DIAERESIS}",
+            "\u25cc\u0323",
+        ),
+        ("q\u0308", "q\u0308", ""),
+        ("\u0308A", "A", "\u25cc\u0308"),
+        ("A \u0308B", "A B", "\u25cc\u0308"),
+    ],
+)
+def test_that_a_mark_without_strokes_is_told_and_its_letter_is_written(
+    text: str, written: str, missing: str, make_design: MakeDesign
+) -> None:
+    found = lettered(text)
+    assert (found.text, found.missing) == (written, missing)
+    before = plan_cuts(make_design(2, 2, spread=0.1), 150.0)
+    plan = engraved(before, text)
+    assert plan.engraving is not None and plan.engraving.text == written
+    told = [note.text for note in plan.notes[len(before.notes) :]]
+    assert len(told) == (1 if missing else 0) and all(missing in text for text in told)
+
+
 def test_that_removed_connectors_and_tabs_leave_the_name_where_it_is_clear(make_design: MakeDesign) -> None:
     design = make_design(4, 4, seed=5, spread=0.2)
     plan = plan_cuts(design, 100.0, 0.4, 0.1, options=CutOptions(tabs=3, removed=(4,)))
