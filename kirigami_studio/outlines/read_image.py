@@ -247,7 +247,7 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
     return Outline.from_points(ring, name=name, notes=notes, unit="px")
 
 
-def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels: int = MOST_PIXELS) -> Image.Image:
+def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels: int | None = None) -> Image.Image:
     """Decode a picture, all of it.
 
     Parameters
@@ -255,7 +255,8 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
     content : bytes
     formats : tuple of str
         Those that are read, as Pillow calls them.
-    most_pixels : int
+    most_pixels : int, optional
+        Default ``MOST_PIXELS``.
 
     Raises
     ------
@@ -275,8 +276,9 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
             # Pillow's own words name the object in memory and not the file.
             raise ValueError("it does not begin like one") from None
         width, height = image.size
-        if width * height > most_pixels:
-            raise TargetError("image.too_many_pixels", width=width, height=height, limit=most_pixels // 10**6)
+        limit = MOST_PIXELS if most_pixels is None else most_pixels
+        if width * height > limit:
+            raise TargetError("image.too_many_pixels", width=width, height=height, limit=limit // 10**6)
         image.load()
     return image
 

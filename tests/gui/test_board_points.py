@@ -21,6 +21,7 @@ from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
+from tests.gui.test_replacing import answer, asked
 
 Until = Callable[[Callable[[], bool]], None]
 Place = tuple[float, float]
@@ -286,7 +287,9 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
     plate.target.tools.axis.set_axis(Axis.BOTH)
     assert context.mirror.at == pytest.approx((25, 10))
     plate.controller.targeting.open("heart")
-    until(lambda: plate.controller.document.target is not None and plate.controller.document.target.name == "heart")
+    until(lambda: bool(asked(plate)))
+    answer(plate, "Replace")
+    assert plate.controller.document.target is not None and plate.controller.document.target.name == "heart"
     ring = placed(plate).ring
     assert context.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
 
@@ -299,6 +302,8 @@ def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_sta
     drag(plate, (0, 0), (25, 10), CTRL)
     plate.target.tools.axis.set_axis(Axis.BOTH)
     targeting.open(str(photo))
+    until(lambda: bool(asked(plate)))
+    answer(plate, "Replace")
     until(lambda: plate.target.threshold.isVisible())
     ring = placed(plate).ring
     middle = tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0)))

@@ -172,7 +172,7 @@ def kept_up_with(by_hand: MainWindow, until: Until, phi: float) -> float:
     before = shapes_of(view).corners[1, 2].copy()
     kept_up = []
     drag(view, start, start + QPoint(5, 5), let_go=False)
-    for degrees in range(0, 180, 15):
+    for degrees in range(0, 360, 15):  # one way along its slit the ratio may be at its bound
         way = np.array((math.cos(math.radians(degrees)), math.sin(math.radians(degrees))))
         QTest.mouseMove(view, start + QPoint(*np.round(10.0 * way).astype(int).tolist()))
         kept_up.append(float(((shapes_of(view).corners[1, 2] - before) @ way).max()))
