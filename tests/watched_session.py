@@ -120,8 +120,9 @@ class WatchedSession:
         self.step("generate 4 and polish fully", self.generate, self.generated)
         self.step("choose another design", lambda: self.press("next"), self.planned)
         self.step("trim", lambda: self.press("trim"), lambda: not controller.trimming.busy and self.planned())
-        self.step("undo", lambda: [self.press("undo") for _ in range(3)], self.planned)
-        self.step("redo", lambda: [self.press("redo") for _ in range(3)], self.planned)
+        for command in ("undo", "redo"):
+            for number in range(3):  # every press is a gesture of its own
+                self.step(f"{command} step {number + 1}", lambda command=command: self.press(command), self.planned)
         self.step("scrub", self.scrub)
         self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
         self.step("generate 2 and search", self.generate, self.generated)
@@ -163,8 +164,10 @@ class WatchedSession:
         self.step(f"scroll through the {designs}", self.scroll_all, self.pictured)
         self.step(f"make the {designs} cards small", lambda: self.keys(table, Qt.Key.Key_Minus), self.pictured)
         self.step(f"filter the {designs}", lambda: page.filters.least.setValue(1.0), self.pictured)
-        right, mark = Qt.Key.Key_Right, Qt.Key.Key_Space
-        self.step(f"mark four of the {designs}", lambda: self.keys(table, mark, right, mark, right, mark, right, mark))
+        for number in range(4):  # every press is a gesture of its own
+            self.step(f"mark design {number + 1} of the {designs}", lambda: self.keys(table, Qt.Key.Key_Space))
+            if number < 3:
+                self.keys(table, Qt.Key.Key_Right)
         self.step(f"compare four of the {designs}", lambda: self.keys(table, Qt.Key.Key_C), lambda: page.comparing)
         self.step(f"scrub four of the {designs}", lambda: page.compare.bar.slider.setValue(900))
         self.step(

@@ -26,7 +26,7 @@ SESSIONS = 3
 #: one has up to 256 designs in the window at its first size, 1440 x 900.  The second one fills 2560 x 1440 with as many
 #: and paints the window four times as large: there one painting of all that is seen takes 0.04 to 0.1 s, as the
 #: machine's speed comes and goes.
-SCRIPTS = {"watched_session.py": (40, 0.1), "watched_tools.py": (48, 0.2)}
+SCRIPTS = {"watched_session.py": (50, 0.1), "watched_tools.py": (48, 0.2)}
 
 Turns = dict[str, tuple[float, float, float]]
 
