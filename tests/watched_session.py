@@ -1,8 +1,9 @@
 """One session through the real window in a process of its own, with the user-interface thread watched at every step.
 
-``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen] in seconds, the longest
-turn of the event loop in it.  ``--last STEP`` ends after that step, ``--block SECONDS`` plays only steps that are
-known to hold the thread up.  Another session with other steps is in ``watched_tools.py``.
+``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen], the longest turn of the
+event loop in it, in seconds of the machine for which limits are written (``machine_pace``).  ``--last STEP`` ends after
+that step, ``--block SECONDS`` plays only steps that are known to hold the thread up.  Another session with other steps
+is in ``watched_tools.py``.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from machine_pace import slowness
 from PySide6.QtCore import QEventLoop, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
@@ -313,6 +315,7 @@ def main(kind: type[WatchedSession]) -> int:
     if not chosen.block:
         kind.prepare(chosen.folder)
     create_application(["kirigami-studio"])
+    paces = [slowness()]
     session = kind(chosen.folder)
     session.last = chosen.last
     try:
@@ -328,7 +331,9 @@ def main(kind: type[WatchedSession]) -> int:
         window: QWidget = session.window
         session.window.controller.history.mark_saved()
         window.close()
-    sys.stdout.write(json.dumps(session.longest))
+    paces.append(slowness())
+    pace = sum(paces) / len(paces)
+    sys.stdout.write(json.dumps({step: [part / pace for part in turn] for step, turn in session.longest.items()}))
     return 0
 
 

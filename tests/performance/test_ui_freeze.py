@@ -1,5 +1,6 @@
 """The window takes events all the time: no turn of its loop lasts 0.1 s, on a large screen with large projects 0.2 s.
 
+The limits hold on a machine of the pace that ``machine_pace`` names; a slower one is given as much longer.
 ``pytest -s`` prints the table.
 """
 

@@ -1,4 +1,4 @@
-"""How long a person waits for the window, with what the machine took for others left out.
+"""How long a person waits for the window, with what the machine took for others left out, in seconds of its pace.
 
 ``pytest -s`` prints the time.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -33,7 +34,9 @@ while window.controller.document.target is None:
     application.processEvents()
 application.processEvents()
 assert window.grab().width() > 500
-print(time.perf_counter() - began - (lost() - before), "torch" in sys.modules)
+spent = time.perf_counter() - began - (lost() - before)
+from machine_pace import slowness
+print(spent / slowness(), "torch" in sys.modules)
 window.close()
 """
 
@@ -42,7 +45,8 @@ LIMIT, STARTS = 2.0, 3
 
 
 def test_that_the_window_is_usable_within_two_seconds_and_without_torch() -> None:
-    environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
+    search_path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"QT_QPA_PLATFORM": "offscreen", "PYTHONPATH": search_path}
     command = [sys.executable, "-c", START]
     seconds: list[float] = []
     while len(seconds) < STARTS and min(seconds, default=LIMIT) >= LIMIT:
