@@ -20,6 +20,7 @@ WORKER_FLAG = "--worker"
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one sub-command; returns the exit code (argparse itself exits with 2 on unknown words)."""
+    _replace_missing_streams()
     words = list(sys.argv[1:] if argv is None else argv)
     if words == [WORKER_FLAG]:
         from kirigami_studio.pipeline.worker import serve
@@ -52,6 +53,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         if error.filename:
             return _fail(KirigamiError("cli.file_not_usable", path=error.filename, reason=reason), 1)
         return _fail(KirigamiError("cli.output_not_usable", reason=reason), 1)
+
+
+def _replace_missing_streams() -> None:
+    """Programs that Windows starts without a console have no standard output and error; what is written is dropped."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - as long as the program
 
 
 def _drop_output() -> None:

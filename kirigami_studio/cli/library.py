@@ -1,9 +1,10 @@
-"""``targets``, ``parts``, ``variants``, ``materials``, ``coupon``: what there is to choose from, and own materials."""
+"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``coupon``: what there is, and own materials."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import asdict
 from datetime import date
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
 from kirigami_studio.fabricate.material import Material, default_material, find_material, library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.licences import components, normalised
 from kirigami_studio.foundation.words import tr
 
 
@@ -21,6 +23,24 @@ def targets(arguments: argparse.Namespace) -> int:
     from kirigami_studio.outlines.silhouettes import names
 
     return _listing(arguments, "targets", names())
+
+
+def licences(arguments: argparse.Namespace) -> int:
+    """List what comes with the program, or print the licence of one part of it."""
+    found = components()
+    if arguments.part is not None:
+        found = tuple(one for one in found if normalised(one.name) == normalised(arguments.part))
+        if not found:
+            raise UsageError("licences.no_such_part", part=arguments.part)
+    if arguments.json:
+        print_json({"parts": [asdict(one) for one in found]})
+    elif arguments.part is not None:
+        for one in found:
+            say(one.text)
+    else:
+        for one in found:
+            say(f"{one.name:32} {one.version:14} {one.licence}")
+    return 0
 
 
 def parts(arguments: argparse.Namespace) -> int:

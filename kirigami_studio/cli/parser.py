@@ -492,6 +492,10 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio artwork heart.kiri --picture logo.svg --on flat --place fit --scale 0.8 --out out/print",
         "kirigami-studio artwork heart.kiri --picture photo.jpg --dpi 600 --bleed-mm 2 --copies 4 --out out/print")),
     SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
+    SubCommand("licences", "list what comes with the program, and its licences", "library:licences", (
+        option("part", nargs="?", default=None, help="print the licence of this part, such as numpy"),
+        JSON,
+    ), ("kirigami-studio licences", "kirigami-studio licences PySide6-Essentials")),
     SubCommand("parts", "list the parts of a drawing, for --parts", "library:parts", (
         option("file", help="an SVG or DXF file, or a picture"),
         JSON,

@@ -176,7 +176,7 @@ class StateSheet(BoardStates):
         window.speak("system")
 
     def first_steps(self) -> None:
-        """The tour at a control on every side, and the sheet of keys."""
+        """The tour at a control on every side, the sheet of keys, and the licences."""
         tour, dialogs = self.window.tour, self.window.dialogs
         tour.start()
         for step in range(len(tour.steps)):
@@ -186,10 +186,11 @@ class StateSheet(BoardStates):
                 self.picture(f"tour-{step + 1}")
             click(tour.callout.next)
         dialogs.show_shortcuts()
-        if dialogs.shortcuts is not None:
-            for palette in (DARK, LIGHT):
+        dialogs.show_about()
+        for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
+            for palette in (DARK, LIGHT) if dialog is not None else ():
                 self.window.set_theme(palette)
-                self.picture(f"shortcuts-{palette.name}", dialogs.shortcuts)
+                self.picture(f"{name}-{palette.name}", dialog)
 
     def polishing(self) -> None:
         """A run whose designs improve, with a search after it."""

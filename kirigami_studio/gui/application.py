@@ -16,7 +16,7 @@ from PySide6.QtCore import (
     Qt,
     QTimer,
 )
-from PySide6.QtGui import QFont, QFontDatabase, QGuiApplication
+from PySide6.QtGui import QFileOpenEvent, QFont, QFontDatabase, QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.foundation.errors import KirigamiError
@@ -36,7 +36,7 @@ RECOVERY = "recovery"
 SMALLEST_FONT = 9.5
 NO_DISPLAY = mark(
     "No display available. Use the command line (kirigami-studio --help), or run an "
-    "off-screen session: python -m kirigami_studio.demonstrations.offscreen_session --out "
+    "off-screen session: {program} -m kirigami_studio.demonstrations.offscreen_session --out "
     "out."
 )
 #: Python's switch interval in seconds: how long a computing thread may keep the interpreter from the UI thread.
@@ -58,6 +58,23 @@ TOUCHES = frozenset(
         QEvent.Type.Resize,
     }
 )
+
+
+class FileOpening(QObject):
+    """Calls ``act`` with each file that the desktop opens in the running program, as macOS does at a double click."""
+
+    def __init__(self, act: Callable[[str], None], parent: QObject) -> None:
+        super().__init__(parent)
+        self._act = act
+        self.opened = False
+        parent.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if isinstance(event, QFileOpenEvent) and event.file():
+            self.opened = True
+            self._act(event.file())
+            return True
+        return False
 
 
 class WarmUp(QObject):
@@ -111,6 +128,7 @@ def create_application(argv: list[str]) -> QApplication:
             os.environ["QT_QPA_FONTDIR"] = folder
     QCoreApplication.setOrganizationName("Kirigami Studio")
     QCoreApplication.setApplicationName("Kirigami Studio")
+    QGuiApplication.setDesktopFileName("kirigami-studio")
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     application = QApplication(argv)
     application.setFont(readable_font(application.font()))
@@ -177,7 +195,8 @@ def run(argv: list[str]) -> int:
         Exit code, 0 when the user closed the window, 1 when there is no display to open it on.
     """
     if not display_present():
-        sys.stderr.write(f"{tr(NO_DISPLAY)}\n")
+        program = "kirigami-studio" if getattr(sys, "frozen", False) else "python"
+        sys.stderr.write(f"{tr(NO_DISPLAY, program=program)}\n")
         return 1
     application = create_application(argv[:1] or ["kirigami-studio"])
     config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
@@ -193,7 +212,13 @@ def run(argv: list[str]) -> int:
     window.appearance.refresh()
     window.appearance.listen()
     window.show()
-    QTimer.singleShot(0, window, lambda: open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET))
+    opening = FileOpening(window.files.open, application)
+
+    def begin() -> None:
+        if not opening.opened:  # else the desktop was faster
+            open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET)
+
+    QTimer.singleShot(0, window, begin)
     WarmUp(window.controller.warm_up, lambda: window.controller.queue.busy, window)
     QTimer.singleShot(0, window, window.connections.first_start.begin)
     return application.exec()

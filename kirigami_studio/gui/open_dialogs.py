@@ -19,6 +19,7 @@ from kirigami_studio.gui.look import theme
 from kirigami_studio.gui.panels.number_field import leave_wheel
 
 if TYPE_CHECKING:
+    from kirigami_studio.gui.dialogs.about import AboutWindow
     from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.dialogs.export_report import ExportReport
     from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
@@ -48,6 +49,7 @@ class Dialogs(QObject):
         self.materials: MaterialEditor | None = None
         self.history: HistoryList | None = None
         self.shortcuts: ShortcutSheet | None = None
+        self.about: AboutWindow | None = None
         self.start_board: StartBoard | None = None
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
@@ -237,6 +239,14 @@ class Dialogs(QObject):
         bring_to_front(self.shortcuts)
         self.shortcuts.search.setFocus()
 
+    def show_about(self) -> None:
+        """Open the window with version and licences, or bring it to the front."""
+        from kirigami_studio.gui.dialogs.about import AboutWindow
+
+        if self.about is None:
+            self.about = AboutWindow(self._window)
+        bring_to_front(self.about)
+
     def reword(self) -> None:
         """The language has changed: what is only read is written anew."""
         if self.shortcuts is not None:
@@ -252,7 +262,8 @@ class Dialogs(QObject):
         """The window is closing, and its dialogs with it."""
         self.close_report()
         asking = (self.start_board, self.second_board, self.parts)
-        for dialog in (self.materials, self.guide, self.history, self.shortcuts, *asking, self.pairs, self.artwork):
+        read = (self.guide, self.history, self.shortcuts, self.about)
+        for dialog in (self.materials, *read, *asking, self.pairs, self.artwork):
             if dialog is not None:
                 dialog.close()
 

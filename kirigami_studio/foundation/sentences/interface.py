@@ -59,6 +59,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "--hinge-mm takes a connector and its width in mm, for example 3=0.8; got '{text}'."
     ),
     "animate.not_a_gif": mark("animate writes .gif files, got {name}."),
+    "licences.no_such_part": mark(
+        "{part!r:.60} does not come with the program; kirigami-studio licences lists what does."
+    ),
     "materials.copy_and_delete": mark("Either copy a material or delete one, not both."),
     "materials.options_without_copy": mark(
         "--as, --set and --calibrated need --copy KEY, which names the material to copy."

@@ -1,4 +1,4 @@
-"""The Help menu: the guide, the keys, the tour, the sample."""
+"""The Help menu: the guide, the keys, the tour, the sample, the licences."""
 
 from __future__ import annotations
 
@@ -40,5 +40,13 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             tr("Open &sample project"),
             tr("Open a sample project with heart designs"),
             window.files.open_sample,
+        ),
+        Command(
+            "about",
+            menu,
+            tr("&About Kirigami Studio"),
+            tr("Version and licences of the program and of what comes with it"),
+            dialogs.show_about,
+            gap=True,
         ),
     )

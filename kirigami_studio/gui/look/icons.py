@@ -36,6 +36,13 @@ def pixmap(name: str, colour: str, size: int, ratio: float = 1.0) -> QPixmap:
     return result
 
 
+def coloured(name: str, size: int, ratio: float = 1.0) -> QPixmap:
+    """Render one icon in the colours of its own drawing, as :func:`pixmap` does in one colour."""
+    result = QPixmap.fromImage(_shape(name, max(1, round(size * ratio))))
+    result.setDevicePixelRatio(ratio)
+    return result
+
+
 def icon(name: str, palette: Palette, colour: str | None = None) -> QIcon:
     """Return the icon for buttons and menus: text colour when enabled, faint when disabled."""
     return _icon(name, colour or palette.text, palette.disabled)
