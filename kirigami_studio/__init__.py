@@ -1,3 +1,39 @@
-"""Kirigami Studio: from a silhouette to a cutter-ready kirigami sheet."""
+"""Kirigami Studio: from a silhouette to a cutter-ready kirigami sheet.
+
+>>> import kirigami_studio as ks
+>>> ks.load_target("heart")
+<Target 'heart': 114 points>
+
+The names in ``__all__`` are the Python API, told in ``docs/python-api.md``; each is loaded when it is first asked for.
+``__init__.pyi`` says the same to type checkers and editors.
+"""
+
+import importlib
 
 __version__ = "0.1.0"
+
+_MODULES = {
+    "api.target": ("Target", "load_target", "target_names"),
+    "api.sheet": ("Sheet", "decode"),
+    "api.design": ("Design", "score", "siou"),
+    "api.designs": ("Designs", "design", "load_project", "material_names"),
+    "api.cuts": ("Cuts", "Exported"),
+    "api.simulation": ("Simulation",),
+    "api.checked_file": ("CheckedFile", "check"),
+    "pipeline.events": ("Progress",),
+    "foundation.errors": ("KirigamiError",),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

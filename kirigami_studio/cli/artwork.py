@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
-from kirigami_studio.cli.fabrication import chosen_candidate, design_job, overridden
+from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_picture import read_picture
@@ -17,6 +17,7 @@ from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.export_job import chosen_candidate, cut_job
 from kirigami_studio.project.store import load
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
@@ -31,7 +32,7 @@ def artwork(arguments: argparse.Namespace) -> int:
     settings = overridden(document.fabrication, arguments)
     candidate = chosen_candidate(document)
     printed = _artwork(arguments, document)
-    job = design_job(document, plan_of(candidate, settings), settings)
+    job = cut_job(document, plan_of(candidate, settings), settings)
     try:
         work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
         files = write_artwork(work, arguments.out)

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from kirigami_studio.api.running import document_of, result_of_run
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
-from kirigami_studio.cli.fabrication import checked_plan, material_settings, say_verdict
+from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto
 from kirigami_studio.evaluate.candidate import Candidate
@@ -25,30 +26,23 @@ from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
-from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
-from kirigami_studio.pipeline.best_as_cut import best_as_cut
-from kirigami_studio.pipeline.events import Finished, Progress, Result
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.redesign import keep_for_connectors
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request, provenance
-from kirigami_studio.pipeline.run import run, with_grid
+from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
 from kirigami_studio.pipeline.variety import look_alikes
-from kirigami_studio.polish.flat_sheet import width_in_cells
-from kirigami_studio.project.as_cut import jam_angles
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.cutting import least_feature_mm, material_for, room_mm
-from kirigami_studio.project.design_facts import design_facts, with_run
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.cutting import checked_plan, least_feature_mm, room_mm
+from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.labels import run_labels
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import packed_design, save
-from kirigami_studio.project.verdict import Verdict, assess, look_at, refused
+from kirigami_studio.project.verdict import Verdict, assess, refused
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -180,12 +174,15 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
     FabricationError
         Designs were to be trimmed and none could be.
     """
-    request = _on_its_grid(job.request, job.fabrication, job.least_panel_mm)
-    result = _run(request, line, pool)
-    if job.as_cut:
-        result = cuttable_first(result, job.fabrication, line)
-    if request.trim and all(one.trim is None for one in result.candidates):
-        raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
+    result = result_of_run(
+        job.request,
+        job.fabrication,
+        lambda progress: line.show(progress.message),
+        least_panel_mm=job.least_panel_mm,
+        as_cut=job.as_cut,
+        pool=pool,
+    )
+    line.clear()
     return Design(result, _verdict_on(result, job.fabrication) if job.as_cut else None)
 
 
@@ -267,21 +264,6 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
     weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
     return SecondTarget(read_target(arguments.also), phi, weight)
-
-
-def cuttable_first(result: Result, fabrication: FabricationSettings, line: ProgressLine) -> Result:
-    """Rank designs by how they do as cut, the best that can be cut in this material first."""
-    target = result.request.target
-    jams = jam_angles(result.candidates, fabrication)
-    steps = best_as_cut(result, jams, lambda one: look_at(one, fabrication, target))
-    while True:
-        try:
-            one = next(steps)
-        except StopIteration as end:
-            line.clear()
-            found: Result = end.value
-            return found
-        line.show(tr("Looking for a design that can be cut: {number} of {total}", number=one.number, total=one.total))
 
 
 def _verdict_on(result: Result, fabrication: FabricationSettings) -> Verdict:
@@ -390,59 +372,6 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path, 
     listing = {"candidates": candidates_json(result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     return {role: str(path) for role, path in paths.items()}
-
-
-def document_of(result: Result, fabrication: FabricationSettings) -> Document:
-    """The project that the window would have after the same run."""
-    from kirigami_studio.generator.weights import digest_of
-
-    request = result.request
-    settings = DesignSettings(
-        request.chosen_grid,
-        request.phi,
-        request.k,
-        request.seed,
-        request.variant,
-        request.steps,
-        request.polish,
-        request.prefer,
-        request.search,
-        request.grid_chosen,
-        request.symmetry,
-        request.rim,
-        request.regular,
-        request.start,
-        request.second,
-    )
-    source = provenance(request, digest_of(request.variant))
-    candidates = tuple(with_run(result.candidates, source))
-    return Document(request.target, settings, candidates, 0, fabrication, source)
-
-
-def _run(request: Request, line: ProgressLine, pool: Pool | None) -> Result:
-    for event in run(request, pool=pool):
-        if isinstance(event, Progress):
-            line.show(event.message)
-        elif isinstance(event, Finished):
-            line.clear()
-            return event.result
-    raise Cancelled("run.no_result")
-
-
-def _on_its_grid(request: Request, fabrication: FabricationSettings, least_panel_mm: float) -> Request:
-    """The request with its grid chosen, and with what depends on the size of its cells."""
-    request = with_grid(request)
-    grid = request.chosen_grid
-    least = least_panel_mm * width_in_cells(grid, request.start) / fabrication.width_mm
-    return replace(
-        request, least_panel=least, keep=_keep(fabrication, request.uniform) if request.trim else request.keep
-    )
-
-
-def _keep(fabrication: FabricationSettings, sheet: Sheet) -> float:
-    """How deep (unit cells) material has to stay at the hinges of a trimmed sheet so that its connectors hold."""
-    material, numbers = material_for(fabrication), (fabrication.connector_mm, fabrication.kerf_mm)
-    return keep_for_connectors(sheet, material, fabrication.width_mm, *numbers)
 
 
 def _folder_name(name: str, used: set[str]) -> str:

@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
+from kirigami_studio.api.checked_file import judged_by_design
+from kirigami_studio.api.cuts import write_file
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
 from kirigami_studio.evaluate.candidate import Candidate
@@ -19,31 +20,25 @@ from kirigami_studio.export.export_set import ExportSet, export_all
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.export.provenance import engraved_json, narrowed_json, sidecar_path, write_sidecar
-from kirigami_studio.export.registry import export as export_file
+from kirigami_studio.export.provenance import engraved_json, narrowed_json
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
-from kirigami_studio.export.verification import FORMATS, Verification, verify_export
-from kirigami_studio.fabricate.checks import Report, check_plan
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import default_material, find_material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
-from kirigami_studio.fabricate.slits import cut_table
-from kirigami_studio.foundation.errors import ExportError, FabricationError, ProjectError, UsageError
+from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.coarser import coarser_designs
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.as_cut import simulated
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
-from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.cutting import check_connectors, checked_plan, least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.export_job import chosen_candidate, cut_job, picture_job
 from kirigami_studio.project.fixes import Advice, find_fixes
-from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.store import load, packed_design
+from kirigami_studio.project.settings import FabricationSettings, with_choices
+from kirigami_studio.project.store import load
 from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge, refused
 
 
@@ -51,24 +46,6 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     """Fabrication settings from the width options; unknown materials are refused here, before any work."""
     material = default_material() if arguments.material is None else find_material(arguments.material)
     return overridden(FabricationSettings(material=material.key), arguments)
-
-
-def checked_plan(candidate: Candidate, fabrication: FabricationSettings, name: str = "") -> tuple[CutPlan, Report]:
-    """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
-
-    Its name is engraved if the settings say so.
-
-    Raises
-    ------
-    FabricationError
-        The plan cannot be made, or the sheet would not survive it.
-    """
-    plan = plan_of(candidate, fabrication, name=name)
-    report = check_plan(plan, phi=candidate.final_phi)
-    for problem in report.problems:
-        if problem.severity is Severity.ERROR:
-            raise FabricationError("export.cannot_be_cut", reason=problem.text)
-    return plan, report
 
 
 def export(arguments: argparse.Namespace) -> int:
@@ -81,7 +58,7 @@ def export(arguments: argparse.Namespace) -> int:
         check_name(arguments.name, document.label.code)
         document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
-    _check_hinges(chosen_candidate(document), settings.options)
+    check_connectors(chosen_candidate(document), settings.options)
     try:
         chosen = chosen_candidate(document)
         plan, report = checked_plan(chosen, settings, document.name_of(chosen))
@@ -90,7 +67,7 @@ def export(arguments: argparse.Namespace) -> int:
             raise
         fixes = " ".join(_advice(document, settings, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
-    job = replace(design_job(document, plan, settings), markers=settings.markers or arguments.markers)
+    job = replace(cut_job(document, plan, settings), markers=settings.markers or arguments.markers)
     candidate = chosen_candidate(document)
     as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
 
@@ -228,14 +205,7 @@ def _written(
             sidecar=arguments.sidecar is not False,
             judged=lambda verifications: judged(verifications).to_json(),
         )
-    path = export_file(job, arguments.out)
-    files, verified = [path], []
-    if Path(arguments.out).suffix.lower() in FORMATS:
-        verified.append(verify_export(job.required_plan, path, job.profile, job.dxf_version, job.deployment))
-    if arguments.sidecar:
-        record = sidecar_path(Path(arguments.out))
-        files.append(write_sidecar(job, record, [path], judged(verified).to_json()))
-    return ExportSet(tuple(files), tuple(verified))
+    return write_file(job, arguments.out, judged, record=bool(arguments.sidecar))
 
 
 def _summary(found: Verification) -> dict[str, object]:
@@ -255,7 +225,7 @@ def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
-    judged = None if arguments.design is None else _judged_by_design(Path(arguments.file), load(arguments.design))
+    judged = None if arguments.design is None else judged_by_design(Path(arguments.file), load(arguments.design))
     ok = report.ok and (judged is None or judged[1].ok)
     if arguments.json:
         answer: dict[str, object] = {
@@ -285,24 +255,13 @@ def check(arguments: argparse.Namespace) -> int:
     return 0 if ok else 1
 
 
-def _judged_by_design(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a file with the chosen design of a project as the project would cut it, and judge the sheet."""
-    candidate, settings = chosen_candidate(document), document.fabrication
-    plan = plan_of(candidate, settings, name=document.name_of(candidate))
-    report = check_plan(plan, phi=candidate.final_phi)
-    motion = deploy(candidate.final_sheet)
-    found = verify_export(plan, path, settings.profile, settings.dxf_version, motion)
-    as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
-    return found, judge(candidate, plan, report, as_cut, [found])
-
-
 def animate(arguments: argparse.Namespace) -> int:
     """Write the deployment as an animated GIF."""
     path = Path(arguments.out)
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    job = _job(document)
+    job = picture_job(document)
     if arguments.as_cut:
         job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
     frames, motion = write_animation(job, path, FRAMES), job.motion
@@ -322,35 +281,8 @@ def animate(arguments: argparse.Namespace) -> int:
 def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
     chosen = chosen_candidate(document)
-    _check_hinges(chosen, settings.options)
+    check_connectors(chosen, settings.options)
     return simulated(chosen, settings, document.target).motion(settings.width_mm)
-
-
-def chosen_candidate(document: Document) -> Candidate:
-    """The project's design.
-
-    Raises
-    ------
-    ProjectError
-        It has none.
-    """
-    candidate = document.candidate
-    if candidate is None or document.target is None:
-        raise ProjectError("export.no_chosen_design")
-    return candidate
-
-
-def design_job(document: Document, plan: CutPlan, settings: FabricationSettings) -> ExportJob:
-    """What files of the chosen design are made of, cut by this plan."""
-    record = packed_design(replace(document, fabrication=settings), chosen_candidate(document))
-    return replace(_job(document), plan=plan, record=record, dxf_version=settings.dxf_version, profile=settings.profile,
-                   paper=settings.paper, markers=settings.markers, artwork=document.artwork)  # fmt: skip
-
-
-def _job(document: Document) -> ExportJob:
-    chosen = chosen_candidate(document)
-    job = ExportJob.of(chosen, None if document.target is None else document.target.points)
-    return replace(job, provenance=design_facts(document, chosen))
 
 
 def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
@@ -362,52 +294,10 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
         An option that no settings can hold.
     """
     given = {name: value for name, value in vars(arguments).items() if value is not None}
-    changes: dict[str, Any] = {
-        name: given[name] for name in ("width_mm", "connector_mm", "kerf_mm", "dxf_version", "paper") if name in given
-    }
-    if "engrave" in given:
-        changes["engrave"] = given["engrave"]
-    if arguments.material is not None:
-        changes["material"] = find_material(arguments.material).key
-    try:
-        if "profile" in given:
-            changes["profile"] = find_profile(given["profile"]).key
-        return replace(saved, **changes, options=_cut_options(saved.options, given))
-    except (FabricationError, ExportError) as error:
-        raise UsageError(error.code, **error.fields) from error
-
-
-def _cut_options(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
-    """The project's choices about the cuts with the command line's on top."""
-    changes: dict[str, Any] = {
-        name: given[name] for name in ("tabs", "tab_mm", "copies", "copy_gap_mm") if name in given
-    }
-    if "style" in given:
-        changes["style"] = ConnectorStyle(given["style"])
-    if "order" in given:
-        changes["order"] = CutOrder(given["order"])
-    return _with_hinges(replace(saved, **changes), given)
-
-
-def _with_hinges(saved: CutOptions, given: dict[str, Any]) -> CutOptions:
-    """The project's choices for single connectors with the command line's on top."""
-    widths = sorted(_hinge_width(text) for text in given.get("hinge_mm", ()))
-    removed = sorted(given.get("remove", ()))
-    CutOptions(hinge_mm=tuple(widths), removed=tuple(removed))  # refuses what contradicts itself
-    named = {hinge for hinge, _ in widths} | set(removed)
-    return replace(
-        saved,
-        hinge_mm=tuple(sorted([*(pair for pair in saved.hinge_mm if pair[0] not in named), *widths])),
-        removed=tuple(sorted([*(hinge for hinge in saved.removed if hinge not in named), *removed])),
-    )
-
-
-def _check_hinges(candidate: Candidate, options: CutOptions) -> None:
-    """Refuse numbers of connectors that the design does not have."""
-    count = cut_table(*candidate.sheet.grid).hinge_count
-    beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
-    if beyond:
-        raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)
+    given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
+    given["removed"] = given.pop("remove", ())
+    given.pop("markers", None)  # a flag: without it, the project's choice stays
+    return with_choices(saved, given)
 
 
 def _hinge_width(text: str) -> tuple[int, float]:

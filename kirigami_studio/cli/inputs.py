@@ -10,32 +10,30 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio.api.target import PartChoice, inside_of, mask_outline, read_drawing
 from kirigami_studio.cli.console import print_json
 from kirigami_studio.foundation.arrays import BoolArray
-from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, TargetError, UsageError
+from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, UsageError
 from kirigami_studio.foundation.files import opened_file
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import SUFFIXES, named_sheet, read_sheet
-from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import ALL, LARGEST
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target, target_files
-from kirigami_studio.outlines.read_image import image_parts, opened_image, outline_of_mask, read_image
+from kirigami_studio.outlines.read import PART_READERS, read_target, target_files
+from kirigami_studio.outlines.read_image import opened_image
 from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
 
-IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
 #: What masks may be, as Pillow calls them, how many pixels, and how many megabytes: 64 bits a pixel, uncompressed.
 MASK_FORMATS, MOST_MASK_PIXELS, MOST_MASK_MEGABYTES = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "PPM"), 25_000_000, 220
@@ -43,9 +41,6 @@ MASK_FORMATS, MOST_MASK_PIXELS, MOST_MASK_MEGABYTES = ("PNG", "JPEG", "BMP", "TI
 LARGEST_ARCHIVE = 512 * 2**20
 #: What has a chosen design.
 PROJECTS = (PROJECT, *CUT_FILES)
-
-#: Problems of drawings whose lines may be meant as they are painted.
-OPEN_LINES = ("lines.open_at", "lines.not_closed")
 
 Value = TypeVar("Value")
 
@@ -107,43 +102,9 @@ def for_each(inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, V
     return 0
 
 
-@dataclass(frozen=True, slots=True)
-class PartChoice:
-    """What options say about the parts of drawings.
-
-    Attributes
-    ----------
-    words : str
-        ``all``, ``largest``, or names, numbers and layers.
-    merging : Merging
-    """
-
-    words: str
-    merging: Merging
-
-    def outline(self, path: Path, threshold: float | None = None) -> Outline:
-        """The outline of the chosen parts of a file; ``threshold`` is that of a picture."""
-        is_picture = path.suffix.lower() in IMAGE_SUFFIXES
-        source = image_parts(path, threshold) if is_picture else read_parts(path)
-        try:
-            return merged(source, source.chosen(self.words), self.merging).outline
-        except TargetError as error:
-            raise TargetError("source.not_usable", name=path.name, reason=error) from error
-
-
 def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
     """What the options say about parts; None where they say nothing."""
-    stroke = arguments.stroke_outline
-    if arguments.parts is None and arguments.join is None and arguments.bridge is None and stroke is None:
-        return None
-    join = Join.UNION if arguments.bridge is None else Join.BRIDGE
-    join = join if arguments.join is None else Join(arguments.join)
-    if arguments.bridge is not None and join is not Join.BRIDGE:
-        raise UsageError("option.bridge_without_join")
-    several = join is not Join.UNION or stroke is not None
-    words = arguments.parts if arguments.parts is not None else ALL if several else LARGEST
-    merging = Merging(join, arguments.bridge, stroke is not None, stroke or None)
-    return PartChoice(words, merging)
+    return PartChoice.of(arguments.parts, arguments.join, arguments.bridge, arguments.stroke_outline)
 
 
 def warn(name: str, target: Outline) -> list[str]:
@@ -168,44 +129,16 @@ def read_targets(
         if path.suffix.lower() == ".npz":
             for index, mask in enumerate(_archive(path, "masks", 3)):
                 name = f"{path.name}[{index}]"
-                yield Named(name, partial(_outline_of, mask, name))
+                yield Named(name, partial(mask_outline, mask, name))
         elif source not in names() and _is_folder(source):
             for file in target_files(path):
-                yield Named(file.stem, partial(_read_drawing, file, choice))
-        elif threshold is not None and choice is None and path.suffix.lower() in IMAGE_SUFFIXES:
-            yield Named(source, partial(read_image, path, threshold))
+                yield Named(file.stem, partial(read_drawing, file, choice))
         elif path.suffix.lower() in PART_READERS:
-            yield Named(source, partial(_read_drawing, path, choice, threshold))
+            yield Named(source, partial(read_drawing, path, choice, threshold))
         elif choice is not None:
             raise UsageError("parts.not_a_drawing", source=source, kinds=", ".join(PART_READERS))
         else:
             yield Named(source, partial(read_target, source))
-
-
-def _read_drawing(path: Path, choice: PartChoice | None, threshold: float | None = None) -> Outline:
-    """The outline of a file: of its parts as chosen, or as it is read by itself."""
-    if choice is not None and path.suffix.lower() in PART_READERS:
-        return choice.outline(path, threshold)
-    if path.suffix.lower() in CUT_FILES and (target := _own_target(path)) is not None:
-        return target
-    try:
-        return read_target(path)
-    except TargetError as error:
-        if isinstance(error.__cause__, TargetError) and error.__cause__.code in OPEN_LINES:
-            raise TargetError("parts.or_as_painted", reason=error) from error
-        raise
-
-
-def _own_target(path: Path) -> Outline | None:
-    """The target of the design that a cut file of this program carries; None for any other file."""
-    try:
-        document = load(path)
-    except KirigamiError:
-        return None  # another program's drawing, or one that cannot be read: its reader says so
-    if document.target is None:
-        return None
-    said = tr("This is a cut file of Kirigami Studio: its design's target was taken.")
-    return replace(document.target, notes=(*document.target.notes, said))
 
 
 def read_sheets(sources: Sequence[str]) -> Iterator[Named[Sheet]]:
@@ -255,25 +188,7 @@ def read_mask(path: Path) -> BoolArray:
     with decoding(path, "mask.not_readable"):
         image = opened_image(content, MASK_FORMATS, MOST_MASK_PIXELS)
         deep = image.mode.startswith(("I", "F"))
-        return _inside(np.asarray(image if deep else image.convert("L")))
-
-
-def _inside(levels: npt.NDArray[Any]) -> BoolArray:
-    """Pixels above half of the highest level; of a bool mask or 0 and 1, those that are set."""
-    highest = max(float(levels.max(initial=0.0)), 0.0)
-    inside: BoolArray = levels > 0.5 * highest
-    return inside
-
-
-def _outline_of(mask: npt.NDArray[np.generic], name: str) -> Outline:
-    try:
-        levels = np.asarray(mask, dtype=np.float64)
-        if not np.all(np.isfinite(levels)):
-            row, column = np.argwhere(~np.isfinite(levels))[0]
-            raise TargetError("input.mask_not_finite", row=int(row), column=int(column))
-        return outline_of_mask(_inside(levels), name)
-    except KirigamiError as error:
-        raise TargetError("input.not_valid", name=name, reason=error) from error
+        return inside_of(np.asarray(image if deep else image.convert("L")))
 
 
 def _archive(path: Path, key: str, dimensions: int) -> npt.NDArray[np.generic]:

@@ -93,8 +93,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
         lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design)
-    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
-    force = found.path.force / (1.0 if gripped else cut.sheet.network.panel_size)
+    force = found.path.force if gripped else found.lever_force
     if arguments.json:
         answer = _steps(cut, found, gripped) | {"force_n": force, "tolerated_stretch_widths": tolerated}
         answer |= {"jam_deg": jam, "estimated_jam_deg": estimate}

@@ -9,10 +9,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import Material, find_material, library
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -76,6 +81,49 @@ def plan_sheet(
         kept=kept,
         cancel=cancel,
     )
+
+
+def checked_plan(candidate: Candidate, settings: FabricationSettings, name: str = "") -> tuple[CutPlan, Report]:
+    """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
+
+    Its name is engraved if the settings say so.
+
+    Raises
+    ------
+    FabricationError
+        The plan cannot be made, or the sheet would not survive it.
+    """
+    plan = plan_of(candidate, settings, name=name)
+    report = check_plan(plan, phi=candidate.final_phi)
+    refuse_errors(report)
+    return plan, report
+
+
+def refuse_errors(report: Report) -> None:
+    """Refuse cuts that the sheet would not survive.
+
+    Raises
+    ------
+    FabricationError
+        With the first of the errors.
+    """
+    for problem in report.problems:
+        if problem.severity is Severity.ERROR:
+            raise FabricationError("export.cannot_be_cut", reason=problem.text)
+
+
+def check_connectors(candidate: Candidate, options: CutOptions) -> None:
+    """Refuse numbers of connectors that a design does not have.
+
+    Raises
+    ------
+    UsageError
+        With the largest number that it has.
+    """
+    count = cut_table(*candidate.sheet.grid).hinge_count
+    beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
+    if beyond:
+        raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)
 
 
 def material_for(settings: FabricationSettings) -> Material:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.paper import NO_PAPER
-from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
-from kirigami_studio.foundation.errors import AngleError, GridError, UsageError
+from kirigami_studio.export.profile import find_profile
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.errors import AngleError, ExportError, FabricationError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
@@ -171,6 +174,64 @@ class FabricationSettings:
                 continue
             if not _is_number(value) or value < 0 or (value == 0 and not zero_allowed) or value > LARGEST_SHEET_MM:
                 raise UsageError(code, value=value, largest_mm=LARGEST_SHEET_MM)
+
+
+#: What :func:`with_choices` takes over as it is: for the sheet and its files, and for its cuts.
+SHEET_CHOICES = ("width_mm", "connector_mm", "kerf_mm", "dxf_version", "paper", "engrave", "markers")
+CUT_CHOICES = ("tabs", "tab_mm", "copies", "copy_gap_mm")
+
+
+def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:
+    """The settings of a project with what the command line or a script asks for on top.
+
+    Parameters
+    ----------
+    saved : FabricationSettings
+    given : mapping of str to object
+        ``material``, ``profile``, ``style`` and ``order`` by their names; widths of single connectors, ``hinge_mm``
+        (pairs of number and width), and those to be ``removed`` are added to the project's own; :data:`SHEET_CHOICES`
+        and :data:`CUT_CHOICES`.  Others are left alone.
+
+    Raises
+    ------
+    UsageError
+        What no settings can hold.
+    FabricationError
+        No such material; the sentence lists the library.
+    """
+    changes: dict[str, Any] = {name: given[name] for name in SHEET_CHOICES if name in given}
+    if "material" in given:
+        changes["material"] = find_material(given["material"]).key
+    try:
+        if "profile" in given:
+            changes["profile"] = find_profile(given["profile"]).key
+        return replace(saved, **changes, options=_cut_options(saved.options, given))
+    except (FabricationError, ExportError) as error:
+        raise UsageError(error.code, **error.fields) from error
+
+
+def _cut_options(saved: CutOptions, given: Mapping[str, Any]) -> CutOptions:
+    """The project's choices about the cuts with others on top."""
+    changes: dict[str, Any] = {name: given[name] for name in CUT_CHOICES if name in given}
+    for name, kind in (("style", ConnectorStyle), ("order", CutOrder)):
+        if name in given:
+            try:
+                changes[name] = kind(given[name])
+            except ValueError:
+                choices = ", ".join(str(one.value) for one in kind)
+                raise UsageError(
+                    "settings.no_such_choice", name=name, value=repr(given[name]), choices=choices
+                ) from None
+    widths = sorted(given.get("hinge_mm", ()))
+    removed = sorted(given.get("removed", ()))
+    CutOptions(hinge_mm=tuple(widths), removed=tuple(removed))  # refuses what contradicts itself
+    named = {hinge for hinge, _ in widths} | set(removed)
+    return replace(
+        saved,
+        **changes,
+        hinge_mm=tuple(sorted([*(pair for pair in saved.hinge_mm if pair[0] not in named), *widths])),
+        removed=tuple(sorted([*(hinge for hinge in saved.removed if hinge not in named), *removed])),
+    )
 
 
 def _check_name(code: str, value: object) -> None:

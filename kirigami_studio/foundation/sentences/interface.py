@@ -18,6 +18,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "option.angle": mark("An angle is a number of radians (0.5, pi/3) or degrees (30deg); got '{text:.40}'."),
     "option.angle_divided_by_zero": mark("An angle cannot be divided by zero: '{text:.40}'."),
     "option.threshold": mark("The threshold must be between 0 and 1, got {value:g}."),
+    # Python API
+    "api.not_a_target": mark(
+        "A target is a library name, a file, points (L, 2), a mask (H, W) or a Shapely polygon; got {value:.60}."
+    ),
+    "api.not_a_grid": mark("A grid is a pair (rows, columns) or 'auto'; got {value:.40}."),
+    "api.not_a_number": mark("{name} must be a finite number; got {value:.40}."),
+    "api.not_whole": mark("{name} must be a whole number; got {value:.40}."),
+    "api.not_connector_widths": mark("Widths of connectors are given by their numbers, as hinge_mm={{3: 0.8}}; got {value:.40}."),
+    "api.not_connectors": mark("Connectors are given by their numbers, as removed=[3, 7]; got {value:.40}."),
+    "api.not_a_project_name": mark("A project is saved as a {suffix} file; got {path}."),
+    "api.no_such_name": mark("There is no design '{name:.40}'; there are {names:.80}."),
+    "api.second_target_not_named": mark("Name the second target that the angle and the weight are for: also=TARGET."),
     # Inputs
     "input.not_valid": mark("{name}: {reason}"),
     "batch.some_inputs_failed": mark("{failed} of {total} inputs failed. The entry 'error' on their lines says why."),

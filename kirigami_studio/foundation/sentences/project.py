@@ -71,6 +71,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.search_effort": mark(
         "The effort of the search must be a whole number of at least {lowest}, got {value!r:.40}."
     ),
+    "settings.no_such_choice": mark("There is no {name} {value:.40}. Choose one of {choices}."),
     "settings.variant_not_a_name": mark("The generator variant must be a name, got {value!r:.40}."),
     "settings.preference_not_a_name": mark("The preference of the polish must be a name, got {value!r:.40}."),
     "settings.symmetry_not_a_name": mark("The symmetry of designs must be a name, got {value!r:.40}."),

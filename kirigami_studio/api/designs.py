@@ -1,0 +1,352 @@
+"""Designs of a project: found by a run for a target, or read from a file."""
+
+from __future__ import annotations
+
+import operator
+import os
+import reprlib
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, overload
+
+import numpy as np
+
+from kirigami_studio.api.cuts import checked_choices, number
+from kirigami_studio.api.design import Design, save_project
+from kirigami_studio.api.pictures import Card, contact_sheet
+from kirigami_studio.api.running import Tell, document_of, result_of_run
+from kirigami_studio.api.target import Target, TargetLike, load_target
+from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.fabricate.material import default_material, library
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
+from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
+from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
+from kirigami_studio.pipeline.events import Progress, Result
+from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
+from kirigami_studio.project.cutting import least_feature_mm, room_mm
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.settings import FabricationSettings, with_choices
+from kirigami_studio.project.store import load
+
+#: Letters of a line of progress; what is left of a longer one before is written over.
+LINE = 78
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Designs(Sequence[Design]):
+    """The designs of a project, best first: a sequence, by number, slice or name.
+
+    In a notebook they show themselves as a contact sheet.
+
+    Attributes
+    ----------
+    document : Document
+        The project.
+    result : Result or None
+        Of the run that found them; None for a project that was read.
+    """
+
+    document: Document
+    result: Result | None = None
+
+    @property
+    def target(self) -> Target:
+        """What they are for.
+
+        Raises
+        ------
+        ProjectError
+            An empty project.
+        """
+        if self.document.target is None:
+            raise ProjectError("export.no_chosen_design")
+        return Target(self.document.target)
+
+    @property
+    def best(self) -> Design:
+        """The first.
+
+        Raises
+        ------
+        ProjectError
+            There is none.
+        """
+        if not len(self):
+            raise ProjectError("export.no_chosen_design")
+        return self[0]
+
+    @property
+    def chosen(self) -> Design:
+        """The one that the project has chosen, the best unless another one was."""
+        return self.best if self.document.chosen is None else self[self.document.chosen]
+
+    @property
+    def ratios(self) -> FloatArray:
+        """Side ratios of all of them: (K, m, n)."""
+        return np.array([design.ratios for design in self])
+
+    def table(self) -> list[dict[str, Any]]:
+        """One row of figures for each, for ``pandas.DataFrame`` and the like."""
+        return [
+            {
+                "name": design.name,
+                "siou": design.siou,
+                "iou": design.iou,
+                "tv": design.tv,
+                "area_cv": design.area_cv,
+                "feasible": design.is_feasible,
+                "symmetry": design.symmetry,
+                "trimmed": design.is_trimmed,
+            }
+            for design in self
+        ]
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the project (.kiri), which window and command line open.
+
+        Raises
+        ------
+        ExportError
+            Another extension, or a place that cannot be written.
+        """
+        return save_project(self.document, path)
+
+    def __len__(self) -> int:
+        return len(self.document.candidates)
+
+    @overload
+    def __getitem__(self, key: int | str) -> Design: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[Design, ...]: ...
+    def __getitem__(self, key: int | str | slice) -> Design | tuple[Design, ...]:
+        if isinstance(key, slice):
+            return tuple(self[place] for place in range(*key.indices(len(self))))
+        if isinstance(key, str):
+            names = [label.text for label in self.document.labels]
+            if key not in names:
+                raise ProjectError("api.no_such_name", name=key, names=", ".join(names))
+            return self[names.index(key)]
+        try:
+            place = range(len(self))[operator.index(key)]
+        except IndexError:  # which also ends loops over a sequence
+            raise IndexError(f"design {key} of {len(self)}") from None
+        return Design(replace(self.document, chosen=place))
+
+    def __iter__(self) -> Iterator[Design]:
+        return (self[place] for place in range(len(self)))
+
+    def __repr__(self) -> str:
+        if not len(self):
+            return "<Designs: none>"
+        return f"<Designs: {len(self)} for {self.target.name!r}, best IoU {self.best.iou:.4f}>"
+
+    def _repr_svg_(self) -> str:
+        heading = repr(self).strip("<>") if not len(self) else f"{len(self)} designs for {self.target.name}"
+        cards = [Card(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
+        return contact_sheet(cards, heading)
+
+
+def load_project(path: str | os.PathLike[str]) -> Designs:
+    """Read a project (.kiri), or the design that a DXF or SVG cut file of this program carries.
+
+    Raises
+    ------
+    ProjectError
+        Missing, damaged, of a newer version, or no project.
+    """
+    return Designs(load(Path(path)))
+
+
+def material_names() -> tuple[str, ...]:
+    """Keys of all materials, bundled and your own, as the command line's ``materials`` lists them.
+
+    Examples
+    --------
+    >>> import kirigami_studio as ks
+    >>> "card-co2" in ks.material_names()
+    True
+    """
+    return tuple(library().materials)
+
+
+def design(
+    target: TargetLike,
+    *,
+    k: int = 32,
+    grid: str | tuple[int, int] = "auto",
+    phi: float = 0.0,
+    seed: int = 0,
+    symmetry: str = "auto",
+    regular: float | None = None,
+    rim: str = "free",
+    start: TargetLike = "rectangle",
+    start_weight: float = USUAL_START_WEIGHT,
+    also: TargetLike | None = None,
+    also_phi: float | None = None,
+    also_weight: float | None = None,
+    variant: str = "balanced",
+    steps: int = 4,
+    polish: bool = True,
+    prefer: str = "balanced",
+    search: int = 0,
+    trim: bool = False,
+    budget_seconds: float | None = None,
+    material: str | None = None,
+    width_mm: float = 100.0,
+    connector_mm: float | None = None,
+    kerf_mm: float | None = None,
+    style: str | None = None,
+    least_panel_mm: float = 0.0,
+    progress: bool | Callable[[Progress], object] = False,
+) -> Designs:
+    """Design sheets that open into a target: sampled, fitted, ranked, best first.
+
+    The same arguments give the same designs, bit by bit, unless a budget ends the run.
+
+    Parameters
+    ----------
+    target : whatever :func:`load_target` reads
+    k : int
+        Number of designs.
+    grid : (rows, columns) or "auto"
+        Voids; ``"auto"`` takes as coarse a grid as the shape allows.
+    phi : float, radians
+        Angle at which the sheet shows the target: 0 is fully turned.
+    seed : int
+    symmetry : str
+        ``auto`` (the target's own), ``none``, ``mirror`` or ``turn``.
+    regular : float, 0..1
+        What ranking and fits prefer, from the best match (0) to even panels (1); 0.5 unless given.
+    rim : str
+        ``free`` moves cuts along the rim, ``even`` spaces them as in the paper.
+    start : str, or whatever :func:`load_target` reads
+        The flat sheet: ``rectangle``, ``square``, ``rectangle:3:2``, ``circle``, ``ellipse:3:2``, ``triangle``,
+        ``hexagon``, ``polygon:N``, or any shape.
+    start_weight : float
+        How firmly a round or hollow start is held.
+    also, also_phi, also_weight : target, radians, float
+        A second target on the way, its angle (45 degrees) and its weight (0.3).
+    variant : str
+        Generator that samples.
+    steps : int
+        Sampling steps.
+    polish : bool
+        Whether every design is fitted on the exact geometry.
+    prefer : str
+        ``accuracy``, ``balanced``, ``regularity`` or ``calm``, among nearly equal matches.
+    search : int
+        Effort (0 to 8) of a search for a better design.
+    trim : bool
+        Whether edge panels are trimmed to the target.
+    budget_seconds : float, optional
+        Time after which the best so far are returned.
+    material : str, optional
+        One of :func:`material_names`: designs that can be cut in it come first.
+    width_mm, connector_mm, kerf_mm, style : optional
+        Size and cuts, as in :meth:`Design.plan_cuts`.
+    least_panel_mm : float
+        Least panel edge and neck that fits keep.
+    progress : bool or callable
+        True prints one line that changes; a callable gets every :class:`Progress` (``done``, ``total``, ``message``).
+
+    Raises
+    ------
+    TargetError, UsageError, GridError, AngleError, SheetError, FabricationError
+        With what does not fit.
+    """
+    outline = load_target(target).outline
+    cuts = {
+        "material": material,
+        "width_mm": width_mm,
+        "connector_mm": connector_mm,
+        "kerf_mm": kerf_mm,
+        "style": style,
+    }
+    given = {name: value for name, value in cuts.items() if value is not None}
+    fabrication = with_choices(FabricationSettings(material=default_material().key), checked_choices(given))
+    least = number("least_panel_mm", least_panel_mm)
+    request = Request(
+        target=outline,
+        grid=_grid(grid),
+        phi=number("phi", phi),
+        k=number("k", k, whole=True),
+        seed=number("seed", seed, whole=True),
+        variant=variant,
+        steps=number("steps", steps, whole=True),
+        polish=POLISH_STEPS if polish else 0,
+        prefer=prefer,
+        trim=trim,
+        search=number("search", search, whole=True),
+        budget_seconds=None if budget_seconds is None else number("budget_seconds", budget_seconds),
+        symmetry=symmetry,
+        rim=rim,
+        regular=REGULAR.get(prefer, REGULAR["balanced"]) if regular is None else number("regular", regular),
+        width_mm=fabrication.width_mm,
+        least_feature_mm=max(least_feature_mm(fabrication), least),
+        room_mm=room_mm(fabrication),
+        start=_start(start, number("start_weight", start_weight)),
+        second=_second(also, also_phi, also_weight),
+    )
+    line = _Line()
+    tell: Tell = progress if callable(progress) else line.show if progress else _quietly
+    try:
+        as_cut = material is not None
+        result = result_of_run(request, fabrication, tell, least_panel_mm=least, as_cut=as_cut)
+    finally:
+        line.end()
+    return Designs(document_of(result, fabrication), result)
+
+
+def _grid(grid: object) -> tuple[int, int] | None:
+    """None for ``auto``.
+
+    Raises
+    ------
+    GridError
+        Not a pair either.
+    """
+    if isinstance(grid, str) and grid.strip().lower() == "auto":
+        return None
+    if isinstance(grid, str) or not isinstance(grid, (Sequence, np.ndarray)) or len(grid) != 2:
+        raise GridError("api.not_a_grid", value=reprlib.repr(grid))
+    rows, columns = (number("grid", count, whole=True) for count in grid)
+    return rows, columns
+
+
+def _start(start: TargetLike, weight: float) -> StartShape:
+    shape = start_shape(start) if isinstance(start, str) else outline_start(load_target(start).outline)
+    return replace(shape, weight=weight)
+
+
+def _second(also: TargetLike | None, phi: float | None, weight: float | None) -> SecondTarget | None:
+    if also is None:
+        if phi is not None or weight is not None:
+            raise UsageError("api.second_target_not_named")
+        return None
+    angle = USUAL_PHI if phi is None else number("also_phi", phi)
+    share = USUAL_WEIGHT if weight is None else number("also_weight", weight)
+    return SecondTarget(load_target(also).outline, angle, share)
+
+
+def _quietly(progress: Progress) -> None:
+    """Tell nobody."""
+
+
+class _Line:
+    """A line on standard output that is written over."""
+
+    def __init__(self) -> None:
+        self._begun = False
+
+    def show(self, progress: Progress) -> None:
+        self._begun = True
+        sys.stdout.write(f"\r{progress.message[:LINE]:<{LINE}}")
+        sys.stdout.flush()
+
+    def end(self) -> None:
+        if self._begun:
+            sys.stdout.write(f"\r{'':<{LINE}}\r")
+            sys.stdout.flush()

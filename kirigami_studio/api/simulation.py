@@ -1,0 +1,110 @@
+"""A sheet that was closed on its elastic connectors: force, energy, stretch, and where it jams."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kirigami_studio.api.pictures import Curve, curves_picture
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
+from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Simulation:
+    """What a sheet does as cut, on its way from flat (phi = pi) towards phi = 0; arrays have one entry a step.
+
+    In a notebook it shows force and stretch against the angle.
+
+    Attributes
+    ----------
+    simulated : SimulatedSheet
+        The value of the program that it wraps.
+    posed : PosedDesign
+        The sheet over its target.
+    width_mm : float
+        Of the flat sheet.
+    """
+
+    simulated: SimulatedSheet
+    posed: PosedDesign
+    width_mm: float
+
+    @property
+    def closing(self) -> Closing:
+        """All that was computed, connector by connector."""
+        return self.simulated.closing
+
+    @property
+    def as_cut(self) -> AsCut:
+        """What is expected of the cut sheet."""
+        return self.simulated.as_cut
+
+    @property
+    def phi(self) -> FloatArray:
+        """Mean angle of the sheet (S,), radians."""
+        return self.closing.phi
+
+    @property
+    def force_n(self) -> FloatArray:
+        """What a lever of one panel's size needs at its end: (S,), N."""
+        return self.closing.lever_force
+
+    @property
+    def energy_mj(self) -> FloatArray:
+        """Elastic energy (S,), mJ."""
+        return self.closing.path.energy
+
+    @property
+    def stretch(self) -> FloatArray:
+        """Largest stretch of a connector (S,), in its widths."""
+        stretch: FloatArray = self.closing.stretch.max(axis=1)
+        return stretch
+
+    @property
+    def closes(self) -> bool:
+        """Whether the sheet comes to the angle that it is meant for."""
+        return self.as_cut.closes
+
+    @property
+    def jam_phi(self) -> float | None:
+        """Angle (radians) at which it jams; None for a sheet that closes."""
+        return None if self.closes else self.as_cut.jam_phi
+
+    @property
+    def strain(self) -> float:
+        """Largest strain of a connector on the way."""
+        return self.as_cut.strain
+
+    @property
+    def iou(self) -> float:
+        """Exact IoU with the target where the sheet comes to."""
+        assert self.as_cut.iou is not None  # designs have a target
+        return self.as_cut.iou
+
+    def panels(self, phi: float | None = None) -> list[FloatArray]:
+        """The panels as cut, over the target: (Q, 2) each, row by row.
+
+        Parameters
+        ----------
+        phi : float, radians, optional
+            Where the sheet comes to unless given; not below that.
+        """
+        motion = self.simulated.motion(self.width_mm)
+        return motion.pose(self.posed, motion.reached if phi is None else max(phi, motion.reached)).panels
+
+    def __repr__(self) -> str:
+        return f"<Simulation: {self._ends}, stretch {self.as_cut.stretch:.2f} widths, IoU as cut {self.iou:.4f}>"
+
+    def _repr_svg_(self) -> str:
+        curves = (
+            Curve(self.phi, self.force_n, "force (N)"),
+            Curve(self.phi, self.stretch, "largest stretch (connector widths)", TOLERATED_STRETCH),
+        )
+        return curves_picture(curves, f"As cut: {self._ends}  ·  IoU {self.iou:.3f}", self.jam_phi)
+
+    @property
+    def _ends(self) -> str:
+        return "closes" if self.jam_phi is None else f"jams at {math.degrees(self.jam_phi):.0f}°"
