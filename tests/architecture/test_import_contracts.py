@@ -35,6 +35,7 @@ DASK = "Only foundation.processes imports Dask"
 WINDOW = "Layers of the window"
 COMPARED = "Only training, benchmark and cli know what the program is compared with"
 JUDGED = "What others are judged by knows nothing of the window"
+API = "The Python API knows nothing of window, training and benchmarks"
 SOLVERS = "Solvers know a box and values, nothing of sheets"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
@@ -49,6 +50,9 @@ FAULTS = (
     Fault("gui", "import kirigami_studio.baselines", COMPARED, "kirigami_studio.baselines"),
     Fault("benchmark", "import kirigami_studio.problem", ONE_WAY, "kirigami_studio.problem"),
     Fault("problem", "import kirigami_studio.gui", JUDGED, "kirigami_studio.gui"),
+    Fault("api", "import kirigami_studio.gui", API, "kirigami_studio.gui"),
+    Fault("api", "import kirigami_studio.benchmark", API, "kirigami_studio.benchmark"),
+    Fault("api", "import kirigami_studio.cli", ONE_WAY, "kirigami_studio.cli"),
     Fault("baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
     Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),

@@ -49,8 +49,8 @@ def test_that_the_core_loads_neither_torch_nor_qt() -> None:
     assert loaded_by(names) == []
 
 
-def test_that_the_command_line_loads_neither_torch_nor_qt() -> None:
-    assert loaded_by(modules_of("cli")) == []
+def test_that_command_line_and_python_api_load_neither_torch_nor_qt() -> None:
+    assert loaded_by([*modules_of("cli"), *modules_of("api")]) == []
 
 
 def test_that_the_composer_loads_torch_only_when_it_runs() -> None:
