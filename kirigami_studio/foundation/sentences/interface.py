@@ -25,7 +25,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "api.not_a_grid": mark("A grid is a pair (rows, columns) or 'auto'; got {value:.40}."),
     "api.not_a_number": mark("{name} must be a finite number; got {value:.40}."),
     "api.not_whole": mark("{name} must be a whole number; got {value:.40}."),
-    "api.not_connector_widths": mark("Widths of connectors are given by their numbers, as hinge_mm={{3: 0.8}}; got {value:.40}."),
+    "api.not_connector_widths": mark(
+        "Widths of connectors are given by their numbers, as hinge_mm={{3: 0.8}}; got {value:.40}."
+    ),
     "api.not_connectors": mark("Connectors are given by their numbers, as removed=[3, 7]; got {value:.40}."),
     "api.not_a_project_name": mark("A project is saved as a {suffix} file; got {path}."),
     "api.no_such_name": mark("There is no design '{name:.40}'; there are {names:.80}."),
