@@ -2,6 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.setup-done
+DOCS_STAMP := .venv/.docs-done
 TORCH_INDEX := https://download.pytorch.org/whl/cpu
 
 # Arrays are small: more threads only slow each other down.
@@ -14,7 +15,8 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test fuzz quick lint bench consumers demo states pairs pictures shapes messages clean
+.PHONY: help setup run test fuzz quick lint bench consumers demo states pairs pictures shapes figures animation site \
+  site-serve messages clean
 .DEFAULT_GOAL := help
 
 help:
@@ -29,8 +31,11 @@ help:
 	@echo "make demo    design a heart on the command line into out/heart"
 	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
-	@echo "make pictures  make the pictures of README and guide with the program"
+	@echo "make pictures  make the pictures of README, guide and tutorials with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
+	@echo "make figures  draw the figures of docs/mathematics.md"
+	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
+	@echo "make site    build the documentation into build/site; works without a network once .venv is there"
 	@echo "make messages  collect all sentences for translators in resources/locale"
 	@echo "make clean   remove what the other targets made, except .venv"
 
@@ -108,6 +113,7 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --language de --out resources/guide/de
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.tutorial_pictures --out docs/pictures/tutorials
 	$(BIN)/python -m kirigami_studio.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
 	  --out docs/pictures/artwork.png
@@ -117,6 +123,24 @@ shapes: setup
 	$(BIN)/kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --states \
 	  --picture out/shapes.png --out out/shapes.json
 	cp out/shapes.png docs/pictures/shapes.png
+
+figures: setup
+	$(BIN)/python -m kirigami_studio.demonstrations.mathematics_figures --out docs/pictures/mathematics
+
+animation: setup $(DOCS_STAMP)
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.screencast --out docs/pictures
+
+# MkDocs and what it needs; the tests build the site too.
+$(DOCS_STAMP): $(STAMP)
+	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[docs]'
+	@touch $@
+
+site: setup $(DOCS_STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "build/site/index.html"
+
+site-serve: setup $(DOCS_STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs serve
 
 # The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup
