@@ -106,6 +106,8 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
 	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
+	$(BIN)/python -c "import kirigami_studio as ks; print(ks.load_project('resources/examples/heart.kiri').best._repr_svg_())" \
+	  > docs/pictures/python-api.svg
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
 	cp out/pictures/pairs.png docs/pictures/pairs.png
 	cp out/pictures/pairs-small.png resources/guide/pairs.png

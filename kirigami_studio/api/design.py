@@ -117,12 +117,12 @@ class Design:
         return self.score.evenness.area_cv
 
     @property
-    def is_feasible(self) -> bool:
+    def feasible(self) -> bool:
         """Whether no quad is inverted and nothing touches or overlaps on the way to its angle."""
         return self.score.feasible
 
     @property
-    def is_trimmed(self) -> bool:
+    def trimmed(self) -> bool:
         """Whether edge panels were cut along the target."""
         return self.candidate.trim is not None
 
@@ -137,20 +137,28 @@ class Design:
         """The moving sheet in the target's frame."""
         return _posed(self.candidate)
 
-    def polygons(self, phi: float | None = None) -> npt.NDArray[np.object_]:
-        """What there is of every panel, over the target, as Shapely polygons (P,).
+    def panels(self, phi: float | None = None) -> list[FloatArray]:
+        """What there is of every panel, over the target: (P, 2) each, row by row; at the design's own angle or another.
 
-        Parameters
-        ----------
-        phi : float, radians, optional
-            The design's own angle unless given.
+        Of trimmed designs, panels of which nothing stays are left out.
         """
-        return polygons_of(self.posed.parts(self.phi if phi is None else phi))
+        return self.posed.parts(self._angle(phi))
 
-    def outline(self, phi: float | None = None) -> Polygon:
-        """The sheet's silhouette over the target, before anything was trimmed off, as a Shapely polygon."""
-        angle = self.phi if phi is None else phi
-        return Polygon(self.posed.outline(self.posed.nodes(angle), angle))
+    def outline(self, phi: float | None = None) -> FloatArray:
+        """The sheet's boundary over the target (L, 2), before anything was trimmed off."""
+        angle = self._angle(phi)
+        return self.posed.outline(self.posed.nodes(angle), angle)
+
+    def panel_polygons(self, phi: float | None = None) -> npt.NDArray[np.object_]:
+        """The panels over the target as Shapely polygons: (P,)."""
+        return polygons_of(self.panels(phi))
+
+    def polygon(self, phi: float | None = None) -> Polygon:
+        """The silhouette over the target as a Shapely polygon, before anything was trimmed off."""
+        return Polygon(self.outline(phi))
+
+    def _angle(self, phi: float | None) -> float:
+        return self.phi if phi is None else check_phi(phi)
 
     def plan_cuts(
         self,
@@ -270,13 +278,13 @@ class Design:
 
     def __repr__(self) -> str:
         rows, columns = self.grid
-        told = "" if self.is_feasible else ", not feasible"
+        told = "" if self.feasible else ", not feasible"
         return f"<Design {self.name} for {self.target.name!r}: {rows} x {columns} voids, IoU {self.iou:.4f}{told}>"
 
     def _repr_svg_(self) -> str:
         rows, columns = self.grid
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
-        details = "  ·  ".join(figures if self.is_feasible else [*figures, "not feasible"])
+        details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
         return states_picture(self.posed, self.target.points, f"{self.name}  ·  {self.target.name}", details)
 
 

@@ -97,9 +97,9 @@ class Designs(Sequence[Design]):
                 "iou": design.iou,
                 "tv": design.tv,
                 "area_cv": design.area_cv,
-                "feasible": design.is_feasible,
+                "feasible": design.feasible,
                 "symmetry": design.symmetry,
-                "trimmed": design.is_trimmed,
+                "trimmed": design.trimmed,
             }
             for design in self
         ]

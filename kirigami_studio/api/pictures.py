@@ -27,8 +27,8 @@ TARGET = hexadecimal(TARGET_EDGE)
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"
 #: Sizes in pixels: of letters, of what is drawn beside each other, between these, and of a picture's margin.
 SMALL, LETTERS, STATE, CARD, GAP, MARGIN = 11, 13, 210, 132, 22, 8
-#: Cards in a row, and most of them.
-COLUMNS, MOST_CARDS = 6, 24
+#: Cards in a row, most and least of all, and panels on them: pictures stay below half a megabyte.
+COLUMNS, MOST_CARDS, LEAST_CARDS, MOST_PANELS = 6, 24, 3, 9000
 #: Width and height of the field of a curve, and the room for its numbers.
 FIELD, NUMBERS = (250, 150), 44
 
@@ -159,7 +159,8 @@ class Card:
 
 def contact_sheet(cards: Sequence[Card], heading: str) -> str:
     """Designs at their angles in rows; of many the first, and how many more there are."""
-    shown = cards[:MOST_CARDS]
+    panels = len(cards[0].design.parts(cards[0].design.phi_target)) if cards else 1
+    shown = cards[: max(min(MOST_CARDS, MOST_PANELS // panels), LEAST_CARDS)]
     columns = min(COLUMNS, max(len(shown), 1))
     rows = -(-len(shown) // columns)
     cell, tall = CARD + GAP, CARD + 2 * GAP

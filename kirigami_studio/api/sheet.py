@@ -14,7 +14,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.api.pictures import states_picture
-from kirigami_studio.evaluate.feasibility import feasibility_of_many
+from kirigami_studio.evaluate.feasibility import Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.porosity import Porosity
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.silhouette import rasterise
@@ -100,10 +100,13 @@ class Sheet:
         """Share of that area that is voids."""
         return Porosity.of(self.deployment).at(phi)
 
-    def is_feasible(self, phi: float = 0.0) -> bool:
-        """Whether no quad is inverted and nothing touches or overlaps on the way from flat to ``phi``."""
+    def feasibility(self, phi: float = 0.0) -> Feasibility:
+        """Whether it is ``feasible``: no quad is inverted and nothing touches or overlaps on the way from flat to phi.
+
+        ``n_invalid``, ``overlap_ratio`` and ``contact`` say why not.
+        """
         (found,) = feasibility_of_many([self.deployment], check_phi(phi))
-        return found.feasible
+        return found
 
     def for_target(self, target: TargetLike | None = None, *, phi: float = 0.0, name: str = "") -> Design:
         """This sheet as a design: scored, and laid over a target, so that it can be planned, simulated and exported.

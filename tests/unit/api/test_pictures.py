@@ -41,7 +41,7 @@ def test_that_sheets_and_designs_show_three_states(uneven: ks.Sheet, design: ks.
     title, figures, *states = words(drawn(design._repr_svg_()))
     assert title == "A1  ·  square" and f"IoU {design.iou:.3f}" in figures and states == ["flat", "90°", "0°"]
     crossing = ks.decode(np.array([[10.0, 0.1], [0.1, 10.0]])).for_target("circle", phi=0.5)
-    assert ("not feasible" in crossing._repr_svg_()) is not crossing.is_feasible
+    assert ("not feasible" in crossing._repr_svg_()) is not crossing.feasible
 
 
 def test_that_designs_show_a_contact_sheet_with_their_matches(hearts: ks.Designs, design: ks.Design) -> None:

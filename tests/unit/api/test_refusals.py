@@ -101,7 +101,7 @@ def test_that_impossible_rims_starts_cells_and_angles_are_refused(uneven: ks.She
     assert code_of(lambda: ks.decode(even, start=[(0, 0), (1, 0)])).startswith("start.")
     for phi, code in ((NAN, "angle.out_of_range"), (4.0, "angle.out_of_range"), ("flat", "angle.not_a_number")):
         assert code_of(lambda phi=phi: uneven.panels(phi)) == code  # type: ignore[misc]
-        assert code_of(lambda phi=phi: uneven.is_feasible(phi)) == code  # type: ignore[misc]
+        assert code_of(lambda phi=phi: uneven.feasibility(phi)) == code  # type: ignore[misc]
         assert code_of(lambda phi=phi: ks.score(uneven, "heart", phi=phi)) == code  # type: ignore[misc]
         assert code_of(lambda phi=phi: uneven.for_target("heart", phi=phi)) == code  # type: ignore[misc]
     assert code_of(lambda: uneven.for_target("heart", phi=math.pi)) == "settings.angle_out_of_range"

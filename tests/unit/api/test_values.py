@@ -104,13 +104,13 @@ def test_that_a_sheet_with_a_target_is_a_design(uneven: ks.Sheet, tmp_path: Path
     design = uneven.for_target("heart", phi=0.3, name="first try")
     assert (design.name, design.target.name, design.phi) == ("first try", "heart", 0.3)
     assert design.sheet == uneven and design.siou == ks.score(uneven, "heart", phi=0.3).siou
-    flat = design.polygons(math.pi)
-    assert len(flat) == 30 and shapely.area(flat).sum() == pytest.approx(shapely.area(design.polygons()).sum())
-    assert design.outline().intersection(design.target.polygon).area > 0.7
+    flat = design.panel_polygons(math.pi)
+    assert len(flat) == 30 and shapely.area(flat).sum() == pytest.approx(shapely.area(design.panel_polygons()).sum())
+    assert design.polygon().intersection(design.target.polygon).area > 0.7
     again = ks.load_project(design.save(tmp_path / "try.kiri"))
     assert len(again) == 1 and again.chosen.name == "first try" and again.best.sheet == uneven
     own = uneven.for_target()
-    assert own.iou > 0.999 and own.is_feasible and not own.is_trimmed
+    assert own.iou > 0.999 and own.feasible and not own.trimmed
 
 
 def test_that_designs_are_a_sequence(hearts: ks.Designs, tmp_path: Path) -> None:
