@@ -1,170 +1,218 @@
-"""Mutates inputs and reads them: ``python tests/fuzzed_readers.py --inputs 20000 --out FOLDER [READER ...]``.
+"""Damages files and reads them: ``python tests/fuzzed_readers.py --inputs 20000 --jobs 2 --out FOLDER [READER ...]``.
 
-Every reader works in a process of its own, which is killed when a file takes too much time or memory and begun again
-behind that file.  Files that end in anything but an answer or one sentence are kept in the folder; those belong into
-``tests/data/attacks``.  Same seed, same files.
+Readers work in processes of their own, which read one file after another.  A file that takes too much time or memory
+ends its process, and another one goes on behind it.  Files that end in anything but an answer or one sentence are kept
+in the folder; those belong into ``tests/data/attacks``, as small as they can be made.  Same seed, same files: what a
+stopped run has finished is in the folder's journal, and is not read again.  How files are damaged, and why no fuzzing
+library does it: ``damaged_files``.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import gc
 import io
 import json
 import os
 import random
-import re
 import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 from types import FrameType
 
+from damaged_files import LONGEST, mutated
+
 TESTS = Path(__file__).parent
 RESOURCES = TESTS.parent / "resources"
-#: Endings of the seeds of each reader.
-ENDINGS = {
-    "target": (".svg", ".dxf", ".json", ".png"),
-    "parts": (".svg", ".dxf", ".png"),
-    "check": (".dxf",),
-    "dxf": (".dxf",),
-    "svg": (".svg",),
-    "mask": (".png",),
-    "sheet": (".npy", ".json"),
-    "material": (".toml",),
-    "preferences": (".toml",),
-    "recent": (".toml",),
-    "project": (".kiri",),
-    "recovery": (".kiri",),
-}
+ATTACKS = TESTS / "data" / "attacks"
 #: Seconds of processor time, and bytes of memory beside what the program takes, that one file may cost.
 MOST_SECONDS, MOST_MEMORY = 5.0, 2 * 2**30
-NUMBER = re.compile(rb"-?\d+(?:\.\d+)?")
-#: What numbers become.
-NUMBERS = (b"0", b"-1", b"1e400", b"-1e308", b"1e-320", b"nan", b"inf", b"9" * 400, b"2147483648", b"0x10", b"1e9", b"")
-#: Longest mutated file; longer ones only take longer.
-LONGEST = 300_000
+#: Seconds by the clock after which a file that is still being read is given up: the machine may be busy.
+MOST_WAITING = 60.0
+#: Files that one process reads.
+SHARE = 1000
+#: A seed of so many bytes is chosen half as often as an empty one, and one that hurt once this much more seldom.
+USUAL_SIZE, SELDOM = 2000, 0.2
 
 
-def sources(reader: str) -> list[bytes]:
-    """What the files of a reader are made from: those that hurt once, and whole ones."""
+def sources(reader: str) -> list[tuple[bytes, float]]:
+    """What the files of a reader are made from, with how often each is chosen: small ones more often."""
+    from attacked_readers import FAULTY, READERS
+
     places = (TESTS / "data", RESOURCES / "examples", RESOURCES / "silhouettes", RESOURCES / "materials")
-    found = sorted(path for place in places for path in place.rglob("*") if path.suffix.lower() in ENDINGS[reader])
-    contents = [path.read_bytes() for path in found if path.stat().st_size <= LONGEST]
-    return [*contents, *whole(reader)]
+    endings = (READERS | FAULTY)[reader].endings
+    found = sorted(path for place in places for path in place.rglob("*") if path.suffix.lower() in endings)
+    contents = [
+        (path.read_bytes(), SELDOM if ATTACKS in path.parents else 1.0)
+        for path in found
+        if path.stat().st_size <= LONGEST
+    ]
+    contents += [(content, 5.0) for content in whole(reader)]
+    return [(content, often / (1.0 + len(content) / USUAL_SIZE)) for content, often in contents]
 
 
 def whole(reader: str) -> list[bytes]:
-    """Files that the program itself writes."""
-    import numpy as np
-    from PIL import Image, ImageDraw
-
-    if reader in ("check", "dxf", "svg", "target", "parts"):
-        from kirigami_studio.export.dxf import dxf_bytes
-        from kirigami_studio.export.exporter import ExportJob
-        from kirigami_studio.export.profile import find_profile
-        from kirigami_studio.export.svg import cut_svg_bytes
-        from kirigami_studio.lattice.deployment import deploy
-        from kirigami_studio.lattice.ratio_field import RatioField
-        from kirigami_studio.project.cutting import plan_sheet
-        from kirigami_studio.project.settings import FabricationSettings
-
-        design = deploy(RatioField.uniform(3, 3))
-        plan = plan_sheet(design, FabricationSettings(60.0, connector_mm=0.8))
-        drawings = {
-            ".dxf": dxf_bytes(plan, "R2010", find_profile("any")),
-            ".svg": cut_svg_bytes(ExportJob(design, plan=plan)),
-        }
-        return [content for ending, content in drawings.items() if ending in ENDINGS[reader]]
+    """Files that the program itself writes, and small ones of every kind that it reads."""
+    if reader in ("check", "dxf", "svg", "target", "parts", "carried", "opened", "pasted"):
+        return _drawings(reader)
+    if reader in ("mask", "artwork"):
+        return [_picture("PNG"), *([SVG] if reader == "artwork" else [])]
+    if reader in ("sheet", "archive", "network", "training"):
+        return _arrays(reader)
+    if reader in ("weights", "manifest", "baseline", "checkpoint"):
+        return _learned(reader)
+    if reader == "project":
+        return _projects()
     stream = io.BytesIO()
-    if reader == "mask":
-        picture = Image.new("L", (60, 40))
-        ImageDraw.Draw(picture).ellipse((5, 5, 50, 35), fill=255)
-        picture.save(stream, "PNG")
-    elif reader == "sheet":
-        np.save(stream, np.full((3, 4), 1.25))
-    elif reader in ("preferences", "recent"):
-        stream.write(b'tour_seen = true\nlanguage = "de"\n' if reader == "preferences" else b'projects = ["/a.kiri"]\n')
-    elif reader == "recovery":
+    if reader == "recovery":
         with zipfile.ZipFile(stream, "w") as archive:
             archive.writestr("recovery.json", '{"name": "a", "path": "", "changed": "2026-01-01T00:00:00+00:00"}')
-    return [stream.getvalue()] if stream.getvalue() else []
+    texts = {
+        "preferences": b'tour_seen = true\nlanguage = "de"\ntheme = "dark"\nwidth_mm = 100.0\nsize = "flat"\n',
+        "recent": b'projects = ["/a.kiri"]\ntargets = ["/a.svg", "heart"]\n',
+        "runs": b'{"settings": {"a": 1}}\n{"key": ["a", 1], "iou": 0.5}\n{"key": ["b", 2], "iou": 0.25}\n',
+    }
+    content = stream.getvalue() or texts.get(reader, b"")
+    return [content] if content else []
 
 
-def mutated(content: bytes, others: Sequence[bytes], draw: random.Random) -> bytes:
-    """A damaged copy."""
-    if content.startswith(b"PK") and draw.random() < 0.85:
-        return _repacked(content, others, draw)
-    for _ in range(draw.choice((1, 1, 2, 4))):
-        content = draw.choice(MUTATIONS)(content, draw.choice(others), draw)
-    return content[:LONGEST]
+#: Something of all that drawings are made of.
+SVG = b"""<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="30mm" viewBox="0 0 40 30">
+<defs><g id="a"><circle r="2"/></g>
+<linearGradient id="p"><stop offset="0" stop-color="red"/></linearGradient></defs>
+<g transform="translate(2 3) rotate(10)">
+<path d="M0 0h9v9l-3-3C1 2 3 4 5 6S7 8 9 1Q1 1 2 2T3 3A4 5 6 0 1 7 8Z" fill="url(#p)" stroke="#f00"/>
+<use href="#a" x="9"/>
+<rect x="20" y="3" width="9" height="9" rx="1"/><polygon points="1,20 9,20 5,28"/>
+<ellipse cx="30" cy="20" rx="5" ry="3"/></g></svg>"""
 
 
-def _repacked(content: bytes, others: Sequence[bytes], draw: random.Random) -> bytes:
-    """A zip with one damaged member."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            members = {name: archive.read(name) for name in archive.namelist()}
-    except Exception:
-        return _flipped(content, b"", draw)
-    if members:
-        name = draw.choice(sorted(members))
-        for _ in range(draw.choice((1, 1, 2))):
-            members[name] = draw.choice(MUTATIONS)(members[name], members[draw.choice(sorted(members))], draw)
+def _picture(kind: str) -> bytes:
+    from PIL import Image, ImageDraw
+
     stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, member in members.items():
-            archive.writestr(name, member)
+    picture = Image.new("L", (60, 40))
+    ImageDraw.Draw(picture).ellipse((5, 5, 50, 35), fill=255)
+    picture.save(stream, kind)
     return stream.getvalue()
 
 
-def _flipped(content: bytes, _: bytes, draw: random.Random) -> bytes:
-    found = bytearray(content)
-    for _number in range(draw.choice((1, 3, 10)) if found else 0):
-        found[draw.randrange(len(found))] = draw.randrange(256)
-    return bytes(found)
+def _drawings(reader: str) -> list[bytes]:
+    import ezdxf
+    from attacked_readers import FAULTY, READERS
+
+    from kirigami_studio.export.dxf import dxf_bytes
+    from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.export.profile import find_profile
+    from kirigami_studio.export.svg import cut_svg_bytes
+    from kirigami_studio.lattice.deployment import deploy
+    from kirigami_studio.lattice.ratio_field import RatioField
+    from kirigami_studio.project import store
+    from kirigami_studio.project.cutting import plan_sheet
+    from kirigami_studio.project.settings import FabricationSettings
+
+    design = deploy(RatioField.uniform(3, 3))
+    plan = plan_sheet(design, FabricationSettings(60.0, connector_mm=0.8))
+    record = b""
+    if reader in ("carried", "opened"):
+        document = store.load(RESOURCES / "examples" / "heart.kiri")
+        record = store.packed_design(document, document.candidates[0])
+    job = ExportJob(design, plan=plan, record=record)
+    any_machine = find_profile("any")
+    drawing = ezdxf.new("R2000", setup=False)
+    space = drawing.modelspace()
+    space.add_lwpolyline([(0, 0), (9, 0, 0, 0, 0.5), (9, 9), (0, 9)], close=True)
+    space.add_spline([(20, 0), (25, 5), (30, 0), (20, 0)])
+    space.add_ellipse((40, 0), (5, 0), 0.5)
+    drawing.blocks.new("A").add_circle((0, 0), 2)
+    space.add_blockref("A", (60, 0))
+    text = io.StringIO()
+    drawing.write(text)
+    of = {
+        ".dxf": [dxf_bytes(plan, "R2010", any_machine, record=record), dxf_bytes(plan, "R12", any_machine)],
+        ".svg": [cut_svg_bytes(job), SVG],
+        ".json": [b"[[0, 0], [1, 0], [1, 1], [0.5, 0.2], [0, 1]]"],
+        ".png": [_picture("PNG")],
+    }
+    of[".dxf"].append(text.getvalue().encode())
+    return [content for ending in (READERS | FAULTY)[reader].endings for content in of[ending]]
 
 
-def _span(content: bytes, draw: random.Random) -> tuple[int, int]:
-    first = draw.randrange(len(content) + 1)
-    return first, min(len(content), first + draw.choice((1, 4, 20, 100, 1000)))
+def _arrays(reader: str) -> list[bytes]:
+    import numpy as np
+
+    def packed(**arrays: object) -> bytes:
+        stream = io.BytesIO()
+        np.savez_compressed(stream, **arrays)
+        return stream.getvalue()
+
+    if reader == "sheet":
+        stream = io.BytesIO()
+        np.save(stream, np.full((3, 4), 1.25))
+        return [stream.getvalue()]
+    if reader == "archive":
+        masks = np.zeros((2, 32, 32), dtype=np.bool_)
+        masks[:, 5:25, 8:20] = True
+        return [packed(ratios=np.full((2, 3, 4), 1.25)), packed(masks=masks)]
+    if reader == "network":
+        quads = 0.01 * np.array([[[0, 0], [1, 0], [1, 1], [0, 1]], [[1, 1], [2, 1], [2, 2], [1, 2]]], dtype=np.float64)
+        return [
+            packed(quads_m=quads, bonds=np.array([[0, 2, 1, 0]])),
+            packed(quads_m=quads, bonds=np.zeros((0, 4), int)),
+        ]
+    about = np.array('{"sha256": ""}')
+    fits = {name: np.ones((2, 3)) for name in ("z", "requested", "iou", "shape", "candidate", "block")}
+    return [packed(ratios=np.ones((2, 3, 3)), masks=np.ones((2, 8, 8), bool), about=about), packed(about=about, **fits)]
 
 
-def _without(content: bytes, _: bytes, draw: random.Random) -> bytes:
-    first, last = _span(content, draw)
-    return content[:first] + content[last:]
+def _learned(reader: str) -> list[bytes]:
+    """Files of small networks."""
+    import torch
+    from attacked_readers import model_folder
+
+    if reader in ("weights", "manifest"):
+        return [(model_folder() / ("a.safetensors" if reader == "weights" else "manifest.json")).read_bytes()]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "a")
+        if reader == "baseline":
+            from kirigami_studio.baselines.conditional import FieldPixels
+            from kirigami_studio.baselines.cvae import Cvae
+            from kirigami_studio.baselines.stored import store_generator
+
+            store_generator("cvae", Cvae(FieldPixels(3, 3)), path, {})
+        else:
+            from kirigami_studio.training.learner import Checkpoint
+
+            tensors = {"a": torch.ones(2, 2)}
+            Checkpoint(1, tensors, tensors, {"state": {}}, {"rate": 0.1}, torch.get_rng_state()).save(path)
+        return [path.read_bytes()]
 
 
-def _repeated(content: bytes, _: bytes, draw: random.Random) -> bytes:
-    first, last = _span(content, draw)
-    return content[:last] + content[first:last] * draw.choice((1, 5, 200)) + content[last:]
+def _projects() -> list[bytes]:
+    """A project with one design, and one with a picture behind the target and artwork on the sheet."""
+    from dataclasses import replace
 
+    from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid
+    from kirigami_studio.project import store
+    from kirigami_studio.project.picture_record import TracedPicture
 
-def _crossed(content: bytes, other: bytes, draw: random.Random) -> bytes:
-    first, last = _span(other, draw)
-    place = draw.randrange(len(content) + 1)
-    return content[:place] + other[first:last] + content[place:]
-
-
-def _renumbered(content: bytes, _: bytes, draw: random.Random) -> bytes:
-    found = list(NUMBER.finditer(content))
-    if not found:
-        return content
-    chosen = draw.choice(found)
-    return content[: chosen.start()] + draw.choice(NUMBERS) + content[chosen.end() :]
-
-
-def _cut(content: bytes, _: bytes, draw: random.Random) -> bytes:
-    return content[: draw.randrange(len(content) + 1)]
-
-
-MUTATIONS: tuple[Callable[[bytes, bytes, random.Random], bytes], ...] = (
-    _flipped, _without, _repeated, _crossed, _renumbered, _renumbered, _cut
-)  # fmt: skip
+    document = store.load(RESOURCES / "examples" / "heart.kiri")
+    small = store.packed_design(document, document.candidates[0])
+    picture = _picture("PNG")
+    traced = TracedPicture("a.png", picture, 0.5, 0.5, 30.0, (30.0, 20.0), (60, 40))
+    alone = replace(document, candidates=(), chosen=None, marks=(), labels=())
+    pictured = replace(alone, artwork=Artwork(Laid(ArtPicture("a.png", picture, (60, 40)))))
+    return [small, store.pack(alone), store.pack(pictured, traced)]
 
 
 class _TooLongError(BaseException):
@@ -176,19 +224,26 @@ def _stop(_signal: int, _frame: FrameType | None) -> None:
 
 
 def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> None:
-    """Read mutated files one by one, in this process; a line of JSON for each that did not end well."""
-    from attacked_readers import READERS, outcome
+    """Read damaged files one by one, in this process; JSON for each that did not end well, and at the end."""
+    from attacked_readers import FAULTY, READERS, outcome
 
     signal.signal(signal.SIGPROF, _stop)
-    originals, place = sources(reader), folder / f"{reader}.now"
+    seeds = sources(reader)
+    originals, weights = [content for content, _ in seeds], list(accumulate(often for _, often in seeds))
+    place = folder / f"{reader}.{first}.now"
+    _warm(reader, originals, place)
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, used + MOST_MEMORY))
+    resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, resource.RLIM_INFINITY))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    slowest, slowest_number, begun_all = 0.0, first, time.process_time()
     for number in range(first, last):
         draw = random.Random(f"{seed} {reader} {number}")
-        original = draw.choice(originals)
+        original = draw.choices(originals, cum_weights=weights)[0]
         content = mutated(original, originals, draw)
-        ending = draw.choice(ENDINGS[reader]) if draw.random() < 0.05 else ending_of(original, reader)
-        path = place.with_suffix(ending)
+        ending = (
+            draw.choice((READERS | FAULTY)[reader].endings) if draw.random() < 0.05 else ending_of(original, reader)
+        )
+        path = folder / f"{reader}.{first}{ending}"
         path.write_bytes(content)
         place.write_text(str(number))
         begun = time.process_time()
@@ -196,15 +251,40 @@ def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> No
         resource.setrlimit(resource.RLIMIT_CPU, (int(begun + 3 * MOST_SECONDS) + 1, resource.RLIM_INFINITY))
         signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
         try:
-            found = outcome(READERS[reader], path)
+            found = outcome((READERS | FAULTY)[reader], path)
         except _TooLongError:
             found = "UNCAUGHT too long"
         signal.setitimer(signal.ITIMER_PROF, 0.0)
+        seconds = time.process_time() - begun
+        if seconds > slowest:
+            slowest, slowest_number = seconds, number
+        said = found.removeprefix("refused: ")
+        if said != found and ("\n" in said or not said.endswith(".") or len(said) > 600):
+            found = f"UNCAUGHT no sentence: {said[:200]!r}"
         if found.startswith("UNCAUGHT"):
             kept = folder / f"{reader}_{seed}_{number}{ending}"
             path.replace(kept)
             tell(json.dumps({"file": kept.name, "outcome": found}))
-    place.write_text(str(last))
+        path.unlink(missing_ok=True)
+    place.unlink(missing_ok=True)
+    resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    peak = max(0, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024
+    took = time.process_time() - begun_all
+    tell(json.dumps({"done": last, "seconds": took, "slowest": slowest, "number": slowest_number, "peak": peak}))
+
+
+def _warm(reader: str, originals: Sequence[bytes], place: Path) -> None:
+    """Have the program import what it reads with, so that this does not count as a file's time and memory."""
+    from attacked_readers import FAULTY, READERS, outcome
+
+    for ending in (READERS | FAULTY)[reader].endings:
+        matching = [content for content in originals if ending_of(content, reader) == ending]
+        path = place.with_suffix(ending)
+        path.write_bytes(min(matching or originals, key=len))
+        with contextlib.suppress(_TooLongError):
+            outcome((READERS | FAULTY)[reader], path)
+        path.unlink(missing_ok=True)
+    gc.collect()
 
 
 def tell(line: str) -> None:
@@ -215,14 +295,17 @@ def tell(line: str) -> None:
 
 def ending_of(content: bytes, reader: str) -> str:
     """The ending that a file of such content has."""
+    from attacked_readers import FAULTY, READERS
+
+    endings = (READERS | FAULTY)[reader].endings
     beginnings = {b"PK": ".kiri", b"\x89PNG": ".png", b"\x93NUMPY": ".npy", b"{": ".json", b"[": ".json"}
     for beginning, ending in beginnings.items():
-        if content.startswith(beginning) and ending in ENDINGS[reader]:
+        if content.startswith(beginning) and ending in endings:
             return ending
-    if b"<svg" in content[:2000] and ".svg" in ENDINGS[reader]:
+    if b"<svg" in content[:2000] and ".svg" in endings:
         return ".svg"
-    text = [ending for ending in ENDINGS[reader] if ending in (".dxf", ".toml")]
-    return text[0] if text else ENDINGS[reader][0]
+    text = [ending for ending in endings if ending in (".dxf", ".toml")]
+    return text[0] if text else endings[0]
 
 
 @dataclass(frozen=True)
@@ -233,46 +316,140 @@ class Found:
     outcome: str
 
 
-def fuzzed(reader: str, inputs: int, seed: int, folder: Path) -> list[Found]:
-    """Have a reader read mutated files, in as many processes as it kills."""
-    folder.mkdir(parents=True, exist_ok=True)
-    found, first, place = list[Found](), 0, folder / f"{reader}.now"
-    while first < inputs:
-        words = [sys.executable, __file__, reader, "--out", str(folder), "--seed", str(seed)]
-        place.write_text(str(first))
-        done = subprocess.run(
-            [*words, "--from", str(first), "--inputs", str(inputs)],
-            env=os.environ | {"PYTHONWARNINGS": "ignore", "PYTHONPATH": os.pathsep.join([str(TESTS), *sys.path])},
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        found += [Found(**json.loads(line)) for line in done.stdout.splitlines() if line.startswith('{"file"')]
-        reached = int(place.read_text())
-        if done.returncode == 0:
+@dataclass(frozen=True)
+class Share:
+    """What became of a stretch of numbers.
+
+    Attributes
+    ----------
+    first, last : int
+    found : tuple of Found
+    seconds : float
+        Of processor time.
+    slowest : float, seconds
+    number : int
+        Of the file that was slowest.
+    peak : int, bytes
+        Of memory, beside what the program had.
+    """
+
+    first: int
+    last: int
+    found: tuple[Found, ...]
+    seconds: float = 0.0
+    slowest: float = 0.0
+    number: int = 0
+    peak: int = 0
+
+
+def read_share(reader: str, first: int, last: int, seed: int, folder: Path) -> Share:
+    """Have a stretch of numbers read, in as many processes as it ends."""
+    found, at = list[Found](), first
+    sums = {"seconds": 0.0, "slowest": 0.0, "number": first, "peak": 0}
+    while at < last:
+        place = folder / f"{reader}.{at}.now"
+        place.write_text(str(at))
+        child = started(reader, "--from", at, "--inputs", last, "--seed", seed, "--out", folder)
+        output, errors = _ended(child, place)
+        for line in output.splitlines():
+            if line.startswith('{"file"'):
+                found.append(Found(**json.loads(line)))
+            elif line.startswith('{"done"'):
+                told = json.loads(line)
+                if told["slowest"] > sums["slowest"]:
+                    sums |= {"slowest": told["slowest"], "number": told["number"]}
+                sums["seconds"] += told["seconds"]
+                sums["peak"] = max(sums["peak"], told["peak"])
+        if child.returncode == 0:
             break
-        if done.returncode > 0:  # not killed: the fault is here
-            raise RuntimeError(done.stderr[-2000:])
-        found.append(Found(f"{reader} number {reached}", f"exit status {done.returncode}: {done.stderr[-300:]}"))
-        first = reached + 1
-    return found
+        if child.returncode > 0:  # not killed: the fault is here
+            raise RuntimeError(errors[-2000:])
+        reached = int(place.read_text())
+        place.unlink()
+        for path in folder.glob(f"{reader}.{at}.*"):
+            path.replace(folder / f"{reader}_{seed}_{reached}{path.suffix}")
+        found.append(Found(f"{reader}_{seed}_{reached}", f"ended by signal {-child.returncode}: {errors[-300:]}"))
+        at = reached + 1
+    return Share(first, last, tuple(found), **sums)
 
 
-if __name__ == "__main__":
+def started(*words: object) -> subprocess.Popen[str]:
+    """This program with some arguments."""
+    return subprocess.Popen(
+        [sys.executable, __file__, *map(str, words)],
+        env=os.environ | {"PYTHONWARNINGS": "ignore", "PYTHONPATH": os.pathsep.join([str(TESTS), *sys.path])},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def _ended(child: subprocess.Popen[str], place: Path) -> tuple[str, str]:
+    """What a process said until it ended, or was ended because a file took too long by the clock."""
+    reached, since = "", time.monotonic()
+    while True:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return child.communicate(timeout=2.0)
+        now = place.read_text() if place.exists() else ""
+        if now != reached:
+            reached, since = now, time.monotonic()
+        elif time.monotonic() - since > MOST_WAITING:
+            child.kill()
+
+
+def fuzzed(reader: str, inputs: int, seed: int, folder: Path, jobs: int = 1) -> Iterator[Share]:
+    """Have a reader read damaged files, ``jobs`` processes at a time; what the journal has is not read again."""
+    folder.mkdir(parents=True, exist_ok=True)
+    journal, known = folder / f"{reader}-{seed}.jsonl", dict[tuple[int, int], Share]()
+    for line in journal.read_text().splitlines() if journal.exists() else ():
+        entry = json.loads(line)
+        share = Share(**entry | {"found": tuple(Found(**one) for one in entry["found"])})
+        known[share.first, share.last] = share
+    stretches = [(first, min(first + SHARE, inputs)) for first in range(0, inputs, SHARE)]
+    yield from (known[stretch] for stretch in stretches if stretch in known)
+    with ThreadPoolExecutor(jobs) as pool:
+        missing = [stretch for stretch in stretches if stretch not in known]
+        for share in pool.map(lambda stretch: read_share(reader, *stretch, seed, folder), missing):
+            with journal.open("a") as stream:
+                entry = vars(share) | {"found": [vars(one) for one in share.found]}
+                stream.write(f"{json.dumps(entry)}\n")
+            yield share
+
+
+def main() -> int:
+    from attacked_readers import FAULTY, READERS
+
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("readers", nargs="*", choices=[*ENDINGS, []])
+    parser.add_argument("readers", nargs="*", choices=[*READERS, *FAULTY, []])
     parser.add_argument("--inputs", type=int, default=1000, help="files for each reader")
+    parser.add_argument("--jobs", type=int, default=1, help="processes beside each other")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="begin with no reader after these")
     parser.add_argument("--from", type=int, dest="first", help="read in this process, from this number on")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, required=True)
     asked = parser.parse_args()
     if asked.first is not None:
-        read_many(asked.readers[0], asked.first, asked.inputs, asked.seed, asked.out)
-        sys.exit(0)
-    bad = 0
-    for name in asked.readers or ENDINGS:
-        begun = time.monotonic()
-        lines = fuzzed(name, asked.inputs, asked.seed, asked.out)
-        bad += len(lines)
-        tell(f"{name}: {asked.inputs} files, {len(lines)} bad, {time.monotonic() - begun:.0f} s")
-        for line in lines:
-            tell(f"  {line.file}: {line.outcome}")
-    sys.exit(min(bad, 1))
+        for name in asked.readers or READERS:
+            read_many(name, asked.first, asked.inputs, asked.seed, asked.out)
+        return 0
+    bad, begun_all = 0, time.monotonic()
+    for name in asked.readers or READERS:
+        if time.monotonic() - begun_all > 60.0 * asked.minutes:
+            tell(f"{name}: not begun")
+            continue
+        begun, shares = time.monotonic(), []
+        for share in fuzzed(name, asked.inputs, asked.seed, asked.out, asked.jobs):
+            shares.append(share)
+            for found in share.found:
+                tell(f"  {found.file}: {found.outcome}")
+        faults, worst = sum(len(share.found) for share in shares), max(shares, key=lambda share: share.slowest)
+        seconds, peak = sum(share.seconds for share in shares), max(share.peak for share in shares)
+        bad += faults
+        tell(
+            f"{name}: {asked.inputs} files, {faults} bad, {time.monotonic() - begun:.0f} s "
+            f"({asked.inputs / max(seconds, 1e-9):.0f} a second of processor time), "
+            f"slowest {worst.slowest:.2f} s (number {worst.number}), {peak / 2**20:.0f} MiB at most"
+        )
+    return min(bad, 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

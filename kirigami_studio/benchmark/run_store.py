@@ -14,10 +14,12 @@ import numpy as np
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
-from kirigami_studio.foundation.files import folder_of_one_writer
+from kirigami_studio.foundation.files import folder_of_one_writer, read_at_most
 from kirigami_studio.foundation.processes import Workers, results_of
 from kirigami_studio.outlines.outline import Outline
 
+#: Largest file of runs that is read (bytes).
+LARGEST_FILE = 256 * 2**20
 #: What a suite tells its runs by, such as method, family, seed and target.
 Key = tuple[str | int, ...]
 Record = dict[str, object]
@@ -94,7 +96,7 @@ class RunStore:
 
     def _read(self, path: Path) -> None:
         try:
-            content = path.read_bytes() if path.exists() else b""
+            content = read_at_most(path, LARGEST_FILE) if path.exists() else b""
             whole = content[: content.rfind(b"\n") + 1]
             if len(whole) < len(content):
                 os.truncate(path, len(whole))
@@ -103,7 +105,7 @@ class RunStore:
                 raise KirigamiError("benchmark.runs_differ", path=path)
             for line in lines[1:]:
                 self.records[tuple(line.pop("key"))] = line
-        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
             raise KirigamiError("benchmark.runs_unreadable", path=path) from error
         if not lines:
             self._append(path, {"settings": self._settings})

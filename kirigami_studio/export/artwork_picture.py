@@ -14,7 +14,7 @@ from kirigami_studio.export.artwork import ArtPicture
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.read_image import MOST_MEGABYTES, opened_image
 from kirigami_studio.outlines.source_file import decoding, read_bytes
-from kirigami_studio.outlines.svg_safety import checked_svg
+from kirigami_studio.outlines.svg_safety import self_contained_svg
 
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
 #: Larger pictures are averaged down: a sheet of 300 x 200 mm is printed at 500 dpi from so many pixels.
@@ -52,8 +52,7 @@ def read_picture(path: str | Path, draw_svg: DrawSvg | None = None) -> ArtPictur
         if draw_svg is None:
             raise TargetError("artwork.no_svg_here", name=path.name)
         with decoding(path, "artwork.picture_damaged"):
-            checked_svg(content)
-            content = draw_svg(content, SVG_SIDE)
+            content = draw_svg(self_contained_svg(content), SVG_SIDE)
     with decoding(path, "artwork.picture_damaged"):
         return picture_of(path.name, content)
 

@@ -96,11 +96,12 @@ def _read(path: Path) -> FileContent:
     try:
         document = readfile(path)
         errors = document.audit().errors
+        content = None if errors else _content(document)
     except (OSError, *PARSER_FAULTS) as error:
         raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
-    if errors:
+    if content is None:
         raise ExportError("dxf.audit", path=path, first=errors[0].message, count=len(errors))
-    return _content(document)
+    return content
 
 
 def _content(document: Drawing) -> FileContent:

@@ -31,6 +31,8 @@ LARGEST_FILE = 100_000_000
 UNKNOWN_COLOUR = -1
 _WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
 
+_REPEATS = re.compile(rb"<(\w+:)?use\b")
+
 Row = tuple[float, float, float]
 
 
@@ -42,21 +44,37 @@ def read_with_svgelements(path: Path) -> FileContent:
     ExportError
         No readable SVG.
     """
+    svg = _parsed(path)
     try:
-        content = read_at_most(path, LARGEST_FILE)
-        refuse_long_numbers(content)
-        # svgelements carries no types.
-        svg: Any = cast(Any, SVG).parse(io.BytesIO(content), reify=False)
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
         width, height = float(box.width), float(box.height)
         strokes = tuple(
             _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
         )
-    except Exception as error:  # svgelements raises a dozen kinds on damaged files
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # What a damaged file leaves out, svgelements has as None or NaN.
         raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
     unit = MILLIMETRES if abs(scale - 1.0) < SAME_SCALE else 0
     return FileContent("svgelements", strokes, unit, (width, height), _layers(strokes))
+
+
+def _parsed(path: Path) -> Any:
+    """The document as svgelements has it, which carries no types; without elements that stand for others.
+
+    Raises
+    ------
+    ExportError
+        No readable SVG.
+    """
+    try:
+        content = read_at_most(path, LARGEST_FILE)
+        refuse_long_numbers(content)
+        if _REPEATS.search(content):
+            raise ValueError("it repeats elements by 'use', as no cut file does")
+        return cast(Any, SVG).parse(io.BytesIO(content), reify=False)
+    except Exception as error:  # svgelements raises a dozen kinds on damaged files
+        raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
 
 
 def read_with_xml(path: Path) -> FileContent:

@@ -20,8 +20,8 @@ from kirigami_studio.foundation.errors import ExportError
 
 #: Permissions of files that did not exist before: everybody may read them.
 NEW_FILE_MODE = 0o644
-#: Largest settings file (bytes).
-LARGEST_SETTINGS = 1_000_000
+#: Largest settings file (bytes), and dots of a line: Python's reader needs a gigabyte for a key of 20 000 parts.
+LARGEST_SETTINGS, MOST_DOTS = 100_000, 200
 
 
 @contextlib.contextmanager
@@ -74,6 +74,8 @@ def read_toml(path: Path) -> dict[str, Any]:
         It is not TOML in UTF-8, or one that is nested too deep or holds too long numbers.
     """
     content = read_at_most(path, LARGEST_SETTINGS)
+    if any(line.count(b".") > MOST_DOTS for line in content.splitlines()):
+        raise ValueError(f"a line of it holds more than {MOST_DOTS} dots")
     try:
         entries = tomllib.loads(content.decode("utf-8"))
         _check_whole_numbers(entries)

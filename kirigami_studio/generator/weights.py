@@ -12,7 +12,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import torch
@@ -21,13 +21,15 @@ from safetensors.torch import save as save_tensors
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, backbone_of, network_of, shape_from_json
 
 MANIFEST = "manifest.json"
 FORMAT = 1
+#: Largest files that are read (bytes).
+LARGEST_MANIFEST, LARGEST_WEIGHTS = 4 * 2**20, 2**30
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,13 +105,13 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
     UsageError
         No such variant.
     ModelError
-        The weights are missing, altered, or of another shape than the manifest says.
+        The weights are missing, altered, not finite, or of another shape than the manifest says.
     """
     place = folder or model_folder()
     entry = _entry(variant, place)
     path = place / str(entry["file"])
     try:
-        content = path.read_bytes()
+        content = read_at_most(path, LARGEST_WEIGHTS)
     except OSError as error:
         raise ModelError("model.weights_missing", file=path.name, variant=variant) from error
     digest = hashlib.sha256(content).hexdigest()
@@ -118,6 +120,8 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
     try:
         network = network_of(shape_from_json(entry.get("backbone", PERCEPTRON), entry["shape"]))
         network.load_state_dict({name: value.float() for name, value in load_tensors(content).items()})
+        if not all(bool(torch.isfinite(value).all()) for value in network.parameters()):
+            raise ModelError("model.weights_not_finite", file=path.name)
     except ModelError:
         raise
     except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
@@ -193,12 +197,34 @@ def store_variants(
 
 def _manifest(folder: Path) -> dict[str, Any]:
     try:
-        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        manifest = json.loads(read_at_most(folder / MANIFEST, LARGEST_MANIFEST))
+    except (OSError, ValueError, RecursionError) as error:
         raise ModelError("model.list_unreadable", folder=folder) from error
     if not isinstance(manifest, dict) or manifest.get("format") != FORMAT or "variants" not in manifest:
         raise ModelError("model.list_of_other_format", folder=folder)
+    variants = manifest["variants"]
+    if not isinstance(variants, dict) or not all(map(_is_entry, variants.values())):
+        raise ModelError("model.list_unreadable", folder=folder)
     return manifest
+
+
+def _is_entry(entry: object) -> bool:
+    """Whether an entry of the manifest says what is needed to load and name a variant."""
+    if not isinstance(entry, dict):
+        return False
+    file, preference = entry.get("file"), entry.get("preference", 0.0)
+    return (
+        # A name, not a path that leads elsewhere.
+        isinstance(file, str)
+        and bool(file)
+        and "\0" not in file
+        and file == PurePath(file).name
+        and isinstance(entry.get("sha256"), str)
+        and isinstance(entry.get("shape"), dict)
+        and isinstance(entry.get("about"), dict)
+        and isinstance(preference, (int, float))
+        and 0.0 <= preference <= 1.0
+    )
 
 
 def _entry(variant: str, folder: Path) -> dict[str, Any]:

@@ -200,6 +200,8 @@ class Session(QObject):
     display : DesignDisplay
     path : Path or None
         Where the project was saved or opened.
+    on_disk : dict of Path to str
+        SHA-256 of project files as they were read or written here last.
     project : int
         How many projects were open before this one.
     """
@@ -217,6 +219,7 @@ class Session(QObject):
         self.cache = DesignCache()
         self.display = DesignDisplay(self)
         self.path: Path | None = None
+        self.on_disk: dict[Path, str] = {}
         self.project = 0
 
     @property

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.controller import Controller
+from kirigami_studio.gui.jobs.project_jobs import ChangedOnDisk
 from kirigami_studio.gui.messages import Message, Tone
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ class UnsavedWork(QObject):
         controller.session.document_changed.connect(self._drop_questions)
         controller.saved.connect(self._close_when_saved)
         controller.filing.projects.save_failed.connect(self._stay)
+        controller.filing.projects.changed_on_disk.connect(self._ask_about_file)
 
     def save(self) -> bool:
         """Save where the project is; ask when it has no place yet.  False if the user cancelled."""
@@ -121,6 +123,32 @@ class UnsavedWork(QObject):
             for question in self._questions:
                 self._window.messages.drop(question)
             self._questions.clear()
+
+    def _ask_about_file(self, changed: ChangedOnDisk) -> None:
+        """Somebody else wrote the project's file after it was read or written here: ask what is to become of it."""
+        session, projects = self._controller.session, self._controller.filing.projects
+        project = session.project
+
+        def overwrite() -> None:
+            if session.project == project:
+                projects.overwrite(changed)
+
+        sentence = tr(
+            "{name} was changed on disk after you opened or saved it here, perhaps in another window. Overwrite it, "
+            "or save a copy of your version?",
+            name=changed.path.name,
+        )
+        actions = (
+            (tr("Overwrite"), overwrite),
+            (tr("Save a copy …"), self._save_copy),
+            (tr("Cancel"), lambda: session.set_status(tr("Not saved."))),
+        )
+        self._ask(Message(sentence, Tone.WARNING, actions=actions))
+
+    def _save_copy(self) -> None:
+        path = self._window.file_dialogs.save(tr("{name} copy.kiri", name=self.name))
+        if path is not None:
+            self._controller.save(path)
 
     def _save_first(self) -> None:
         self.save()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 import xml.etree.ElementTree as ElementTree
 from xml.etree.ElementTree import Element
@@ -18,6 +19,11 @@ MOST_DIGITS = 64
 DIGITS = re.compile(rb"\d{%d}" % (MOST_DIGITS + 1))
 NUMBER = re.compile(r"\d+(?:\.\d*)?|\.\d+")
 
+#: Elements that show what a link leads to.
+PICTURES = frozenset({"image", "feImage"})
+#: What files of pixels begin with: PNG, JPEG, GIF, BMP, WebP.
+PIXELS = (b"\x89PNG", b"\xff\xd8", b"GIF8", b"BM", b"RIFF")
+INSTRUCTION = re.compile(r"<\?.*?\?>", re.DOTALL)
 #: Parts that paint nothing by themselves; svgelements would draw the shapes inside some of them.
 UNPAINTED = frozenset({"mask", "marker", "pattern", "clipPath", "foreignObject", "script", "metadata", "filter"})
 
@@ -60,6 +66,43 @@ def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
     width = REAL_LENGTH.fullmatch(root.get("width", ""))
     width_mm = float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
     return ElementTree.tostring(root), width_mm, notes
+
+
+def self_contained_svg(content: bytes) -> bytes:
+    """Return a document that shows the same and leads to no other file: a drawing program would open them.
+
+    Raises
+    ------
+    TargetError
+        It shows pictures from other files; or as :func:`checked_svg`.
+    """
+    checked_svg(content)
+    root = ElementTree.fromstring(content)
+    for element in root.iter():
+        reference = next((value for key, value in element.items() if key.rsplit("}", 1)[-1] == "href"), "").strip()
+        if _tag(element) in PICTURES and reference and not reference.startswith("#"):
+            _refuse_link(reference)
+    # Written canonically, "<?" begins nothing but an instruction, such as one for the style sheet of another file.
+    return INSTRUCTION.sub("", ElementTree.canonicalize(content)).encode()
+
+
+def _refuse_link(reference: str) -> None:
+    """Refuse to show anything but pixels that the document holds itself.
+
+    Raises
+    ------
+    TargetError
+        A link to another file, or another document inside this one, which could have such links itself.
+    """
+    head, _, packed = reference.partition(",")
+    if not head.lower().startswith("data:"):
+        raise TargetError("svg.linked_picture", link=reference)
+    try:
+        pixels = base64.b64decode("".join(packed[:64].split())[:24])
+    except ValueError:
+        pixels = b""
+    if not head.lower().endswith(";base64") or not pixels.startswith(PIXELS):
+        raise TargetError("svg.picture_inside")
 
 
 def refuse_long_numbers(content: bytes) -> None:

@@ -38,11 +38,14 @@ class Note:
         Where the project was saved last, absolute; "" if it never was.
     changed : str
         When the latest change was made, ISO 8601 with the offset of its time zone.
+    digest : str
+        SHA-256 of the project's file as it was read or written last; "" if that is not known.
     """
 
     name: str
     path: str
     changed: str
+    digest: str = ""
 
     @property
     def when(self) -> datetime:
@@ -94,7 +97,8 @@ def read_note(path: Path) -> Note:
         raise ProjectError("recovery.damaged", path=path, reason=str(error)) from error
     try:
         record = Record(read_json(content, NOTE), NOTE)
-        note = Note(record.text("name"), record.text("path"), record.text("changed"))
+        digest = record.text("digest") if record.holds("digest") else ""
+        note = Note(record.text("name"), record.text("path"), record.text("changed"), digest)
         if note.when.tzinfo is None:
             raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:

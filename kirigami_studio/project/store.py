@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import zipfile
@@ -48,22 +49,40 @@ class Opened:
         What the target was traced from.
     notes : tuple of str
         What had to be left out, in sentences.
+    digest : str
+        SHA-256 of the file.
     """
 
     document: Document
     picture: TracedPicture | None = None
     notes: tuple[str, ...] = ()
+    digest: str = ""
 
 
-def save(document: Document, path: Path | str, picture: TracedPicture | None = None) -> None:
+def save(document: Document, path: Path | str, picture: TracedPicture | None = None) -> str:
     """Write the project file with its own material and picture; an older one at ``path`` survives any failure.
+
+    Returns
+    -------
+    digest : str
+        SHA-256 of the file.
 
     Raises
     ------
     ExportError
         The file cannot be written.
     """
-    write_atomically(Path(path), pack(with_stored_material(document), picture))
+    content = pack(with_stored_material(document), picture)
+    write_atomically(Path(path), content)
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_on_disk(path: Path) -> str | None:
+    """SHA-256 of the file that is there now; None where there is none that could be read."""
+    try:
+        return hashlib.sha256(read_at_most(path, LARGEST_FILE)).hexdigest()
+    except (OSError, ValueError):
+        return None
 
 
 def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
@@ -109,6 +128,7 @@ def load_all(path: Path | str) -> Opened:
     """
     path = Path(path)
     content = _read_file(path)
+    digest = hashlib.sha256(content).hexdigest()
     if path.suffix.lower() in CUT_FILES:
         record = record_in(content)
         if record is None:
@@ -133,7 +153,7 @@ def load_all(path: Path | str) -> Opened:
         picture = picture_of(members)
     except ProjectError as error:
         notes.append(str(error))
-    return Opened(document, picture, tuple(notes))
+    return Opened(document, picture, tuple(notes), digest)
 
 
 def _version(members: Members) -> int:

@@ -13,7 +13,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -30,7 +29,7 @@ from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, ove
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import opened_file, write_atomically
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -49,6 +48,8 @@ VERIFIED_IOU = 0.999
 BATCH = 256
 #: Decimals of the ratios that the content hash sees: processors differ in the last bits of a power of ten.
 HASHED_DECIMALS = 9
+#: Largest archive that is read (bytes).
+LARGEST_FILE = 2 * 2**30
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +84,12 @@ class Split:
             It is missing, damaged, or its content is not what its hash names.
         """
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with opened_file(path, LARGEST_FILE) as file, np.load(file, allow_pickle=False) as archive:
                 split = cls(archive["ratios"], archive["masks"], json.loads(str(archive["about"])))
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            altered = split.about.get("sha256") != content_hash(split.ratios, split.masks)
+        except Exception as error:  # zipfile and NumPy raise a dozen kinds on damaged archives
             raise KirigamiError("training.split_unreadable", path=path) from error
-        if split.about.get("sha256") != content_hash(split.ratios, split.masks):
+        if altered:
             raise KirigamiError("training.split_altered", path=path)
         return split
 

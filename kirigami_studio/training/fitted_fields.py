@@ -31,7 +31,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import opened_file, write_atomically
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.processes import HERE, Workers, results_of
 from kirigami_studio.generator.conditioning import normalised, square_pose
@@ -61,6 +61,8 @@ FAR = 0.03
 SMALLEST_IOU = 0.85
 #: Points at equal arc length that the requested outline is kept with: 1.7 times what the network sees.
 REQUESTED_POINTS = 160
+#: Largest archive that is read (bytes).
+LARGEST_FILE = 2 * 2**30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,10 +111,10 @@ class FittedFields:
             It is missing, damaged or holds something else.
         """
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with opened_file(path, LARGEST_FILE) as file, np.load(file, allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in ARRAYS}
                 about = json.loads(str(archive["about"]))
-        except (OSError, ValueError, KeyError, EOFError) as error:
+        except Exception as error:  # zipfile and NumPy raise a dozen kinds on damaged archives
             raise KirigamiError("training.fits_unreadable", path=path) from error
         return cls(**arrays, about=about)
 

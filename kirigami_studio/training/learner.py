@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from torch.nn.parallel import DistributedDataParallel
 
 from kirigami_studio.foundation.errors import ExportError, ModelError, UsageError
-from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import Network, Shape, network_of
 from kirigami_studio.training.ranks import Ranks, own_gpu
@@ -74,7 +74,8 @@ class Checkpoint:
             The file is damaged or not a checkpoint.
         """
         try:
-            content = torch.load(path, map_location="cpu", weights_only=True)
+            file = io.BytesIO(read_at_most(path, LARGEST_CHECKPOINT))
+            content = torch.load(file, map_location="cpu", weights_only=True)
             return cls(**content)
         except Exception as error:  # torch raises many kinds on a damaged file
             raise ModelError("training.checkpoint_unreadable", path=path) from error
@@ -94,6 +95,8 @@ class Checkpoint:
 
 #: Name of the resumable state in a run folder.
 CHECKPOINT = "checkpoint.pt"
+#: Largest checkpoint that is read (bytes).
+LARGEST_CHECKPOINT = 8 * 2**30
 
 Learning = TypeVar("Learning", bound=nn.Module)
 Trained = TypeVar("Trained", covariant=True)

@@ -9,7 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from fuzzed_readers import ENDINGS, MOST_SECONDS, fuzzed
+from attacked_readers import READERS
+from fuzzed_readers import MOST_SECONDS, fuzzed, started
 
 #: Damaged files that each reader gets; `make fuzz` has more.
 FEW = 40
@@ -17,8 +18,8 @@ TESTS = Path(__file__).parents[1]
 ATTACKS = TESTS / "data" / "attacks"
 
 
-def outcomes(*asked: tuple[str, Path]) -> dict[str, tuple[str, float]]:
-    """What becomes of files in a process with little memory, and the seconds of processor time."""
+def outcomes(*asked: tuple[str, Path]) -> dict[tuple[str, str], tuple[str, float]]:
+    """What becomes of files in a process with little memory, and the seconds of processor time, by reader and name."""
     done = subprocess.run(
         [sys.executable, str(TESTS / "attacked_readers.py"), *(f"{reader}={path}" for reader, path in asked)],
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(TESTS), *sys.path]), "PYTHONWARNINGS": "ignore"},
@@ -29,37 +30,75 @@ def outcomes(*asked: tuple[str, Path]) -> dict[str, tuple[str, float]]:
     )
     assert done.returncode == 0, done.stderr[-2000:]
     lines = [json.loads(line) for line in done.stdout.splitlines()]
-    return {line["name"]: (line["outcome"], line["seconds"]) for line in lines}
+    return {(line["reader"], line["name"]): (line["outcome"], line["seconds"]) for line in lines}
+
+
+@pytest.fixture(scope="module")
+def attacked() -> dict[tuple[str, str], tuple[str, float]]:
+    """What becomes of all files made to hurt, read by one process."""
+    paths = sorted(path for path in ATTACKS.iterdir() if path.suffix != ".md")
+    return outcomes(*((name, path) for name in READERS for path in paths if path.suffix in endings_of(name)))
+
+
+def endings_of(reader: str) -> tuple[str, ...]:
+    """Parts of drawings, what the window opens and what is pasted are read as targets are: not every file again."""
+    return {"parts": (".png",), "opened": (".png",), "pasted": (".json",)}.get(reader, READERS[reader].endings)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("reader", ENDINGS)
-def test_that_files_made_to_hurt_are_read_or_refused_in_a_sentence(reader: str) -> None:
-    # Parts of drawings are read as targets are.
-    endings = ENDINGS[reader] if reader != "parts" else (".png",)
-    paths = sorted(path for path in ATTACKS.iterdir() if path.suffix in endings)
-    found = outcomes(*((reader, path) for path in paths))
-    assert set(found) == {path.name for path in paths}
+@pytest.mark.torch
+@pytest.mark.parametrize("reader", READERS)
+def test_that_files_made_to_hurt_are_read_or_refused_in_a_sentence(
+    attacked: dict[tuple[str, str], tuple[str, float]], reader: str
+) -> None:
+    found = {name: outcome for (by, name), outcome in attacked.items() if by == reader}
+    assert set(found) == {path.name for path in ATTACKS.iterdir() if path.suffix in endings_of(reader)}
     assert {name: said for name, (said, _) in found.items() if said.startswith("UNCAUGHT")} == {}
     assert {name: seconds for name, (_, seconds) in found.items() if seconds > MOST_SECONDS} == {}
     sentences = [said.removeprefix("refused: ") for said, _ in found.values() if said.startswith("refused: ")]
     assert all(said.endswith(".") and "\n" not in said and len(said) < 400 for said in sentences)
 
 
+@pytest.fixture(scope="module")
+def damaged(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[str], str]:
+    """What one process says that has every reader read a few damaged files, and what it was reading when it ended."""
+    folder = tmp_path_factory.mktemp("damaged")
+    child = started("--from", 0, "--inputs", FEW, "--seed", 1, "--out", folder)
+    output, errors = child.communicate(timeout=300)
+    unfinished = ", ".join(f"{place.stem} {place.read_text()}" for place in folder.glob("*.now"))
+    return output.splitlines(), f"{unfinished}: {errors[-2000:]}" if child.returncode else ""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("reader", ENDINGS)
-def test_that_damaged_files_are_read_or_refused_in_a_sentence(reader: str, tmp_path: Path) -> None:
-    assert fuzzed(reader, FEW, 1, tmp_path) == []
+@pytest.mark.torch
+def test_that_damaged_files_are_read_or_refused_in_a_sentence(damaged: tuple[list[str], str]) -> None:
+    lines, ended = damaged
+    assert ended == ""
+    assert [line for line in lines if line.startswith('{"file"')] == []
+    assert len(lines) == len(READERS)
+
+
+@pytest.mark.slow
+def test_that_the_suite_names_files_that_end_a_reader_and_goes_on_behind_them(tmp_path: Path) -> None:
+    (share,) = fuzzed("faulty", 6, 1, tmp_path)
+    assert [(one.file, one.outcome) for one in share.found] == [
+        ("faulty_1_2", "ended by signal 9: "),
+        ("faulty_1_4.toml", "UNCAUGHT ValueError: a fault"),
+    ]
+    assert all((tmp_path / f"faulty_1_{number}.toml").exists() for number in (2, 4))
+    assert list(fuzzed("faulty", 6, 1, tmp_path)) == [share]  # as the journal has it
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
 def test_that_pipes_and_devices_without_end_are_not_read(tmp_path: Path) -> None:
     asked = []
-    for reader, endings in ENDINGS.items():
-        pipe, device = tmp_path / f"pipe_{reader}{endings[0]}", tmp_path / f"device_{reader}{endings[0]}"
+    by_path = {name: reader for name, reader in READERS.items() if name not in ("pasted", "weights", "manifest")}
+    for name, reader in by_path.items():
+        endings = reader.endings
+        pipe, device = tmp_path / f"pipe_{name}{endings[0]}", tmp_path / f"device_{name}{endings[0]}"
         os.mkfifo(pipe)
         device.symlink_to("/dev/zero")
-        asked += [(reader, pipe), (reader, device)]
+        asked += [(name, pipe), (name, device)]
     found = outcomes(*asked)
-    assert len(found) == 2 * len(ENDINGS)
+    assert len(found) == 2 * len(by_path)
     assert {name: said for name, (said, _) in found.items() if not said.startswith("refused: ")} == {}

@@ -187,6 +187,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "model.weights_do_not_fit": mark(
         "The weights {file} do not fit the network that their list describes. Install Kirigami Studio again."
     ),
+    "model.weights_not_finite": mark(
+        "The weights {file} hold numbers that are not finite. Install Kirigami Studio again, or train them anew."
+    ),
     "model.weights_not_listed": mark(
         "The list of models in {folder} does not name {file}. Choose a file that training wrote."
     ),

@@ -58,6 +58,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The picture {name:.80} has {megabytes:.0f} MB, more than {limit} MB. Save it with fewer pixels, or as JPG."
     ),
     "artwork.no_svg_here": mark("{name} cannot be drawn here. Save it as PNG."),
+    "artwork.svg_too_slow": mark(
+        "It takes longer than {seconds:g} s to draw. Save it as PNG from the program that made it."
+    ),
     "artwork.svg_not_drawn": mark("Nothing in it can be drawn. Save it as PNG from the program that made it."),
     "artwork.impossible_place": mark(
         "A picture cannot be laid with the scale {scale:g}. Choose a scale from {smallest:g} to {largest:g}, and "

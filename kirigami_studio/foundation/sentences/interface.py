@@ -47,7 +47,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "input.mask_not_finite": mark("The mask is not finite in row {row}, column {column}. Every pixel must be finite."),
     "archive.not_readable": mark("Cannot read {path}: it is missing, damaged or not an .npz archive."),
     "archive.too_large": mark("{path} is larger than {limit} MB. Split it."),
-    "archive.array_missing": mark("{name} must contain an array named '{key}'; its arrays: {found:.80}"),
+    "archive.array_missing": mark("{name} has no array named '{key}', only: {found:.80}."),
     "archive.not_numbers": mark(
         "The array '{key}' in {name} must be numbers of shape (N, rows, columns), got {dtype:.40} of shape "
         "{shape!s:.60}."

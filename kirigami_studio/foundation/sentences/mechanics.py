@@ -37,7 +37,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "network_file.not_found": mark("There is no file {path}. Check the path."),
     "network_file.not_readable": mark("Cannot read {path} as an .npz archive of arrays."),
     "network_file.too_large": mark("{path} is larger than {limit} MiB. Networks of panels are smaller."),
-    "network_file.array_missing": mark("{path} has no array '{name}', only: {found}."),
+    "network_file.array_missing": mark("{path} has no array '{name}', only: {found:.80}."),
     "network_file.too_many_panels": mark("The network has {found} panels. At most {most} are read."),
     "network_file.bonds_not_corners": mark(
         "The array 'bonds' of {path} must hold whole numbers: panel A, corner of A (0 to 3), panel B, corner of B."

@@ -67,6 +67,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "svg.compressed": mark("The file is compressed (SVGZ). Save it as plain SVG."),
     "svg.entities": mark("The file declares XML entities, which are not read for safety. Save it as plain SVG."),
+    "svg.linked_picture": mark(
+        "The drawing shows a picture from another file ({link:.60}), which is not opened for safety. Embed it."
+    ),
+    "svg.picture_inside": mark(
+        "The drawing holds a picture that is neither PNG, JPEG, GIF, BMP nor WebP. Embed it as PNG."
+    ),
     "svg.not_well_formed": mark("The file is not well-formed SVG ({reason:.80}). Save it again as plain SVG."),
     "svg.other_root": mark("The file is XML but not SVG: its root is <{tag:.40}>. Save it as plain SVG."),
     "svg.inside_itself": mark("The drawing uses <{tag:.40}> inside itself. Save it as plain SVG."),

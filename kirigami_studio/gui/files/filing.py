@@ -13,7 +13,7 @@ from kirigami_studio.gui.cutting import MaterialStore
 from kirigami_studio.gui.files.pasting import PASTED
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.files.recovering import Recovery
-from kirigami_studio.gui.jobs.project_jobs import Project, Saved, loading, saving
+from kirigami_studio.gui.jobs.project_jobs import ChangedOnDisk, Project, Saved, loading, saving
 from kirigami_studio.gui.jobs.queue import JobCallbacks
 from kirigami_studio.gui.messages import Message, Tone
 from kirigami_studio.gui.session import Session
@@ -27,6 +27,7 @@ class ProjectFiles(QObject):
     saved = Signal(Path, Document)  #: the document that the file holds
     opened = Signal(Path, Document)
     save_failed = Signal()
+    changed_on_disk = Signal(ChangedOnDisk)  #: the file was not written, since somebody else has changed it
 
     def __init__(self, session: Session, targeting: Targeting, parent: QObject) -> None:
         super().__init__(parent)
@@ -35,21 +36,27 @@ class ProjectFiles(QObject):
         self._count = 0
 
     def save(self, path: Path) -> None:
-        """Write the open project."""
+        """Write the open project, unless the file there was changed since it was read or written here."""
         session = self._session
         document = session.document
         session.set_status(tr("Saving {name} …", name=path.name))
-        steps = partial(saving, document, self._tracer.picture_of(document.target), path)
+        picture = self._tracer.picture_of(document.target)
+        steps = partial(saving, document, picture, path, session.on_disk)
         callbacks = JobCallbacks(
             partial(self._take_saved, document, session.project), on_failed=self._report_save_failed
         )
         session.queue.start(tr("saving {name}", name=path.name), steps, callbacks)
 
+    def overwrite(self, changed: ChangedOnDisk) -> None:
+        """Write the open project over what somebody else has made of its file."""
+        self._session.on_disk[changed.path] = changed.digest
+        self.save(changed.path)
+
     def open(self, path: Path) -> None:
         """Read a project file."""
         session = self._session
         session.set_status(tr("Opening {name} …", name=path.name))
-        steps = partial(loading, path, self.new_folder())
+        steps = partial(loading, path, self.new_folder(), session.on_disk)
         callbacks = JobCallbacks(partial(self._take_opened, path), on_failed=session.report_failure)
         session.queue.start(tr("opening {name}", name=path.name), steps, callbacks)
 
@@ -61,7 +68,13 @@ class ProjectFiles(QObject):
         self._count += 1
         return Path(self._folder.name) / f"{PASTED}{self._count}"
 
-    def _take_saved(self, document: Document, project: int, saved: Saved) -> None:
+    def _take_saved(self, document: Document, project: int, saved: Saved | ChangedOnDisk) -> None:
+        if isinstance(saved, ChangedOnDisk):
+            self.save_failed.emit()
+            self._session.set_status(tr("Not saved: {name} was changed on disk.", name=saved.path.name))
+            if project == self._session.project:
+                self.changed_on_disk.emit(saved)
+            return
         if saved.left_out:
             self._session.post(Message(saved.left_out, Tone.WARNING))
         if project == self._session.project:

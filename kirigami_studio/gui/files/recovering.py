@@ -113,7 +113,8 @@ class Recovery(QObject):
             return
         document = session.document
         path = "" if session.path is None else str(session.path.absolute())
-        note = Note(_name_of(document, session.path), path, recovery.now())
+        digest = "" if session.path is None else session.on_disk.get(session.path, "")
+        note = Note(_name_of(document, session.path), path, recovery.now(), digest)
         callbacks = JobCallbacks(self._take_kept, self._look_again, on_failed=self._report_not_kept)
         steps = partial(keeping, document, self._tracer.picture_of(document.target), note, self._own)
         self._job = session.queue.start(tr("autosaving"), steps, callbacks)
@@ -224,7 +225,7 @@ class Recovery(QObject):
         callbacks = JobCallbacks(
             partial(self._take_recovered, leftover), on_failed=partial(self._report_not_recovered, leftover)
         )
-        steps = partial(loading, leftover.file, self._new_folder())
+        steps = partial(loading, leftover.file, self._new_folder(), self._session.on_disk)
         self._session.queue.start(tr("recovering {called}", called=_called(leftover)), steps, callbacks)
 
     def discard(self, leftover: Leftover) -> None:
@@ -248,6 +249,8 @@ class Recovery(QObject):
             self._tracer.remember(document.target, project.picture)
         self._pending = leftover
         path = leftover.note.path if leftover.note is not None else ""
+        if leftover.note is not None and path:  # what the lost session knew of the file
+            self._session.on_disk[Path(path)] = leftover.note.digest
         self.recovered.emit(document, Path(path) if path else None)
         self._session.set_status(tr("Recovered {name}. Not saved yet.", name=_called(leftover)))
         if self._job is not None:  # what it keeps was given up, and says nothing about what was recovered

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,6 +23,8 @@ from kirigami_studio.outlines.outline import Outline
 SHOWN_SIDE = 1200
 #: Any width would do: what is shown is scaled.
 WIDTH_MM = 100.0
+#: Seconds of processor time that a document may take to be drawn, and how much smaller it is drawn before.
+MOST_SECONDS, REDUCTIONS = 3.0, (128, 64, 32, 16, 8, 4, 2, 1)
 #: Command lines have no display; text needs an application all the same, because it has the fonts.
 _APPLICATION: list[QGuiApplication] = []
 
@@ -55,6 +58,15 @@ def painting_artwork(
     yield ShownArtwork(artwork, sheet, shown, complex(page.low[0], page.high[1]), page.dots_per_mm)
 
 
+def _drawn(renderer: QSvgRenderer, size: QSize) -> QImage:
+    image = QImage(QSize(1, 1).expandedTo(size), QImage.Format.Format_ARGB32_Premultiplied)
+    image.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(image)
+    renderer.render(painter)
+    painter.end()
+    return image
+
+
 def svg_to_png(content: bytes, side: int) -> bytes:
     """Draw an SVG document on nothing, for the window and for the command line, which has no drawing of its own.
 
@@ -69,7 +81,7 @@ def svg_to_png(content: bytes, side: int) -> bytes:
     Raises
     ------
     TargetError
-        It cannot be drawn.
+        It cannot be drawn, or not in a few seconds.
     """
     if QGuiApplication.instance() is None:
         _APPLICATION.append(QGuiApplication(["kirigami-studio", "-platform", "offscreen"]))
@@ -77,12 +89,12 @@ def svg_to_png(content: bytes, side: int) -> bytes:
     page = renderer.viewBoxF().size() if not renderer.viewBoxF().isEmpty() else renderer.defaultSize().toSizeF()
     if not renderer.isValid() or page.isEmpty():
         raise TargetError("artwork.svg_not_drawn")
-    size = QSize(1, 1).expandedTo((page * (side / max(page.width(), page.height()))).toSize())
-    image = QImage(size, QImage.Format.Format_ARGB32_Premultiplied)
-    image.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(image)
-    renderer.render(painter)
-    painter.end()
+    # Nothing can stop a drawing that is under way: small ones tell how long the next, of twice the side, may take.
+    for reduction in REDUCTIONS:
+        begun = time.thread_time()
+        image = _drawn(renderer, (page * (side / reduction / max(page.width(), page.height()))).toSize())
+        if reduction > 1 and time.thread_time() - begun > MOST_SECONDS / 4:
+            raise TargetError("artwork.svg_too_slow", seconds=MOST_SECONDS)
     stored = QByteArray()
     buffer = QBuffer(stored)
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)

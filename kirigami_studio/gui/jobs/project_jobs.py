@@ -25,12 +25,24 @@ if TYPE_CHECKING:
     from kirigami_studio.project.store import Opened
 
 
+#: SHA-256 of project files as a window read or wrote them last; only its jobs write here, one after the other.
+OnDisk = dict[Path, str]
+
+
 @dataclass(frozen=True, slots=True)
 class Saved:
     """A project file that was written; ``left_out`` says what could not be saved with it, a sentence, or ""."""
 
     path: Path
     left_out: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ChangedOnDisk:
+    """A project file that was not written: it is another one than this window read or wrote; ``digest`` is its own."""
+
+    path: Path
+    digest: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,24 +106,31 @@ def _finished(path: Path) -> Iterator[Pair]:
         yield Pair(path, target, candidate, design)
 
 
-def saving(document: Document, picture: Picture | None, path: Path, cancel: Cancel) -> Iterator[Saved]:
-    """Write the project file."""
+def saving(
+    document: Document, picture: Picture | None, path: Path, on_disk: OnDisk, cancel: Cancel
+) -> Iterator[Saved | ChangedOnDisk]:
+    """Write the project file, unless somebody else has changed it since it was read or written here."""
     from kirigami_studio.project import store
 
+    known, found = on_disk.get(path), store.digest_on_disk(path)
+    if known and found and found != known:
+        yield ChangedOnDisk(path, found)
+        return
     kept, left_out = None, ""
     try:
         kept = stored(picture)
     except ProjectError as error:
         left_out = tr("The target's photo was not saved with the project. {reason}", reason=error)
-    store.save(document, path, kept)
+    on_disk[path] = store.save(document, path, kept)
     yield Saved(path, left_out)
 
 
-def loading(path: Path, folder: Path, cancel: Cancel) -> Iterator[Project]:
+def loading(path: Path, folder: Path, on_disk: OnDisk, cancel: Cancel) -> Iterator[Project]:
     """Read a project file; its picture is written into a folder of its own inside ``folder``."""
     from kirigami_studio.project import store
 
     opened = store.load_all(path)
+    on_disk[path] = opened.digest
     picture, notes = None, opened.notes
     try:
         picture = extracted_picture(opened, folder)
