@@ -46,6 +46,25 @@ INCLUDED = re.compile(r"^<!-- (?P<file>[\w./-]+\.md): (?P<heading>[^>]+) -->$", 
 FORMULA = re.compile(r'<(?P<tag>span|div) class="arithmatex">\\[(\[](?P<tex>.*?)\\[)\]]</(?P=tag)>', re.DOTALL)
 
 
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Pages of ``docs`` that the navigation does not name come last in its reference: none is lost."""
+    named = set(_named(config.nav))
+    others = sorted(path.name for path in (REPOSITORY / "docs").glob("*.md") if path.name not in named)
+    next(part["Reference"] for part in config.nav or () if "Reference" in part).extend(others)
+    return config
+
+
+def _named(entries: object) -> Iterator[str]:
+    """All pages of a navigation."""
+    if isinstance(entries, str):
+        yield entries
+    elif isinstance(entries, dict):
+        yield from _named(list(entries.values()))
+    elif isinstance(entries, list):
+        for entry in entries:
+            yield from _named(entry)
+
+
 def on_files(files: Files, *, config: MkDocsConfig) -> Files:
     """Add the pages and pictures from elsewhere, and the table of commands."""
     pictures = {

@@ -245,7 +245,7 @@ def paths() -> bytes:
 
 
 @cache
-def _errors() -> tuple[Curve, Curve]:
+def errors() -> tuple[Curve, Curve]:
     """Largest error of solving and of marching, as log10 of unit cells, for each grid."""
     solved, marched = [], []
     for size in GRIDS:
@@ -273,7 +273,7 @@ def _miss(ratios: RatioField, voids: FloatArray) -> float:
 
 def exactness() -> bytes:
     """Errors against the size of the grid."""
-    return LineChart("rows and columns", "log10 of the largest error, unit cells", _errors()).svg()
+    return LineChart("rows and columns", "log10 of the largest error, unit cells", errors()).svg()
 
 
 def _matched(points: FloatArray, target: Outline) -> ShapeMatch:

@@ -37,8 +37,8 @@ SIZE, BAND = QSize(1280, 720), 56
 FRAMES_A_SECOND = 10
 #: Pixels that the pointer goes in a second, and how long it takes at least.
 POINTER_SPEED, LEAST_MOVE = 900.0, 0.4
-#: While a run goes on, so many seconds become one of the film.
-SHORTER = 1.6
+#: While the generator is loaded, so many seconds become one of the film.
+SHORTER = 4.0
 #: Seconds that a press of the button is seen.
 PRESSED = 0.2
 #: The heart's width, and the width given to one connector, mm.
@@ -105,7 +105,7 @@ class Screencast(Session):
         self.until(lambda: window.stage.empty.ready, "the sample did not come")
         window.connections.first_start.decline()
         self.say("Kirigami Studio: from a silhouette to a cut file, in two minutes")
-        self.live(4.0)
+        self.live(6.0)
         self.choose_target()
         self.size_and_material()
         self.generate_designs()
@@ -136,7 +136,7 @@ class Screencast(Session):
         self.hold(0.8)
         press_key(picker, Qt.Key.Key_Return)
         self.until(lambda: self._target_name() == "heart", "the heart did not load")
-        self.live(2.5)
+        self.live(3.5)
 
     def size_and_material(self) -> None:
         """How large the heart is to be, and what it is cut from."""
@@ -148,7 +148,7 @@ class Screencast(Session):
         material = self.window.fabrication.material
         self.go_to(material)
         material.showPopup()
-        self.hold(2.6)
+        self.hold(3.2)
         material.hidePopup()
         self.hold(0.6)
 
@@ -157,10 +157,11 @@ class Screencast(Session):
         self.say("3   Generate: a model draws designs, and each is fitted on the exact geometry")
         self.window.settings.candidates.setValue(DESIGNS)
         self.press_on(self.window.run.generate)
-        self.during(lambda: self.window.controller.running or not self.window.gallery.view.model_.entries, 22.0)
+        self.during(lambda: not self.window.gallery.view.model_.entries, 4.0, SHORTER)
+        self.during(lambda: self.window.controller.running, 20.0)
         self.say("Best first: match, evenness, and whether it can be cut")
         self.during(self._not_judged, 6.0)
-        self.hold(3.0)
+        self.hold(4.5)
 
     def _not_judged(self) -> bool:
         verdict = self.window.controller.verdict
@@ -173,7 +174,7 @@ class Screencast(Session):
         self.hold(1.5)
         bar = self.window.stage.compare.bar
         self.drag(bar.slider, bar.set_phi, 0.0, 80.0, 2.5)
-        self.hold(2.0)
+        self.hold(3.5)
         bar.set_phi(0.0)
         self.press_on(self.window.stage.compare.leave)
         self.hold(0.5)
@@ -187,7 +188,7 @@ class Screencast(Session):
         self.drag(bar.slider, bar.set_phi, 180.0, 0.0, 5.0)
         self.say("The line below tells how the real sheet does, closed on its connectors in a simulation")
         self.go_to(self.window.stage.as_cut)
-        self.hold(4.0)
+        self.hold(5.0)
 
     def connectors(self) -> None:
         """The cuts, one wider connector, and the order of cutting."""
@@ -230,7 +231,7 @@ class Screencast(Session):
         self.press_on(self.window.fabrication.export)
         dialogs = self.window.dialogs
         self.during(lambda: dialogs.report is None, 3.0)
-        self.hold(7.0)
+        self.hold(8.0)
         dialogs.close_report()
 
     def show_file(self) -> None:
@@ -244,9 +245,9 @@ class Screencast(Session):
         order = len(content.paths)
         for step in range(1, 26):
             self.film.add(self.composed(file_picture(content, SIZE, math.ceil(order * step / 25)), False), 0.1)
-        self.film.add(self.composed(drawn, False), 3.0)
-        self.say("Cut it, push two opposite corners together, and it is a heart")
         self.film.add(self.composed(drawn, False), 4.0)
+        self.say("Cut it, push two opposite corners together, and it is a heart")
+        self.film.add(self.composed(drawn, False), 5.0)
 
     # how it is filmed ------------------------------------------------------------------------------------------------
 
@@ -269,14 +270,16 @@ class Screencast(Session):
                 QApplication.processEvents()
             self.shoot(1.0 / FRAMES_A_SECOND)
 
-    def during(self, busy: Callable[[], bool], most: float) -> None:
-        """Film faster while something is busy; no more than ``most`` seconds of film, however long it takes."""
+    def during(self, busy: Callable[[], bool], most: float, shorter: float = 1.0) -> None:
+        """Film while something is busy, ``shorter`` seconds in one of the film; no more than ``most`` seconds of film,
+        however long it takes.
+        """
         filmed, begin = 0.0, time.monotonic()
         while busy():
             if time.monotonic() - begin > 300.0:
                 raise SessionError("The window did not come to an end.")
             QApplication.processEvents()
-            if filmed < most and time.monotonic() - begin > SHORTER * filmed:
+            if filmed < most and time.monotonic() - begin > shorter * filmed:
                 self.shoot(1.0 / FRAMES_A_SECOND)
                 filmed += 1.0 / FRAMES_A_SECOND
         self.hold(0.3)

@@ -61,9 +61,9 @@ class TutorialPictures(Session):
         picker = window.dialogs.picker
         if picker is None:
             raise SessionError("The library did not open.")
-        press(picker.search, "heart")
         self.settle()
         self.shrunk("library", picker)
+        press(picker.search, "heart")
         press_key(picker, Qt.Key.Key_Return)
         self.until(lambda: self._target_name() == "heart", "the heart did not load")
         window.target.opened.width_.setValue(HEART_MM)

@@ -13,6 +13,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+import kirigami_studio
 from kirigami_studio.cli.parser import SUB_COMMANDS
 from kirigami_studio.foundation.resources import resource
 
@@ -137,3 +138,16 @@ def test_that_public_python_names_are_in_the_reference(site: Path) -> None:
     text = (site / "api-reference.html").read_text(encoding="utf-8")
     for name in ("designs", "targets", "masks", "judge", "baseline", "simulate", "score"):
         assert f'id="kirigami_studio.problem.{name}"' in text
+    homes = {name: module for module, names in kirigami_studio._MODULES.items() for name in names}
+    assert [name for name in kirigami_studio.__all__ if f'id="kirigami_studio.{homes[name]}.{name}"' not in text] == []
+
+
+def test_that_every_page_can_be_reached_from_the_start(site: Path, pages: dict[Path, PageReader]) -> None:
+    reached, todo = set(), [site / "index.html"]
+    while todo:
+        page = todo.pop()
+        if page in reached or page not in pages:
+            continue
+        reached.add(page)
+        todo += [(page.parent / unquote(urlsplit(link).path)).resolve() for link in pages[page].links]
+    assert sorted(page.name for page in set(pages) - reached) == []
