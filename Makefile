@@ -16,7 +16,7 @@ QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/un
   --ignore=tests/unit/evaluate/test_siou.py
 
 .PHONY: help setup run test fuzz quick lint bench consumers demo states pairs pictures shapes figures animation site \
-  site-serve messages clean
+  site-serve messages package release clean
 .DEFAULT_GOAL := help
 
 help:
@@ -37,6 +37,8 @@ help:
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make site    build the documentation into build/site; works without a network once .venv is there"
 	@echo "make messages  collect all sentences for translators in resources/locale"
+	@echo "make package   wheel, source archive, frozen program and Debian package of this tree in dist, each tried as installed"
+	@echo "make release   the same of a commit whose version is in the changelog, with checksums"
 	@echo "make clean   remove what the other targets made, except .venv"
 
 setup: $(STAMP)
@@ -148,6 +150,13 @@ site-serve: setup $(DOCS_STAMP)
 messages: setup
 	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
 	  -o resources/locale/kirigami_studio.pot kirigami_studio
+
+# docs/releasing.md says what has to agree.  Both make environments of their own, below build.
+package:
+	$(PYTHON) packaging/release.py --any-tree
+
+release:
+	$(PYTHON) packaging/release.py
 
 clean:
 	rm -rf out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks

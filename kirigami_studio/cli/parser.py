@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
@@ -11,6 +12,7 @@ from typing import Any
 from kirigami_studio import __version__
 from kirigami_studio.cli.option_types import amount, angle, copies, count, name, number, positive, share, whole
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.starts import USUAL_WEIGHT
 from kirigami_studio.pipeline.request import RIMS
@@ -826,7 +828,9 @@ def build_parser() -> argparse.ArgumentParser:
             child.add_argument(*names, **settings)
         # A suite that has --variants must not take another suite's --variant for it.
         child.allow_abbrev = first != "benchmark"
-        child.set_defaults(run=_late(command.run))
+        child.set_defaults(
+            run=_refuse_training if first == "train" and getattr(sys, "frozen", False) else _late(command.run)
+        )
     return parser
 
 
@@ -847,6 +851,11 @@ def open_window(arguments: argparse.Namespace) -> int:
     from kirigami_studio.gui.application import run
 
     return run(["kirigami-studio", *arguments.shown])
+
+
+def _refuse_training(arguments: argparse.Namespace) -> int:
+    """Frozen programs come without what torch's optimisers need."""
+    raise UsageError("training.needs_python")
 
 
 def _late(place: str) -> Callable[[argparse.Namespace], int]:

@@ -22,7 +22,7 @@ LINK = re.compile(r"\[[^\]\n]*\]\(\s*<?([^)\s#>]+)")
 PATH = re.compile(r"(?<![\w./:-])(?:[\w-]+/)+[\w-]+(?:\.[\w-]+)*/?(?![\w/*(])")
 COMMAND = re.compile(r"kirigami-studio ([^`#\n|]+)")
 #: Made by the program or by ``make``.
-MADE = ("out/", "runs/")
+MADE = ("out/", "runs/", "build/", "dist/")
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,9 @@ from kirigami_studio.foundation.words import mark
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # training
     "training.unknown_family": mark("There is no family of designs called '{family:.40}'. Choose one of {choices}."),
+    "training.needs_python": mark(
+        "This packaged program designs but does not train. Install the wheel of the same version for that."
+    ),
     "training.no_samples_wanted": mark("A data set needs at least 1 sample, got {count_wanted}."),
     "training.fields_ended": mark("The data set could not be filled: no more fields to try."),
     "training.mask_differs": mark(
