@@ -20,6 +20,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
+from pymdownx.slugs import slugify
 
 from kirigami_studio.cli.parser import GROUPS, SUB_COMMANDS, build_parser
 
@@ -47,7 +48,10 @@ FORMULA = re.compile(r'<(?P<tag>span|div) class="arithmatex">\\[(\[](?P<tex>.*?)
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
-    """Pages of ``docs`` that the navigation does not name come last in its reference: none is lost."""
+    """Pages of ``docs`` that the navigation does not name come last in its reference: none is lost.  Anchors are those
+    of GitHub, so that links hold there and here.
+    """
+    config.mdx_configs.setdefault("toc", {})["slugify"] = slugify(case="lower")
     named = set(_named(config.nav))
     others = sorted(path.name for path in (REPOSITORY / "docs").glob("*.md") if path.name not in named)
     next(part["Reference"] for part in config.nav or () if "Reference" in part).extend(others)
