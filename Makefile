@@ -15,14 +15,15 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test fuzz quick lint bench consumers demo states pairs pictures shapes figures animation site \
-  site-serve messages package release clean
+.PHONY: help setup run test test-all fuzz quick lint bench consumers demo states pairs pictures shapes figures \
+  animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make setup   create .venv with everything that the program and its tests need"
 	@echo "make run     open the window (without a display: play a session off-screen into out/)"
-	@echo "make test    run lint, then every test"
+	@echo "make test    run lint, then the tests"
+	@echo "make test-all  the same with the long tests: before a release"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
@@ -67,8 +68,13 @@ run: setup
 test: setup
 	@sh packaging/system_libraries.sh tests & libraries=$$!; \
 	  $(MAKE) --no-print-directory lint; right=$$?; wait $$libraries && exit $$right
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock
-	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock"
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock $(LENGTH)
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock" $(LENGTH)
+
+# With the tests marked `long`, which make half of the time: before a release.
+test-all:
+	@$(MAKE) --no-print-directory test LENGTH=
+LENGTH ?= --short
 
 #: Damaged files for every reader, until INPUTS are read: make fuzz INPUTS=20000 SEED=7
 INPUTS ?= 1000

@@ -26,8 +26,9 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let golden files be written anew on purpose."""
+    """Let golden files be written anew on purpose, and a run be short."""
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
+    parser.addoption("--short", action="store_true", help="leave long tests out, and most cases of some")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -40,14 +41,33 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return None if "mark.clock" in text or "BenchmarkFixture" in text else True
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark what times something: ``performance`` but for figures of quality, and whatever asks for a benchmark."""
+    if config.getoption("short"):
+        left_out = long_ones(items)
+        config.hook.pytest_deselected(items=list(left_out))
+        items[:] = [item for item in items if item not in left_out]
     performance = Path(__file__).parent / "performance"
     for item in items:
         path = Path(item.path)
         timed = performance in path.parents and not path.stem.endswith("_quality")
         if timed or "benchmark" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.clock)
+
+
+def long_ones(items: list[pytest.Item]) -> set[pytest.Item]:
+    """What ``--short`` leaves out: tests marked ``long``; ``long(but=N)`` keeps N cases, evenly spread."""
+    cases: dict[tuple[Path, str], list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("long") is not None:
+            cases.setdefault((Path(item.path), item.nodeid.partition("[")[0]), []).append(item)
+    left_out: set[pytest.Item] = set()
+    for same in cases.values():
+        mark = same[0].get_closest_marker("long")
+        kept = 0 if mark is None else int(mark.kwargs.get("but", 0))
+        stay = {case * len(same) // kept for case in range(kept)}
+        left_out |= {item for number, item in enumerate(same) if number not in stay}
+    return left_out
 
 
 @pytest.fixture(autouse=True)

@@ -71,6 +71,7 @@ def test_that_an_edge_cut_follows_the_pointer_on_the_flat_sheet_and_is_one_undo_
     assert chosen(by_hand) == after
 
 
+@pytest.mark.long(but=2)
 @pytest.mark.parametrize("mouth", [TOP, RIGHT, BOTTOM, LEFT_SIDE])
 def test_that_the_cut_stays_at_the_pointer_while_the_sheet_is_open(
     by_hand: MainWindow, until: Until, mouth: int

@@ -42,6 +42,7 @@ def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
     assert designed.fabrication.options.fold.isVisible()
 
 
+@pytest.mark.long(but=3)
 @pytest.mark.parametrize(
     ("width", "height", "rows"),
     [(1000, 640, 1.5), (1280, 720, 2.0), (1366, 768, 2.0), (1440, 900, 2.0), (1600, 1000, 2.0), (1920, 1080, 2.0)],

@@ -16,6 +16,7 @@ from kirigami_studio.outlines.silhouettes import load
 pytestmark = pytest.mark.torch
 
 
+@pytest.mark.long
 def test_that_a_centred_sheet_closes_where_a_straight_one_jams() -> None:
     target = load("circle")
     (centred,) = measure_as_cut([target], [0.5], grid=(3, 3), k=1).sheets

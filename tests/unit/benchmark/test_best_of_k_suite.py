@@ -37,6 +37,7 @@ def figures(targets: dict[str, list[Outline]], store: RunStore) -> BestOfKFigure
     return measure_best_of_k(targets, METHODS, 4, SMALL, store)
 
 
+@pytest.mark.long
 def test_that_more_runs_are_never_worse_and_cost_more(figures: BestOfKFigures) -> None:
     curves = figures.families["reachable"]
     assert tuple(curves) == METHODS

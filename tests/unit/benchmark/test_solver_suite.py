@@ -53,6 +53,7 @@ def figures(targets: dict[str, list[Outline]], store: RunStore) -> SolverFigures
     return measure_solvers(targets, METHODS, (0, 1), SMALL, store)
 
 
+@pytest.mark.long
 def test_that_every_method_has_a_row_beside_the_papers(figures: SolverFigures) -> None:
     table = figures.families["reachable"]
     assert tuple(table.rows) == METHODS

@@ -19,6 +19,7 @@ from kirigami_studio.training.dataset import generate_split
 pytestmark = [pytest.mark.slow, pytest.mark.torch]
 
 
+@pytest.mark.long
 def test_that_a_suite_has_the_figures_that_it_has_here(workers: Workers) -> None:
     figures = []
     for who in (HERE, workers):

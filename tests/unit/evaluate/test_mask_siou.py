@@ -16,6 +16,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines import silhouettes
 
 
+@pytest.mark.long
 def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping[str, np.ndarray]) -> None:
     targets, candidates = oracles["near_target_mask"], oracles["near_candidate_mask"]
     pairs = list(zip(candidates, targets, strict=True))

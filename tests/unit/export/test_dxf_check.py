@@ -41,6 +41,7 @@ def sentences(report: FileReport) -> str:
     return " | ".join(problem.text for problem in report.problems)
 
 
+@pytest.mark.long(but=4)
 @pytest.mark.parametrize(("rows", "columns"), [(4, 5), (10, 10), (24, 24)])
 @pytest.mark.parametrize("version", ["R2010", "R12"])
 def test_that_our_own_files_pass_with_the_numbers_of_their_plan(

@@ -104,6 +104,7 @@ def test_that_trimmed_shapes_are_sound_as_files(name: str, keep: float, tmp_path
     check(deploy(RatioField.from_log10(z)), SHAPES[name], 0.0, "film-uv", keep, tmp_path)
 
 
+@pytest.mark.long(but=8)
 @pytest.mark.parametrize("seed", range(30))
 def test_that_random_trims_are_sound_as_files(seed: int, tmp_path: Path) -> None:
     random = np.random.default_rng(seed)

@@ -62,6 +62,7 @@ def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Requ
     assert first.candidates == second.candidates
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("two_rotations")
 def test_that_every_design_of_a_run_tells_how_it_shows_a_second_target() -> None:
     second = SecondTarget(load("circle"), math.radians(50.0), 1.0)

@@ -156,6 +156,7 @@ def test_that_a_fix_is_one_step_that_can_be_undone_and_leaves_the_files_alone(
     assert history.undo() and history.document == document
 
 
+@pytest.mark.long
 def test_that_a_coarser_grid_is_offered_where_panels_leave_no_room_and_takes_the_place_of_all_designs(
     design: Candidate, target: Outline
 ) -> None:

@@ -51,6 +51,7 @@ def rows(targets: Targets) -> tuple[FloatArray, FloatArray]:
     return targets.z.double().numpy().reshape(-1, *GRID), targets.polygons.double().numpy()
 
 
+@pytest.mark.long
 def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None:
     # Each is brought to unit area by itself, so poor fits lose a little.
     assert len(fits.z) >= 8
@@ -81,6 +82,7 @@ def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
         list(fit_shapes(tmp_path / "parts.npz", 9, 6, GRID, block_size=2))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_two_processes_make_the_fits_of_one(tmp_path: Path) -> None:
     path = tmp_path / "two.npz"

@@ -52,6 +52,7 @@ def said(folder: Path, rank: int) -> dict:
     return json.loads((folder / f"rank-{rank}.json").read_text())
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_the_gradient_of_two_halves_is_that_of_the_batch(folder: Path) -> None:
     assert max(said(folder, rank)["difference"] for rank in (0, 1)) < 1e-5
@@ -78,6 +79,7 @@ def test_that_a_run_of_two_is_gone_on_with_by_two_as_if_it_had_not_stopped(folde
     assert len(Checkpoint.load(folder / "whole" / CHECKPOINT).others) == 1
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_a_run_is_gone_on_with_by_another_number_of_processes(folder: Path) -> None:
     assert Checkpoint.load(folder / "begun by one" / CHECKPOINT).step == SETTINGS.steps

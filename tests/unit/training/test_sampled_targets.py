@@ -35,6 +35,7 @@ def heaviest(points: torch.Tensor) -> torch.Tensor:
     return (place * place.abs().square()).mean(dim=1)
 
 
+@pytest.mark.long
 def test_that_poses_are_upright_in_half_and_quarter_turns_in_another_quarter_of_the_rows() -> None:
     shapes = silhouettes(random_fields(OWN, 1, 0.5), OWN)
     upright = turned(shapes, -square_pose(shapes))
@@ -112,6 +113,7 @@ def test_that_targets_from_a_picture_are_where_they_were_but_not_quite() -> None
     assert 5e-4 < float(gap.mean()) < 0.02 and float(gap.max()) < 0.04
 
 
+@pytest.mark.long
 def test_that_only_a_share_of_the_targets_comes_from_a_picture() -> None:
     shapes = silhouettes(random_fields(OWN, 200), OWN)
     clean, mixed = (source(pictured=share).targets(shapes, 0) for share in (0.0, 0.3))

@@ -37,6 +37,7 @@ def train(
     return list(train_flow(settings, folder, CPU, lambda network: {}, validate_every=4, sources=sources, **options))
 
 
+@pytest.mark.long(but=1)
 @pytest.mark.parametrize(("coupling", "outline_weight"), [("ot", 0.0), ("conditional-ot", 50.0)])
 def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, coupling: str, outline_weight: float) -> None:
     settings = replace(TINY, coupling=coupling, outline_weight=outline_weight)
@@ -74,6 +75,7 @@ def test_that_validation_draws_from_it(tmp_path: Path) -> None:
     assert 0.3 < record["structured_iou"] <= 1.0
 
 
+@pytest.mark.long
 def test_that_fits_take_part_and_a_warm_start_begins_with_its_weights(tmp_path: Path) -> None:
     train(TINY, tmp_path / "first")
     store_model("prior", trained_network(TINY, tmp_path / "first", CPU), tmp_path / "first", {})
