@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test test-all fuzz quick lint bench consumers demo states pairs pictures shapes figures \
+.PHONY: help setup run test test-all fuzz soak quick lint bench consumers demo states pairs pictures shapes figures \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -25,6 +25,7 @@ help:
 	@echo "make test    run lint, then the tests"
 	@echo "make test-all  the same with the long tests: before a release"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
+	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
 	@echo "make bench   time the exact geometry"
@@ -79,8 +80,19 @@ LENGTH ?= --short
 #: Damaged files for every reader, until INPUTS are read: make fuzz INPUTS=20000 SEED=7
 INPUTS ?= 1000
 SEED ?= 0
+#: READERS="svg dxf" for some of them; JOBS processes at a time.  A stopped run goes on where it was.
+READERS ?=
+JOBS ?= 2
 fuzz: setup
-	OMP_NUM_THREADS=1 $(BIN)/python tests/fuzzed_readers.py --inputs $(INPUTS) --seed $(SEED) --out build/fuzz
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python tests/fuzzed_readers.py --inputs $(INPUTS) --seed $(SEED) \
+	  --jobs $(JOBS) --out build/fuzz $(READERS)
+
+#: One window for an hour: GENERATIONS runs called off, EDITS undone; what it holds meanwhile, a line of JSON each.
+GENERATIONS ?= 500
+EDITS ?= 500
+soak: setup
+	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python tests/soaked_window.py \
+	  --generations $(GENERATIONS) --edits $(EDITS)
 
 quick: setup
 	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \

@@ -8,9 +8,11 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import stat
 import sys
 import tempfile
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,6 +22,9 @@ from kirigami_studio.foundation.errors import ExportError
 
 #: Permissions of files that did not exist before: everybody may read them.
 NEW_FILE_MODE = 0o644
+#: Part of the names of files that are being written, and seconds after which nobody is writing one any more.
+PART, STALE_SECONDS = ".kirigami-part", 3600.0
+LEFT_BEHIND = re.compile(r"\..*\.[a-z0-9_]{8}" + re.escape(PART) + r"(\.\w+)?", re.DOTALL)
 #: Largest settings file (bytes), and dots of a line: Python's reader needs a gigabyte for a key of 20 000 parts.
 LARGEST_SETTINGS, MOST_DOTS = 100_000, 200
 
@@ -124,7 +129,8 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
         mode = stat.S_IMODE(place.stat().st_mode) if place.exists() else NEW_FILE_MODE
         # Part of the name, since that of the file may already be as long as a name can be.
         # Only a reader that judges by the ending gets it: what a killed writer leaves must not look like a real file.
-        ending = place.suffix if verify is not None else ""
+        ending = PART + (place.suffix if verify is not None else "")
+        _sweep(place.parent)
         handle, name = tempfile.mkstemp(prefix=f".{place.stem[:40]}.", suffix=ending, dir=place.parent)
         temporary = Path(name)
         with os.fdopen(handle, "wb") as stream:
@@ -142,6 +148,17 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
         if temporary is not None:
             with contextlib.suppress(OSError):
                 temporary.unlink()
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what writers left in a folder that were killed long ago."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        latest = time.time() - STALE_SECONDS
+        for entry in entries:
+            if LEFT_BEHIND.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                with contextlib.suppress(OSError):
+                    if entry.stat(follow_symlinks=False).st_mtime < latest:
+                        Path(entry.path).unlink()
 
 
 def linked_file(path: Path) -> Path:

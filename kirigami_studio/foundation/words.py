@@ -12,6 +12,7 @@ from __future__ import annotations
 import gettext
 import json
 import os
+import re
 import string
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -202,6 +203,18 @@ def _forget(said: str, text: str) -> None:
 
 
 def _put(text: str, values: Mapping[str, object]) -> str:
+    try:
+        return _filled(text, values)
+    except (ValueError, TypeError):
+        # A damaged file has a number where the sentence expects a word, or a list: it is told as it is, shortened.
+        return _filled(_FORMAT.sub(r"{\1}", text), {name: str(value)[:80] for name, value in values.items()})
+
+
+#: A field of a sentence with how its value is written.
+_FORMAT = re.compile(r"\{(\w+):[^{}]*\}")
+
+
+def _filled(text: str, values: Mapping[str, object]) -> str:
     return text.format(**values) if _state.decimal_sign == "." else _numbers.vformat(text, (), values)
 
 

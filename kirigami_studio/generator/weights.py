@@ -216,7 +216,7 @@ def _is_entry(entry: object) -> bool:
     return (
         # A name, not a path that leads elsewhere.
         isinstance(file, str)
-        and bool(file)
+        and 0 < len(file) <= 100
         and "\0" not in file
         and file == PurePath(file).name
         and isinstance(entry.get("sha256"), str)

@@ -34,8 +34,8 @@ class TargetReshaper(QObject):
         self._base: Placed | None = None
         self._result: Placed | None = None
 
-    def take(self, change: Change) -> None:
-        """Carry out a gesture, or say why it is impossible."""
+    def take(self, change: Change) -> bool:
+        """Carry out a gesture, or say why it is impossible; whether it was carried out."""
         context = self._context
         try:
             made = change.make()
@@ -43,12 +43,13 @@ class TargetReshaper(QObject):
             target = drawing.united().target if drawing.objects else None
         except KirigamiError as error:
             self.refused.emit(error)
-            return
+            return False
         for each in (context.placed, *context.drawing.objects, target, *drawing.objects):
             if each is not None:
                 context.remember(each)
         self.edited.emit(self._edit(drawing, target, change))
         context.select(drawing.selected)
+        return True
 
     def _edit(self, drawing: Drawing, target: Placed | None, change: Change) -> Edit:
         document = self._session.document

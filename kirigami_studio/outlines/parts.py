@@ -214,11 +214,17 @@ class SourceParts:
         """Closed parts that do not lie inside another one."""
         closed = [part for part in self.parts if part.is_closed]
         shells = [Polygon(shell(part.region)) for part in closed]
-        tree = shapely.STRtree(shells)
-        inner, around = tree.query(shells, predicate="covered_by")
-        # Of two parts in the same place the first counts.
-        hidden = {i for i, o in zip(inner.tolist(), around.tolist(), strict=True) if shells[o].area > shells[i].area}
-        hidden |= {i for i, o in zip(inner.tolist(), around.tolist(), strict=True) if o < i}
+        # Of two parts in the same place the first counts; hundreds of copies are not compared with each other.
+        first = {each.wkb: index for index, each in reversed([*enumerate(shells)])}
+        several = sorted(first.values())
+        tree = shapely.STRtree([shells[index] for index in several])
+        inner, around = (
+            [several[index] for index in found.tolist()]
+            for found in tree.query([shells[index] for index in several], predicate="covered_by")
+        )
+        hidden = {i for i, o in zip(inner, around, strict=True) if shells[o].area > shells[i].area}
+        hidden |= {i for i, o in zip(inner, around, strict=True) if o < i}
+        hidden |= set(range(len(shells))) - set(several)
         return [part for index, part in enumerate(closed) if index not in hidden]
 
     def chosen(self, words: str) -> tuple[Part, ...]:

@@ -171,11 +171,22 @@ def as_drawn(document: Document, target: Outline) -> Document:
 
 
 def set_guides(document: Document, guides: Guides, gesture: str) -> Edit:
-    """Let other guides lie on the drawing board, by a gesture such as "Move guide"; far off they lie at the limit."""
+    """Let other guides lie on the drawing board, by a gesture such as "Move guide"; far off they lie at the limit.
+
+    Where there would be more than can be kept, those that are there stay.
+    """
     nearer = tuple(
-        tuple(min(max(at, -FARTHEST_GUIDE), FARTHEST_GUIDE) for at in places[:MOST_GUIDES]) for places in guides
+        tuple(min(max(at, -FARTHEST_GUIDE), FARTHEST_GUIDE) for at in _kept_guides(places, before))
+        for places, before in zip(guides, document.guides, strict=True)
     )
     return Edit(gesture, replace(document, guides=(nearer[0], nearer[1])))
+
+
+def _kept_guides(places: tuple[float, ...], before: tuple[float, ...]) -> tuple[float, ...]:
+    if len(places) <= MOST_GUIDES:
+        return places
+    known = set(before)
+    return tuple(sorted(sorted(places, key=lambda at: at not in known)[:MOST_GUIDES]))
 
 
 def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:

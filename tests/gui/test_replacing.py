@@ -147,3 +147,17 @@ def test_that_a_question_about_a_closed_project_goes(pair: MainWindow, until: Un
     pair.controller.open_project(path)
     until(lambda: not asked(pair))
     assert len(bounds(pair)) == 2
+
+
+def test_that_a_question_whose_drawing_is_gone_is_not_dropped_in_silence(pair: MainWindow, until: Until) -> None:
+    open_and_wait(pair, "star", until)
+    pair.controller.targeting.clear()
+    assert not asked(pair)
+    assert [m.sentence for m in pair.messages.messages] == ["star was not taken. Open it again to use it."]
+
+
+def test_that_an_answered_question_is_not_spoken_of_later(pair: MainWindow, until: Until) -> None:
+    open_and_wait(pair, "star", until)
+    answer(pair, "Cancel")
+    pair.controller.targeting.clear()
+    assert pair.messages.messages == ()

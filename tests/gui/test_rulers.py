@@ -104,3 +104,29 @@ def test_that_guides_catch_what_is_drawn_and_what_is_moved(plate: MainWindow) ->
 def test_that_a_number_is_written_where_it_lies_whole_on_its_ruler() -> None:
     assert fits(0, 100.0, 20, 123.0) and not fits(0, 100.0, 20, 122.0)
     assert fits(1, 100.0, 20, 100.0) and not fits(1, 101.0, 20, 100.0) and not fits(1, RULER + 22.0, 20, 100.0)
+
+
+def test_that_a_guide_in_a_drag_follows_an_undo_and_is_put_down_nowhere(plate: MainWindow) -> None:
+    context = plate.target.view.context
+    pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
+    use(plate, Tool.POSE)
+    y = pixel(plate, (0, 23.3))[1]
+    view = plate.target.view
+    send(view, QEvent.Type.MouseButtonPress, 200, y, LEFT, CTRL)
+    send(view, QEvent.Type.MouseMove, 200, y - 40, LEFT, CTRL)
+    plate.controller.undo()
+    steps = len(plate.controller.history.steps)
+    send(view, QEvent.Type.MouseButtonRelease, 200, y - 40, NONE, CTRL)
+    assert context.guides == plate.controller.document.guides == ((), ())
+    assert len(plate.controller.history.steps) == steps
+
+
+def test_that_one_guide_too_many_leaves_those_that_are_there(
+    plate: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.project.edits.MOST_GUIDES", 2)
+    for place in (31.7, 25.0, 10.0):
+        pull(plate, (5, 200), (pixel(plate, (place, 0))[0], 200))
+    context = plate.target.view.context
+    assert list(context.guides[0]) == pytest.approx([25.0, 31.7])
+    assert context.guides == plate.controller.document.guides

@@ -4,6 +4,7 @@ second target.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,7 @@ class TargetConnections(QObject):
         self._errors: list[Message] = []
         self._question: Message | None = None
         self._asked_in = 0  # which project the question is about
+        self._offered: Outline | None = None
         self._shown = Document()
         self.reshaping = TargetReshaper(window.target.view.context, controller.session, self)
         self.discarded = DiscardedDesigns(controller.session, self)
@@ -83,7 +85,10 @@ class TargetConnections(QObject):
 
     def _take_guides(self, gesture: str) -> None:
         session = self._controller.session
-        session.apply(edits.set_guides(session.document, self._window.target.view.context.guides, gesture))
+        context = self._window.target.view.context
+        session.apply(edits.set_guides(session.document, context.guides, gesture))
+        if context.guides != session.document.guides:  # no room for more
+            context.show_guides(session.document.guides)
 
     def _refuse(self, error: KirigamiError) -> None:
         """A shape could not be made; the message stays until one can be."""
@@ -108,12 +113,17 @@ class TargetConnections(QObject):
                 "You drew or changed the target by hand. Replace it with {name}, or add {name} beside it?", name=name
             )
         actions = (
-            (tr("Replace"), partial(self._controller.targeting.set_target, outline)),
-            (tr("Add beside"), partial(self._add_beside, outline)),
-            (tr("Cancel"), lambda: session.set_status(tr("Nothing changed."))),
+            (tr("Replace"), partial(self._answer, partial(self._controller.targeting.set_target, outline))),
+            (tr("Add beside"), partial(self._answer, partial(self._add_beside, outline))),
+            (tr("Cancel"), partial(self._answer, lambda: session.set_status(tr("Nothing changed.")))),
         )
+        self._offered = outline
         self._question, self._asked_in = Message(sentence, Tone.WARNING, actions=actions), session.project
         session.post(self._question)
+
+    def _answer(self, act: Callable[[], None]) -> None:
+        self._drop_question()
+        act()
 
     def _drop_question(self) -> None:
         if self._question is not None:
@@ -124,7 +134,9 @@ class TargetConnections(QObject):
         """Lay a target that was read on the board as one more object, selected, to be moved where it belongs."""
         targeting, panel = self._controller.targeting, self._window.target
         drawing = panel.view.context.drawing
-        self.reshaping.take(Change(tr("Add {name} beside", name=tr(outline.name)), lambda: drawing.beside(outline)))
+        change = Change(tr("Add {name} beside", name=tr(outline.name)), lambda: drawing.beside(outline))
+        if not self.reshaping.take(change):
+            return
         targeting.source_read.emit(targeting.reader.source)
         panel.set_editing(True)
         panel.set_tool(Tool.POSE)
@@ -141,8 +153,14 @@ class TargetConnections(QObject):
 
     def _show_document(self, document: Document) -> None:
         before, self._shown = self._shown, document
-        if not document.drawn_by_hand or self._asked_in != self._controller.session.project:
+        if self._question is not None and self._asked_in != self._controller.session.project:
             self._drop_question()
+        elif self._question is not None and not document.drawn_by_hand:
+            self._drop_question()  # what was drawn is gone by another way, and with it what could be replaced
+            if self._offered is not None:
+                name = tr(self._offered.name)
+                sentence = tr("{name} was not taken. Open it again to use it.", name=name)
+                self._controller.session.post(Message(sentence, Tone.HINT))
         if document.target is not before.target or document.drawing != before.drawing or _moved(document, before):
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:

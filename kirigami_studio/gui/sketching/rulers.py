@@ -36,11 +36,14 @@ class Held:
         Where it lies.
     new : bool
         Whether it comes out of a ruler.
+    shown : int
+        How often guides had been laid on the board when it was taken; more often, an undo changed them meanwhile.
     """
 
     axis: int
     at: float
     new: bool
+    shown: int
 
 
 class Rulers:
@@ -65,13 +68,13 @@ class Rulers:
         """Begin to drag a guide out of a ruler, or the one that is there if it ``takes`` guides; whether one is."""
         axis, place = self.over(pixel), self._context.transform.to_world(pixel)
         if axis is not None:
-            self._held = Held(axis, place[axis], new=True)
+            self._held = Held(axis, place[axis], new=True, shown=self._context.guides_shown)
             return True
         for way in (X, Y) if takes else ():
             near = [at for at in self._context.guides[way] if self._far(at, place[way]) <= REACH]
             if near:
-                self._held = Held(way, near[0], new=False)
                 self._put(way, [at for at in self._context.guides[way] if at != near[0]])
+                self._held = Held(way, near[0], new=False, shown=self._context.guides_shown)
                 return True
         return False
 
@@ -89,6 +92,8 @@ class Rulers:
         held, self._held = self._held, None
         if held is None:
             return False
+        if self._context.guides_shown != held.shown:  # undone meanwhile: what is there now is what was wanted
+            return True
         stays = pixel.x() >= RULER and pixel.y() >= RULER
         if stays:
             self._put(held.axis, [*self._context.guides[held.axis], held.at])
@@ -107,7 +112,7 @@ class Rulers:
 
     def paint(self, painter: QPainter, transform: ViewTransform, area: QRectF, palette: Palette) -> None:
         """Draw guides, and the rulers on top."""
-        held = self._held
+        held = self._held if self._held is not None and self._held.shown == self._context.guides_shown else None
         painter.setPen(QPen(QColor(palette.accent), 1.0))
         for axis in (X, Y):
             places = [*self._context.guides[axis], *((held.at,) if held is not None and held.axis == axis else ())]

@@ -124,6 +124,7 @@ class SketchContext(QObject):
         self.family, self.bold, self.italic = "", True, False
         self.mirror = Mirror()
         self.guides = NO_GUIDES
+        self.guides_shown = 0  # how often others were laid on the board, as by an undo
         self._nudges = 0
         self._places: dict[tuple[object, ...], Placed] = {}
 
@@ -142,6 +143,7 @@ class SketchContext(QObject):
 
     def show_guides(self, guides: Guides) -> None:
         """Lay other guides on the board."""
+        self.guides_shown += 1
         if guides != self.guides:
             self.guides = guides
             self.repaint.emit()

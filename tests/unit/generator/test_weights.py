@@ -152,6 +152,19 @@ def test_that_the_manifest_lists_variants_and_their_digests(folder: Path) -> Non
     assert digest_of("tiny", folder) == load_model("tiny", folder).digest
 
 
+@pytest.mark.parametrize("backbone", [7, [1, 2], None, {"a": "b"}])
+def test_that_a_backbone_that_is_no_name_is_refused_in_a_sentence(folder: Path, backbone: object) -> None:
+    """Sentences shorten names; what is no name has no such form."""
+    listed = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+    for entry in listed["variants"].values():
+        entry["backbone"] = backbone
+    (folder / "manifest.json").write_text(json.dumps(listed), encoding="utf-8")
+    variant = next(iter(listed["variants"]))
+    with pytest.raises(ModelError) as refusal:
+        load_model(variant, folder)
+    assert str(refusal.value).endswith(".")
+
+
 def test_that_altered_weights_are_refused(folder: Path) -> None:
     path = folder / "tiny.safetensors"
     content = bytearray(path.read_bytes())
