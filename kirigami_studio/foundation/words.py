@@ -205,9 +205,16 @@ def _forget(said: str, text: str) -> None:
 def _put(text: str, values: Mapping[str, object]) -> str:
     try:
         return _filled(text, values)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, RecursionError):
         # A damaged file has a number where the sentence expects a word, or a list: it is told as it is, shortened.
-        return _filled(_FORMAT.sub(r"{\1}", text), {name: str(value)[:80] for name, value in values.items()})
+        return _filled(_FORMAT.sub(r"{\1}", text), {name: _brief(value) for name, value in values.items()})
+
+
+def _brief(value: object) -> str:
+    try:
+        return str(value)[:80]
+    except RecursionError:
+        return "…"
 
 
 #: A field of a sentence with how its value is written.
