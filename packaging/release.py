@@ -51,7 +51,7 @@ def environment() -> Path:
 def install(python: Path, *what: str) -> None:
     """Install into the environment, in the versions that releases are made with."""
     command = [str(python), "-m", "pip", "install", "-q", "-c", str(PINS)]
-    subprocess.run([*command, "--extra-index-url", TORCH_INDEX, *what], check=True)
+    subprocess.run([*command, *what], check=True)
 
 
 def build_python_files(python: Path, out: Path) -> None:
@@ -97,6 +97,8 @@ def make(out: Path) -> None:
     python = environment()
     build_python_files(python, out)
     python = environment()  # empty again: what building needed must not hide what the wheel lacks
+    # By itself: only torch needs the other index, and a machine without a way there may have its wheel.
+    install(python, "--retries", "1", "--extra-index-url", TORCH_INDEX, "torch")
     install(python, str(out / names["wheel"]))
     try_out(python)
     install(python, "pyinstaller")

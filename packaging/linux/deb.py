@@ -96,7 +96,7 @@ def make(folder: Path, out: Path) -> Path:
         encoding="utf-8",
     )
     out.mkdir(parents=True, exist_ok=True)
-    subprocess.run(["dpkg-deb", "--root-owner-group", "-Zxz", "-z9", "--build", str(root), str(out / name)], check=True)
+    subprocess.run(["dpkg-deb", "--root-owner-group", "-Zxz", "-z6", "--build", str(root), str(out / name)], check=True)
     return out / name
 
 
