@@ -337,9 +337,9 @@ def _flattened(entity: DXFEntity, factor: float) -> FloatArray:
             if isinstance(value, float) and not math.isfinite(value):
                 return np.array([[math.nan, math.nan]])
         path = make_path(entity)
-        reached = np.array([(v.x, v.y) for v in path.control_vertices()], dtype=np.float64).reshape(-1, 2)
-        if np.isnan(reached).any():
-            return reached
+        reached = np.array([v.xyz for v in path.control_vertices()], dtype=np.float64).reshape(-1, 3)
+        if np.isnan(reached).any() or np.isinf(reached[:, 2]).any():
+            return np.array([[math.nan, math.nan]])
         if len(reached) and not np.ptp(reached, axis=0).max() * factor <= LARGEST_CURVE_MM:  # infinite ones, too
             raise _TooLargeError
         points = [(v.x, v.y) for v in path.flattening(FLATTEN_MM / factor)]

@@ -210,7 +210,7 @@ def overlap(lines: Sequence[BaseGeometry]) -> Overlap:
     """
     if not lines:
         return Overlap(0.0, None)
-    segments = _segments(lines)
+    segments, repeated = _told_once(_segments(lines))
     first, second = _pairs_within(shapely.STRtree(segments), segments, SAME_LINE_MM)
     earlier = first > second
     ends = shapely.get_coordinates(segments).reshape(-1, 2, 2)
@@ -220,6 +220,10 @@ def overlap(lines: Sequence[BaseGeometry]) -> Overlap:
         if high > low:
             stretches.setdefault(index, []).append((low, high))
     covered = {index: _covered(intervals) for index, intervals in stretches.items()}
+    for index in np.flatnonzero(repeated).tolist():  # every further one lies on the first altogether
+        length = float(segments[index].length)
+        covered[index] = covered.get(index, 0.0) + int(repeated[index]) * length
+        stretches.setdefault(index, []).append((0.0, length))
     if not covered:
         return Overlap(0.0, None)
     longest = max(covered, key=covered.__getitem__)
@@ -234,6 +238,16 @@ def _segments(lines: Sequence[BaseGeometry]) -> npt.NDArray[np.object_]:
     pairs = np.stack([points[:-1], points[1:]], axis=1)[line[:-1] == line[1:]]
     segments: npt.NDArray[np.object_] = shapely.linestrings(pairs[np.any(pairs[:, 0] != pairs[:, 1], axis=1)])
     return segments
+
+
+def _told_once(segments: npt.NDArray[np.object_]) -> tuple[npt.NDArray[np.object_], IntArray]:
+    """Segments that differ (S,), and how many more of each there are (S,): a pile of n has n^2 / 2 pairs."""
+    ends = shapely.get_coordinates(segments).reshape(-1, 2, 2)
+    forwards = (ends[:, 0, 0] < ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] <= ends[:, 1, 1]))
+    rows = np.where(forwards[:, None, None], ends, ends[:, ::-1]).reshape(-1, 4)
+    _, places, counts = np.unique(rows, axis=0, return_index=True, return_counts=True)
+    order = np.argsort(places)
+    return segments[places[order]], np.asarray(counts[order] - 1, dtype=np.int64)
 
 
 def _shared_stretch(one: FloatArray, other: FloatArray) -> tuple[FloatArray, FloatArray]:

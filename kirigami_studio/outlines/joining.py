@@ -23,7 +23,7 @@ SAME_END = 1e-6
 
 
 #: More places where lines may cross, or lie near each other, are a scribble: finding them takes minutes and gigabytes.
-MOST_CROSSINGS, MOST_NEAR = 2_000_000, 10_000_000
+MOST_CROSSINGS, MOST_NEAR = 200_000, 2_000_000
 MOST_VERTICES = 200_000
 #: Pieces of lines that stand for all of them when crossings are estimated.
 SAMPLED = 400
