@@ -55,6 +55,7 @@ TOUCHES = frozenset(
         QEvent.Type.KeyPress,
         QEvent.Type.Wheel,
         QEvent.Type.DragMove,
+        QEvent.Type.Drop,
         QEvent.Type.Resize,
     }
 )
@@ -77,8 +78,12 @@ class FileOpening(QObject):
         return False
 
 
+#: What says that somebody works here: until then the window stays small in memory.
+ACTS = frozenset({QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.Drop})
+
+
 class WarmUp(QObject):
-    """Calls ``act`` once, when the application has had no input for a while and ``busy`` returns False."""
+    """Calls ``act`` once: in the first pause without input after a button or key was pressed, unless ``busy``."""
 
     def __init__(
         self, act: Callable[[], None], busy: Callable[[], bool], parent: QObject, rest_ms: int = REST_MS
@@ -86,6 +91,7 @@ class WarmUp(QObject):
         super().__init__(parent)
         self._act = act
         self._busy = busy
+        self._used = False
         self.timer = QTimer(self)
         self.timer.setInterval(rest_ms)
         self.timer.setSingleShot(True)
@@ -93,15 +99,15 @@ class WarmUp(QObject):
         application = QCoreApplication.instance()
         if application is not None:
             application.installEventFilter(self)
-        self.timer.start()
 
     @property
     def waiting(self) -> bool:
-        """Whether ``act`` has not been called yet."""
+        """Whether it waits for a pause."""
         return self.timer.isActive()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        if event.type() in TOUCHES:
+        self._used = self._used or event.type() in ACTS
+        if self._used and event.type() in TOUCHES:
             self.timer.start()
         return False
 

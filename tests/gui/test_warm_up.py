@@ -19,14 +19,26 @@ from kirigami_studio.gui.jobs import importing
 
 def test_that_it_happens_once_after_a_rest(qtbot: QtBot) -> None:
     calls: list[int] = []
-    owner = QObject()
+    owner, widget = QObject(), QWidget()
+    qtbot.addWidget(widget)
     warm = WarmUp(lambda: calls.append(1), lambda: False, owner, rest_ms=20)
+    qtbot.keyClick(widget, Qt.Key.Key_A)
     qtbot.waitUntil(lambda: bool(calls), timeout=5000)
     assert not warm.waiting and calls == [1]
-    widget = QWidget()
-    qtbot.addWidget(widget)
     qtbot.keyClick(widget, Qt.Key.Key_A)
     assert not warm.waiting
+
+
+def test_that_a_window_that_nobody_uses_stays_small(qtbot: QtBot) -> None:
+    calls: list[int] = []
+    owner, widget = QObject(), QWidget()
+    qtbot.addWidget(widget)
+    warm = WarmUp(lambda: calls.append(1), lambda: False, owner, rest_ms=1)
+    qtbot.mouseMove(widget)  # a pointer on its way to elsewhere
+    qtbot.wait(50)
+    assert not warm.waiting and calls == []
+    qtbot.mouseClick(widget, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: bool(calls), timeout=5000)
 
 
 def test_that_input_puts_it_off(qtbot: QtBot) -> None:
@@ -34,6 +46,7 @@ def test_that_input_puts_it_off(qtbot: QtBot) -> None:
     qtbot.addWidget(widget)
     warm = WarmUp(lambda: None, lambda: False, owner, rest_ms=60_000)
     timer = warm.timer
+    qtbot.keyClick(widget, Qt.Key.Key_A)
     timer.setTimerType(Qt.TimerType.PreciseTimer)  # coarse ones are moved about by seconds
     timer.start()
     qtbot.wait(30)
@@ -47,13 +60,15 @@ def test_that_input_puts_it_off(qtbot: QtBot) -> None:
 def test_that_it_waits_while_a_job_runs(qtbot: QtBot) -> None:
     calls: list[int] = []
     asked: list[int] = []
-    owner = QObject()
+    owner, widget = QObject(), QWidget()
+    qtbot.addWidget(widget)
 
     def busy() -> bool:
         asked.append(1)
         return len(asked) < 3
 
     WarmUp(lambda: calls.append(len(asked)), busy, owner, rest_ms=10)
+    qtbot.keyClick(widget, Qt.Key.Key_A)
     qtbot.waitUntil(lambda: bool(calls), timeout=5000)
     assert calls == [3]
 
