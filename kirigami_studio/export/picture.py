@@ -5,15 +5,18 @@ The colours of all exported pictures and drawings are here, as red, green, blue 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import struct
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
+from io import SEEK_END, BytesIO
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw
-from PIL.PngImagePlugin import PngInfo
+from PIL.PngImagePlugin import PngInfo, putchunk
 
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.provenance import origin_facts
@@ -112,6 +115,34 @@ def text_chunks(facts: Mapping[str, str]) -> PngInfo:
     for name, text in facts.items():
         texts.add_itxt(name, text)
     return texts
+
+
+def png_of_bands(size: tuple[int, int], bands: Iterable[NDArray[np.uint8]], facts: Mapping[str, str]) -> bytes:
+    """A PNG of a bitmap that is never held as a whole.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Width and height, pixels.
+    bands : iterable of uint8 array (rows, width, 3)
+        From the top, as many rows as the bitmap is high; red, green, blue.
+    facts : mapping of str to str
+        Written as text chunks.
+    """
+    stream = BytesIO(b"\x89PNG\r\n\x1a\n")
+    stream.seek(0, SEEK_END)
+    colours, depth = 2, 8  # red, green, blue of 8 bits; then compression, filter and interlacing as usual
+    putchunk(stream, b"IHDR", struct.pack(">IIBBBBB", *size, depth, colours, 0, 0, 0))
+    for kind, content, *_ in text_chunks(facts).chunks:
+        putchunk(stream, kind, content)
+    packer = zlib.compressobj()
+    for band in bands:
+        rows = np.zeros((len(band), 1 + 3 * size[0]), np.uint8)  # each row begins with its filter: none
+        rows[:, 1:] = band.reshape(len(band), -1)
+        putchunk(stream, b"IDAT", packer.compress(rows.data))
+    putchunk(stream, b"IDAT", packer.flush())
+    putchunk(stream, b"IEND")
+    return stream.getvalue()
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:

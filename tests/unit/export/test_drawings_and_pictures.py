@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from collections.abc import Callable
@@ -19,7 +20,7 @@ from kirigami_studio.export import picture
 from kirigami_studio.export.animation import frame_angles, write_animation
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.pdf import write_pdf
-from kirigami_studio.export.picture import preview, write_png
+from kirigami_studio.export.picture import png_of_bands, preview, write_png
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import write_cut_svg, write_layout_svg
 from kirigami_studio.fabricate.cut_plan import Layer, plan_cuts
@@ -166,3 +167,11 @@ def test_that_the_motion_ends_in_the_pose_of_the_target_and_keeps_its_centre(job
     np.testing.assert_allclose(start.mean(axis=0), end.mean(axis=0), atol=1e-12)
     area = signed_area(start[job.deployment.topology.outline_nodes])
     assert area == pytest.approx(30.0 * 0.2**2)
+
+
+def test_that_a_bitmap_written_in_bands_reads_back_pixel_by_pixel_with_its_facts() -> None:
+    pixels = np.random.default_rng(3).integers(0, 256, (50, 31, 3), dtype=np.uint8)
+    content = png_of_bands((31, 50), (pixels[top : top + 16] for top in range(0, 50, 16)), {"FROM": "größer, 4 x 5"})
+    with Image.open(io.BytesIO(content)) as read:
+        assert read.text == {"FROM": "größer, 4 x 5"}  # type: ignore[attr-defined]
+        np.testing.assert_array_equal(np.asarray(read), pixels)
