@@ -8,6 +8,7 @@ are collected for translators: ``make messages`` looks for ``mark``.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import PurePath
 
 from kirigami_studio.foundation.sentences import (
     designs,
@@ -32,6 +33,7 @@ SENTENCES: Mapping[str, str | tuple[str, str]] = {
 def sentence(code: str, fields: Mapping[str, object]) -> str:
     """The sentence of a problem in the user's language, with its values in place; an unknown code is shown as it is."""
     text = SENTENCES.get(code, code)
+    fields = {name: one_line(value) for name, value in fields.items()}
     if isinstance(material := fields.get("material"), str):
         fields = {**fields, "material": tr(material)}  # the bundled ones have names in every language
     if isinstance(text, tuple):
@@ -39,3 +41,12 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
         others = {name: value for name, value in fields.items() if name != "count"}
         return tr_n(one, many, int(str(fields["count"])), **others)
     return tr(text, **fields)
+
+
+def one_line(value: object) -> object:
+    """A text or path from outside without what would end the line; other values as they are.
+
+    A name in a damaged file may hold anything, and a sentence is one line.
+    """
+    text = str(value) if isinstance(value, (str, PurePath)) else ""
+    return " ".join(text.splitlines()) if len(text.splitlines()) > 1 else value
