@@ -49,6 +49,8 @@ FLATNESS = 1.0 / 4000.0
 
 #: Blocks nest and repeat; a drawing that unfolds to more entities than this is no outline.
 MOST_ENTITIES = 100_000
+#: Entities and blocks that are met while blocks are unfolded.
+MOST_STEPS = 20 * MOST_ENTITIES
 DEEPEST_BLOCK = 16
 MOST_MEGABYTES = 50
 #: Share of the time for the text of a file; its entities take as long again.
@@ -233,6 +235,7 @@ def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], li
     curves: list[DXFGraphic] = []
     hidden: set[str] = set()
     texts: list[DXFGraphic] = []
+    _refuse_bombs(drawing)
     for count, entity in enumerate(_unfolded(drawing.modelspace(), 0, budget)):
         if count >= MOST_ENTITIES:
             raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
@@ -274,6 +277,27 @@ def _texts(entity: DXFGraphic) -> Iterator[Text]:
         up = first - number * LINE
         matrix = ((cos, -sin, at.x - sin * up), (sin, cos, at.y + cos * up))
         yield Text(text, matrix, anchor, layer=entity.dxf.layer, is_cap_height=True)
+
+
+def _refuse_bombs(drawing: Drawing) -> None:
+    """Refuse a drawing whose blocks hold each other so often that unfolding them would take minutes: count first."""
+    known: dict[str, int] = {}
+
+    def steps(entities: Iterable[DXFEntity], depth: int) -> int:
+        return sum(one.mcount * (1 + inside(one, depth + 1)) if isinstance(one, Insert) else 1 for one in entities)
+
+    def inside(insert: Insert, depth: int) -> int:
+        block = insert.block()
+        if block is None or depth > DEEPEST_BLOCK:  # which is told when it is unfolded
+            return 0
+        name = block.name.lower()
+        if name not in known:
+            known[name] = 0  # of a block that holds itself
+            known[name] = steps(block, depth)
+        return known[name]
+
+    if steps(drawing.modelspace(), 0) > MOST_STEPS:
+        raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
 
 
 def _unfolded(entities: Iterable[DXFEntity], depth: int, budget: TimeBudget) -> Iterator[DXFEntity]:

@@ -84,6 +84,7 @@ def pages(site: Path) -> dict[Path, PageReader]:
     return {path: read_page(path.read_text(encoding="utf-8")) for path in found}
 
 
+@pytest.mark.long
 def test_that_pages_fetch_nothing_from_other_servers(site: Path, pages: dict[Path, PageReader]) -> None:
     assert {path.name: found for path, page in pages.items() if (found := from_elsewhere(page.fetched))} == {}
     for sheet in site.rglob("*.css"):

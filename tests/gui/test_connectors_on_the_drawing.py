@@ -266,6 +266,7 @@ def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainW
     assert every and page.view.selected == every
 
 
+@pytest.mark.long
 def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
     page = cutting.stage.cuts
     first, second = lonely(page, 2)

@@ -108,6 +108,7 @@ def test_that_the_window_tells_of_damaged_weights_and_runs_with_another_variant(
     assert controller.document.candidates
 
 
+@pytest.mark.long
 def test_that_a_run_goes_on_when_a_worker_process_is_killed(window: MainWindow, until: Until) -> None:
     controller = window.controller
     controller.start_with("heart")

@@ -421,6 +421,7 @@ def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, unt
     assert all(unlike < 1e-5 for label, unlike in halves.values() if label != "Flip target")
 
 
+@pytest.mark.long
 def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow) -> None:
     for _ in range(2):
         plate.commands["theme"].trigger()

@@ -46,6 +46,7 @@ def test_that_the_menu_writes_each_kind(
     assert written.startswith(FIRST_BYTES[extension])
 
 
+@pytest.mark.long
 def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: Until) -> None:
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
@@ -54,6 +55,7 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     assert designed.fabrication.more.isEnabled()
 
 
+@pytest.mark.long
 def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_asked_for(
     designed: MainWindow, files: object, qtbot: QtBot, tmp_path: Path
 ) -> None:
@@ -76,6 +78,7 @@ def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_as
             assert (b"MOTION As cut" in image.info["comment"]) is said, name
 
 
+@pytest.mark.long
 def test_that_an_animation_of_cuts_that_cannot_be_planned_is_ideal_and_says_why(
     designed: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
@@ -110,6 +113,7 @@ def test_that_picking_a_file_type_renames_the_proposal(qtbot: QtBot, tmp_path: P
     assert dialog.defaultSuffix() == "svg"
 
 
+@pytest.mark.long
 def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
     designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -137,6 +141,7 @@ def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
     assert controller.document.fabrication.paper == "none"
 
 
+@pytest.mark.long
 def test_that_markers_of_connectors_are_a_choice_that_is_saved(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
@@ -152,6 +157,7 @@ def test_that_markers_of_connectors_are_a_choice_that_is_saved(
     assert store.load(tmp_path / "marked.kiri").fabrication.markers
 
 
+@pytest.mark.long
 def test_that_files_of_an_earlier_export_which_are_gone_are_told(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:

@@ -105,6 +105,7 @@ def test_that_edge_cuts_keep_their_distance_from_neighbours_and_corners(by_hand:
         assert positions(by_hand)[TOP] == pytest.approx(nearest)
 
 
+@pytest.mark.long
 def test_that_arrow_keys_reach_an_edge_cut_and_move_it(by_hand: MainWindow, until: Until) -> None:
     view, gestures = flat(by_hand), by_hand.stage.view.voids
     view.setFocus()

@@ -19,6 +19,7 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
     yield from shown(StateSheet(tmp_path), qtbot)
 
 
+@pytest.mark.long
 def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.all_sizes("empty")
     assert len(sheet.files) == 2 * len(SIZES)

@@ -86,6 +86,7 @@ def test_that_the_template_for_translators_holds_every_sentence(repository: Path
     assert written == said, "run `make messages`"
 
 
+@pytest.mark.long
 def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:
     """What is said while a module is imported would stay in the language of that moment: mark it, say it later."""
     said = []

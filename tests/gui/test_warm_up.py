@@ -107,6 +107,7 @@ def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.long
 def test_that_collections_leave_out_what_the_start_has_made() -> None:
     script = (
         "import gc; from kirigami_studio.gui.application import create_application, create_window;"

@@ -30,9 +30,11 @@ def lines_of(how: str, folder: Path, *more: str) -> list[dict[str, object]]:
 
 
 @pytest.mark.slow
-def test_that_200_kills_while_saving_leave_the_old_file_or_the_new_one(tmp_path: Path) -> None:
-    lines = lines_of("kills", tmp_path, "--count", "200")
-    assert len(lines) == 200
+@pytest.mark.long(but=1)
+@pytest.mark.parametrize("kills", [40, 200])
+def test_that_kills_while_saving_leave_the_old_file_or_the_new_one(kills: int, tmp_path: Path) -> None:
+    lines = lines_of("kills", tmp_path, "--count", str(kills))
+    assert len(lines) == kills
     assert [line["broken"] for line in lines if line["broken"]] == []
     litter = lines[-1]["litter"]
     assert isinstance(litter, list) and litter  # some were killed in the midst of a file
@@ -88,6 +90,7 @@ def design(out: Path, *, shell: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.torch
 def test_that_a_design_folder_without_room_is_told_in_a_sentence(tmp_path: Path) -> None:

@@ -53,6 +53,7 @@ def test_that_more_runs_are_never_worse_and_cost_more(figures: BestOfKFigures) -
     assert any(line.split()[:2] == ["sample", "4"] and "(96.0)" in line for line in figures.sentences())
 
 
+@pytest.mark.long
 def test_that_a_point_is_the_best_of_its_runs(
     targets: dict[str, list[Outline]], store: RunStore, figures: BestOfKFigures
 ) -> None:

@@ -42,6 +42,7 @@ def test_that_a_known_tour_longer_than_the_shortest_gives_no_bound_above_it() ->
         assert travel_bound(lines, np.zeros(2), known) <= shortest
 
 
+@pytest.mark.long
 def test_that_the_figures_are_those_of_the_plans(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fabrication_suite, "TIMED_GRIDS", ((4, 4),))
     monkeypatch.setattr(fabrication_suite, "ORDERED_GRIDS", ((6, 5),))

@@ -78,6 +78,7 @@ def test_that_the_papers_row_is_table_1() -> None:
     assert set(PAPER) == {*SOLVERS, "sample"}
 
 
+@pytest.mark.long
 def test_that_the_same_seed_gives_the_same_table_and_finished_runs_are_not_done_again(
     targets: dict[str, list[Outline]], store: RunStore, figures: SolverFigures, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -99,6 +99,7 @@ def test_that_one_file_gets_a_record_when_asked_for(
     assert not (tmp_path / "y.json").exists()
 
 
+@pytest.mark.long
 def test_that_single_widths_change_the_plan(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
     def finished(*more: object) -> float:
         code, out, err = run(capsys, "export", project, "--out", tmp_path / "x.dxf", "--sidecar", "--json", *more)
@@ -197,6 +198,7 @@ def test_that_a_name_without_room_is_told(capsys: pytest.CaptureFixture[str], pr
     assert code == 0 and "engraved" not in told and any("no whole panel has room" in text for text in told["warnings"])
 
 
+@pytest.mark.long
 def test_that_a_name_alone_renames_the_design_and_engraves_nothing(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:

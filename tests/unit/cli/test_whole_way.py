@@ -60,6 +60,7 @@ def test_that_a_run_whose_budget_ends_before_trimming_says_so(capsys: pytest.Cap
     assert "The budget ended before" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

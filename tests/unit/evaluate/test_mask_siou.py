@@ -27,6 +27,7 @@ def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping
     assert abs(ours.mean()) < 0.002
 
 
+@pytest.mark.long
 def test_that_poor_matches_are_not_flattered_by_the_canvas(oracles: Mapping[str, np.ndarray]) -> None:
     masks = oracles["10x10_mask"]
     pairs, reference = oracles["siou_pairs"][:16], oracles["siou_values"][:16]

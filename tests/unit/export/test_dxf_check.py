@@ -66,6 +66,7 @@ def test_that_a_foreign_file_is_measured_by_its_largest_closed_contour(tmp_path:
     assert report.bounds_mm == (40.0, 40.0)
 
 
+@pytest.mark.long
 def test_that_a_sheet_that_falls_apart_is_reported(tmp_path: Path) -> None:
     document = foreign()
     document.modelspace().add_line((-1, 35), (41, 35))

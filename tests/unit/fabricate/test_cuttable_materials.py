@@ -102,6 +102,7 @@ def test_that_the_way_of_a_material_is_no_failure_when_its_sheets_are_closed(
         assert found.as_cut.closes == (level is READY), name
 
 
+@pytest.mark.long(but=1)
 @pytest.mark.parametrize("key", CANNOT)
 def test_that_a_material_that_cannot_fails_in_every_way_and_says_so(key: str, easy: Mapping[str, Deployment]) -> None:
     material, house = presets()[key], easy["house"]

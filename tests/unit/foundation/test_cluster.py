@@ -77,6 +77,7 @@ def test_that_the_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> Non
     assert caught.value.code == "cluster.package_missing"
 
 
+@pytest.mark.long
 def test_that_a_scheduler_without_workers_and_one_that_goes_away_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "PATIENCE", 2.0)
     with LocalCluster(n_workers=1, processes=False, threads_per_worker=1, dashboard_address=":0") as small:

@@ -106,6 +106,7 @@ def test_that_the_noise_of_single_contour_points_averages_out() -> None:
     assert mean < 0.7 * single
 
 
+@pytest.mark.long
 def test_that_smoothing_keeps_straight_edges_straight_and_corners_within_half_a_spacing() -> None:
     polygon = normalised(rectangle(3.0, 2.0))
     points, sharp = smoothed_points(polygon, 100)[0], contour_points(polygon, 100)[0]

@@ -27,6 +27,7 @@ def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture
     assert outline.notes == ()
 
 
+@pytest.mark.long
 def test_that_a_very_large_picture_is_read_at_reduced_size(tmp_path, coverage, iou) -> None:
     wanted = silhouettes.load("heart")
     path = tmp_path / "large.png"

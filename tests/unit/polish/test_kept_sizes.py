@@ -151,6 +151,7 @@ def test_that_connectors_ask_for_room_beside_them() -> None:
     assert room_mm(FabricationSettings(material="card-co2", kerf_mm=0.1)) == pytest.approx(2.85)
 
 
+@pytest.mark.long
 def test_that_wide_connectors_keep_their_width_on_a_design_that_was_made_for_them() -> None:
     settings = FabricationSettings(connector_mm=1.4, width_mm=60.0)
     made = {}

@@ -60,6 +60,7 @@ def plan(design: Candidate) -> CutPlan:
     return plan_cuts(deploy(design.final_sheet), WIDTH, 0.3, kept=design.trim.kept)
 
 
+@pytest.mark.long
 def test_that_a_shape_that_turns_back_far_is_covered_and_its_notch_cut_out(
     keyhole: Outline, found: tuple[Candidate, ...]
 ) -> None:
@@ -80,6 +81,7 @@ def test_that_notches_are_filled_only_where_no_closed_sheet_shows_them(keyhole: 
     assert placed.area > 1.02
 
 
+@pytest.mark.long
 def test_that_a_design_is_cut_deep_again_wherever_it_is_trimmed(design: Candidate, keyhole: Outline) -> None:
     assert design.trim is not None
     again = trimmed(replace(design, trim=None), keyhole, design.trim.keep, lambda: False).candidate

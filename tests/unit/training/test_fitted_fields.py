@@ -66,6 +66,7 @@ def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> Non
         assert np.corrcoef(*(np.linalg.norm(shape - shape[0], axis=1) for shape in (requested, drawn)))[0, 1] > 0.9999
 
 
+@pytest.mark.long
 def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
     def run(path: Path, count: int) -> FittedFields:
         list(fit_shapes(path, count, 5, GRID, block_size=2))

@@ -58,6 +58,7 @@ def test_that_the_gradient_of_two_halves_is_that_of_the_batch(folder: Path) -> N
     assert max(said(folder, rank)["difference"] for rank in (0, 1)) < 1e-5
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_two_processes_learn_what_one_learns_and_the_first_alone_writes(folder: Path, tmp_path: Path) -> None:
     by_two, by_one = said(folder, 0)["records"], train(tmp_path)

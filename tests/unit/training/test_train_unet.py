@@ -48,6 +48,7 @@ def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, coupling
     assert all(torch.equal(whole[name], parts[name]) for name in whole)
 
 
+@pytest.mark.long
 def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     without = replace(TINY, shape=replace(TINY.shape, dropout=0.0))
     train(TINY, tmp_path / "with")
@@ -58,6 +59,7 @@ def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     assert not all(torch.equal(ours[name], theirs[name]) for name in ours)
 
 
+@pytest.mark.long
 def test_that_the_loss_falls_and_the_control_branch_moves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     # The learning rate takes 200 steps to rise by default; wide noise leaves more to learn in the first steps.
     monkeypatch.setattr("kirigami_studio.training.train_flow.WARM_UP_STEPS", 4)
