@@ -72,7 +72,7 @@ test: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock $(LENGTH)
 	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock" $(LENGTH)
 
-# With the tests marked `long`, which make half of the time: before a release.
+# With the tests marked `long`: before a release, and once a week by itself.
 test-all:
 	@$(MAKE) --no-print-directory test LENGTH=
 LENGTH ?= --short

@@ -49,8 +49,8 @@ FLATNESS = 1.0 / 4000.0
 
 #: Blocks nest and repeat; a drawing that unfolds to more entities than this is no outline.
 MOST_ENTITIES = 100_000
-#: Entities and blocks that are met while blocks are unfolded.
-MOST_STEPS = 20 * MOST_ENTITIES
+#: Steps of unfolding, one for each entity; a copy of a block takes as long as so many entities.
+MOST_STEPS, COPY = 2_000_000, 40
 DEEPEST_BLOCK = 16
 MOST_MEGABYTES = 50
 #: Share of the time for the text of a file; its entities take as long again.
@@ -284,7 +284,7 @@ def _refuse_bombs(drawing: Drawing) -> None:
     known: dict[str, int] = {}
 
     def steps(entities: Iterable[DXFEntity], depth: int) -> int:
-        return sum(one.mcount * (1 + inside(one, depth + 1)) if isinstance(one, Insert) else 1 for one in entities)
+        return sum(one.mcount * (COPY + inside(one, depth + 1)) if isinstance(one, Insert) else 1 for one in entities)
 
     def inside(insert: Insert, depth: int) -> int:
         block = insert.block()

@@ -38,7 +38,7 @@ def other(window: MainWindow, qtbot: QtBot, files: object) -> Iterator[MainWindo
 
 def opened(window: MainWindow, path: Path, until: Until) -> None:
     window.controller.open_project(path)
-    until(lambda: window.controller.path == path and not window.controller.queue.busy)
+    until(lambda: window.controller.path == path)
 
 
 def changed(window: MainWindow, width_mm: float) -> None:
@@ -48,7 +48,7 @@ def changed(window: MainWindow, width_mm: float) -> None:
 def saved(window: MainWindow, until: Until) -> None:
     """Save, and wait until that is done or asks."""
     window.commands["save"].trigger()
-    until(lambda: not window.controller.queue.busy)
+    until(lambda: not window.controller.history.unsaved or bool(questions(window)))
 
 
 def questions(window: MainWindow) -> list[dict[str, Callable[[], None]]]:
@@ -98,8 +98,9 @@ def test_that_a_third_change_after_the_question_is_asked_about_again(
 ) -> None:
     changed(other, 170.0)
     saved(other, until)
-    questions(asked)[0][OVERWRITE]()
-    until(lambda: not asked.controller.queue.busy)
+    first = asked.messages.messages[-1]
+    dict(first.actions)[OVERWRITE]()
+    until(lambda: bool(questions(asked)) and asked.messages.messages[-1] is not first)
     assert width_in(project) == 170.0
     assert asked.controller.history.unsaved and questions(asked)
 

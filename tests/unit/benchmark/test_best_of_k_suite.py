@@ -66,6 +66,7 @@ def test_that_a_point_is_the_best_of_its_runs(
     assert at.evaluations == pytest.approx(np.mean([sum(run["evaluations"] for run in runs) for runs in found]))
 
 
+@pytest.mark.long
 def test_that_the_table_of_solvers_finds_its_runs(
     targets: dict[str, list[Outline]], store: RunStore, figures: BestOfKFigures, monkeypatch: pytest.MonkeyPatch
 ) -> None:

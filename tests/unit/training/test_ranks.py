@@ -32,18 +32,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> Path:
     train(made / "begun by one", 0.0)
     program = repository / "tests" / "torchrun_program.py"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-    started = [
-        subprocess.Popen([*TWO, str(program), *words], **pipes)
-        for words in (("library", str(made)), ("command", str(made / "command")))
-    ]
-    try:
-        for process in started:
-            printed, errors = process.communicate(timeout=300)
-            assert process.returncode == 0, errors
-    finally:
-        for process in started:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)  # the launcher's end does not end what it started
+    for words in (("library", str(made)), ("command", str(made / "command"))):  # at once they might take one port
+        with subprocess.Popen([*TWO, str(program), *words], **pipes) as process:
+            try:
+                printed, errors = process.communicate(timeout=300)
+            finally:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)  # the launcher's end does not end what it started
+        assert process.returncode == 0, errors
     (made / "printed.txt").write_text(printed)
     return made
 
@@ -72,6 +68,7 @@ def test_that_two_processes_learn_what_one_learns_and_the_first_alone_writes(fol
     assert by_two[-1]["loss"] == pytest.approx(by_one[-1]["loss"], rel=0.2)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_a_run_of_two_is_gone_on_with_by_two_as_if_it_had_not_stopped(folder: Path) -> None:
     assert said(folder, 0)["stopped"][-1]["step"] == 1.0
@@ -94,6 +91,7 @@ def test_that_a_run_is_gone_on_with_by_another_number_of_processes(folder: Path)
     assert np.ptp(ends) < 0.05
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_the_command_trains_under_torchrun_and_speaks_once(folder: Path) -> None:
     (line,) = (folder / "printed.txt").read_text().splitlines()
