@@ -287,6 +287,8 @@ def _refuse_bombs(drawing: Drawing) -> None:
         return sum(one.mcount * (COPY + inside(one, depth + 1)) if isinstance(one, Insert) else 1 for one in entities)
 
     def inside(insert: Insert, depth: int) -> int:
+        if insert.mcount > MOST_ENTITIES:
+            raise TargetError("dxf.block_repeated", times=insert.mcount)
         block = insert.block()
         if block is None or depth > DEEPEST_BLOCK:  # which is told when it is unfolded
             return 0
@@ -308,8 +310,6 @@ def _unfolded(entities: Iterable[DXFEntity], depth: int, budget: TimeBudget) -> 
         if not isinstance(entity, Insert):
             yield entity
             continue
-        if entity.mcount > MOST_ENTITIES:
-            raise TargetError("dxf.block_repeated", times=entity.mcount)
         for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
             yield from _unfolded(single.virtual_entities(), depth + 1, budget)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -34,6 +35,12 @@ def outcomes(*asked: tuple[str, Path]) -> dict[tuple[str, str], tuple[str, float
 def endings_of(reader: str) -> tuple[str, ...]:
     """Parts of drawings, what the window opens and what is pasted are read as targets are: not every file again."""
     return {"parts": (".png",), "opened": (".png",), "pasted": (".json",)}.get(reader, READERS[reader].endings)
+
+
+def test_that_the_files_told_of_are_there() -> None:
+    told = re.findall(r"`([^`/ ]+\.\w+)`", (ATTACKS / "README.md").read_text(encoding="utf-8"))
+    assert len(told) > 20
+    assert [name for name in told if not list(ATTACKS.glob(name))] == []
 
 
 @pytest.mark.slow

@@ -44,9 +44,12 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
 
 
 def one_line(value: object) -> object:
-    """A text or path from outside without what would end the line; other values as they are.
+    """A text, path or error from outside without what would end the line; other values as they are.
 
     A name in a damaged file may hold anything, and a sentence is one line.
     """
-    text = str(value) if isinstance(value, (str, PurePath)) else ""
-    return " ".join(text.splitlines()) if len(text.splitlines()) > 1 else value
+    if not isinstance(value, (str, PurePath, BaseException)):
+        return value
+    text = str(value)
+    line = " ".join(text.splitlines())
+    return value if line == text else line
