@@ -1,7 +1,7 @@
 """Work that is done piece by piece: in this process, in several fresh ones, or by the workers of a Dask cluster.
 
 A cluster is optional (the extra ``cluster``).  Its workers need this package in the same version; each does one piece
-at a time, on one thread.  A worker that dies loses nothing: its piece is done again by another one.
+at a time, on one thread.  A worker or process that dies loses nothing: its piece is done again by another one.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ import multiprocessing
 import threading
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
@@ -25,6 +26,8 @@ Result = TypeVar("Result")
 PATIENCE = 5.0
 #: Pieces that are sent out for each worker of a cluster: one to do and one to go on with.
 AHEAD = 2
+#: Processes that a piece of work may lose before it is given up; those beside it, which end with it, count too.
+MOST_LOST = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +71,14 @@ def results_of(
     Raises
     ------
     KirigamiError
-        There is no cluster at the address, it was lost, or a piece of work has ended every worker that tried it.
+        There is no cluster at the address, it was lost, or a piece of work has ended every process that tried it.
     """
     if workers == HERE:
         for item in items:
             yield item, work(item)
         return
     with _opened(workers) as (submit, room):
-        running: dict[Future[Result], Item] = {}
+        running: dict[Future[Result], tuple[Item, int]] = {}  # and how often its process was lost
         more = True
         try:
             while more or running:
@@ -85,9 +88,17 @@ def results_of(
                     except StopIteration:
                         more = False
                     else:
-                        running[submit(work, item)] = item
+                        running[submit(work, item)] = item, 0
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    yield running.pop(future), future.result()
+                    item, lost = running.pop(future)
+                    try:
+                        result = future.result()
+                    except BrokenProcessPool as error:
+                        if lost + 1 == MOST_LOST:
+                            raise KirigamiError("processes.work_ends_them", times=MOST_LOST) from error
+                        running[submit(work, item)] = item, lost + 1
+                    else:
+                        yield item, result
         finally:
             for future in running:
                 future.cancel()
@@ -121,9 +132,19 @@ def _opened(workers: Workers) -> Iterator[tuple[Submit, Callable[[], int]]]:
         with _cluster(workers.scheduler) as cluster:
             yield cluster
         return
-    # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
-    with ProcessPoolExecutor(workers.processes, multiprocessing.get_context("spawn")) as pool:
-        yield pool.submit, lambda: workers.processes
+    with ExitStack() as opened:
+        pools: list[ProcessPoolExecutor] = []
+
+        def submit(work: Callable[[Item], Result], item: Item) -> Future[Result]:
+            try:
+                return pools[-1].submit(work, item)
+            except (BrokenProcessPool, IndexError):  # one process that is killed ends those beside it
+                # Fresh interpreters: torch and BLAS do not survive a fork with their threads.
+                fresh = ProcessPoolExecutor(workers.processes, multiprocessing.get_context("spawn"))
+                pools.append(opened.enter_context(fresh))
+                return fresh.submit(work, item)
+
+        yield submit, lambda: workers.processes
 
 
 @contextmanager

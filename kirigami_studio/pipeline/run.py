@@ -73,8 +73,8 @@ TRIMMED = 3
 #: Seconds between two signs of life while fits are under way.
 HEARTBEAT = 0.25
 
-#: Seconds of one step of a fit at 10 x 10, which grow with the number of voids to this power.
-STEP_SECONDS, STEP_GROWTH = 3e-3, 1.5
+#: Seconds of one step of a fit at 10 x 10 with all that follows, which grow with the number of voids to this power.
+STEP_SECONDS, STEP_GROWTH = 12e-3, 1.3
 
 #: Symmetries of one target that samples are divided among.
 MOST_SYMMETRIES = 2

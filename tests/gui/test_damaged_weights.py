@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from worker_processes import workers_of
 
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.messages import Tone
@@ -115,8 +116,10 @@ def test_that_a_run_goes_on_when_a_worker_process_is_killed(window: MainWindow, 
     until(lambda: controller.document.target is not None)
     controller.change_settings(k=24, grid=(8, 8))
     controller.generation.generate()
-    until(lambda: _workers() != [] or not controller.running)
-    for pid in _workers():
+    until(lambda: workers_of(os.getpid()) != [] or not controller.running)
+    workers = workers_of(os.getpid())
+    assert workers != []
+    for pid in workers:
         os.kill(pid, signal.SIGKILL)
     until(lambda: not controller.running and not controller.queue.busy)
     assert len(controller.document.candidates) == 24
@@ -124,17 +127,3 @@ def test_that_a_run_goes_on_when_a_worker_process_is_killed(window: MainWindow, 
     controller.generation.again()
     until(lambda: not controller.running and not controller.queue.busy)
     assert len(controller.document.candidates) > len(before)
-
-
-def _workers() -> list[int]:
-    """Worker processes of this process."""
-    found = []
-    for entry in Path("/proc").iterdir() if Path("/proc").is_dir() else ():
-        if entry.name.isdigit():
-            try:
-                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
-                if parent == os.getpid() and b"pipeline.worker" in (entry / "cmdline").read_bytes():
-                    found.append(int(entry.name))
-            except (OSError, IndexError, ValueError):
-                continue
-    return found

@@ -136,6 +136,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cluster.lost": mark(
         "The scheduler at {address} went away. Finished runs are kept: start it again, and repeat this call."
     ),
+    "processes.work_ends_them": mark(
+        "A process was ended from outside {times} times at one piece of work. If memory ran short, use fewer processes."
+    ),
     "cluster.work_ends_workers": mark(
         "One piece of work ended several workers of {address}, one after the other. They may be short of memory."
     ),

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+import signal
+from functools import partial
 from itertools import count
+from pathlib import Path
 
 import pytest
 
-from kirigami_studio.foundation.processes import Workers, results_of
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.processes import MOST_LOST, Workers, ordered_results_of, results_of
 
 
 def square(number: int) -> tuple[int, int]:
@@ -37,3 +41,29 @@ def test_that_processes_give_the_same_results() -> None:
     assert os.getpid() not in {result[1] for result in found.values()}
     with pytest.raises(ArithmeticError, match="no 0"):
         list(results_of(fail, iter([0]), Workers(2)))
+
+
+def deadly(number: int, folder: Path, deaths: int) -> int:
+    """The processes that are asked for that of 3 are killed before they answer, the first ones."""
+    died = len(list(folder.iterdir()))
+    if number == 3 and died < deaths:
+        (folder / str(died)).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number**3
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="processes are killed in another way here")
+def test_that_the_work_of_killed_processes_is_done_again(tmp_path: Path) -> None:
+    work = partial(deadly, folder=tmp_path, deaths=MOST_LOST - 1)
+    found = list(ordered_results_of(work, iter(range(8)), Workers(2)))
+    assert found == [(number, number**3) for number in range(8)]
+    assert len(list(tmp_path.iterdir())) == MOST_LOST - 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="processes are killed in another way here")
+def test_that_work_which_ends_every_process_is_given_up_with_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(KirigamiError, match="memory ran short"):
+        list(results_of(partial(deadly, folder=tmp_path, deaths=100), iter(range(8)), Workers(2)))
+    assert len(list(tmp_path.iterdir())) == MOST_LOST
