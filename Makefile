@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
-.PHONY: help setup run test test-all fuzz soak quick lint bench consumers demo states pairs pictures shapes figures \
+.PHONY: help setup run test test-all fuzz soak quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -37,6 +37,7 @@ help:
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
 	@echo "make figures  draw the figures of docs/mathematics.md"
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
+	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"
 	@echo "make site    build the documentation into build/site; works without a network once .venv is there"
 	@echo "make messages  collect all sentences for translators in resources/locale"
 	@echo "make package   wheel, source archive, frozen program and Debian package of this tree in dist, each tried as installed"
@@ -152,7 +153,10 @@ figures: setup
 animation: setup $(DOCS_STAMP)
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.screencast --out docs/pictures
 
-# MkDocs and what it needs; the tests build the site too.
+notebook: setup $(DOCS_STAMP)
+	$(BIN)/python packaging/play_notebook.py docs/first-design.ipynb
+
+# MkDocs and what it needs, and what plays notebooks; the tests build the site too.
 $(DOCS_STAMP): $(STAMP)
 	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[docs]'
 	@touch $@
