@@ -47,6 +47,7 @@ def too_long(turns: Turns, limit: float) -> Turns:
     return {step: turn for step, turn in turns.items() if turn[2] >= (THEME_LIMIT if step == THEME else limit)}
 
 
+@pytest.mark.long(but=1)
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_that_no_step_of_a_session_freezes_the_ui(script: str, tmp_path: Path) -> None:
     best: Turns = {}
