@@ -44,6 +44,17 @@ def test_that_a_preset_can_be_copied_but_not_changed(editor: MaterialEditor, qtb
     assert presets()["film-uv"] == library().materials["film-uv"]
 
 
+def test_that_a_german_window_tells_of_presets_in_german(
+    editor: MaterialEditor, designed: MainWindow, english_afterwards: None
+) -> None:
+    english = editor.form.texts["note"].text()
+    designed.speak("de")
+    editor.form.show_material(editor.chosen, editable=False)
+    assert editor.form.texts["note"].text().startswith("Schnittfuge nach") and english.startswith("Kerf from")
+    assert editor.form.changes() == {} and editor.chosen.note == english
+    assert "Schnittfuge nach" in designed.fabrication.material.toolTip()
+
+
 def test_that_saved_numbers_reach_the_plan(
     designed: MainWindow, editor: MaterialEditor, qtbot: QtBot, until: Until
 ) -> None:

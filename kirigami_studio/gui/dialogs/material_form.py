@@ -154,7 +154,7 @@ class MaterialForm(QWidget):
         self._shown = material
         values = asdict(material)
         for field, line in self.texts.items():
-            line.setText(values[field])
+            line.setText(values[field] if editable else tr(values[field]))  # bundled ones are told in every language
             line.setCursorPosition(0)
             line.setEnabled(editable)
             line.setToolTip(line.text())
@@ -168,8 +168,8 @@ class MaterialForm(QWidget):
         self.passes.setEnabled(editable)
 
     def changes(self) -> dict[str, object]:
-        """Return the fields that differ from the material shown."""
-        if self._shown is None:
+        """Return the fields that differ from the material shown; none of one that cannot be edited."""
+        if self._shown is None or not self.passes.isEnabled():
             return {}
         values = asdict(self._shown)
         entries: dict[str, object] = {field: line.text().strip() for field, line in self.texts.items()}

@@ -301,9 +301,9 @@ class FabricationPanel(Card):
             self.material.setToolTip(
                 tr(
                     "{machine}, {thickness_mm:g} mm. {note}",
-                    machine=material.machine,
+                    machine=tr(material.machine),
                     thickness_mm=material.thickness_mm,
-                    note=material.note,
+                    note=tr(material.note),
                 )
             )
         own = {

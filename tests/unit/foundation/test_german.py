@@ -104,9 +104,9 @@ def test_that_the_catalogue_is_read_as_babel_reads_it(german_file: Path, german:
     assert [read.form(count) for count in (0, 1, 2)] == [1, 0, 1]
 
 
-def test_that_bundled_silhouettes_materials_and_profiles_have_german_names(german: Catalog) -> None:
+def test_that_bundled_silhouettes_materials_and_profiles_have_german_names_and_notes(german: Catalog) -> None:
     shown = [entry for name in silhouettes.names() for entry in (name, *titles(name))]
-    shown += [words for one in library().materials.values() for words in (one.name, one.machine)]
+    shown += [words for one in library().materials.values() for words in (one.name, one.machine, one.note)]
     shown += [profile.name for profile in PROFILES.values()]
     assert [words for words in shown if german.get(words) is None] == []
 
