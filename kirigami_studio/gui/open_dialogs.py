@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.dialogs.about import AboutWindow
     from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.dialogs.export_report import ExportReport
-    from kirigami_studio.gui.dialogs.help import GuideWindow, ShortcutSheet
+    from kirigami_studio.gui.dialogs.guide import GuideWindow
     from kirigami_studio.gui.dialogs.history_list import HistoryList
     from kirigami_studio.gui.dialogs.label_editor import LabelEditor
     from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
     from kirigami_studio.gui.dialogs.outline_board import OutlineBoard
     from kirigami_studio.gui.dialogs.pairs import PairGallery
     from kirigami_studio.gui.dialogs.part_picker import PartPicker
+    from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
     from kirigami_studio.gui.dialogs.silhouette_picker import SilhouettePicker
     from kirigami_studio.gui.dialogs.start_board import StartBoard
     from kirigami_studio.gui.jobs.part_jobs import PartsRead, Purpose
@@ -224,7 +225,7 @@ class Dialogs(QObject):
 
     def show_guide(self) -> None:
         """Open the guide, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.help import GuideWindow
+        from kirigami_studio.gui.dialogs.guide import GuideWindow
 
         if self.guide is None:
             self.guide = GuideWindow(self._window)
@@ -232,7 +233,7 @@ class Dialogs(QObject):
 
     def show_shortcuts(self) -> None:
         """Open the sheet of keys and gestures, or bring it to the front."""
-        from kirigami_studio.gui.dialogs.help import ShortcutSheet
+        from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
 
         if self.shortcuts is None:
             self.shortcuts = ShortcutSheet(self._window, self._window.commands.records)

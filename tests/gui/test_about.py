@@ -34,6 +34,7 @@ def test_that_it_says_the_version_and_shows_the_programs_own_licence_first(about
 def test_that_words_are_looked_for_in_names_and_in_texts(about: AboutWindow, qtbot: QtBot) -> None:
     qtbot.keyClicks(about.search, "NumPy")
     assert "numpy" in about.showing() and "Kirigami Studio" not in about.showing()
+    assert about.showing()[0] in about.shown.text()  # no text of a part that is hidden
     about.search.setText("lesser general public")
     assert {"PySide6_Essentials", "shapely"} <= set(about.showing())  # GEOS is inside shapely
     about.search.setText("no such words")
@@ -42,6 +43,13 @@ def test_that_words_are_looked_for_in_names_and_in_texts(about: AboutWindow, qtb
     assert about.isVisible() and len(about.showing()) == len(components())
     qtbot.keyClick(about, Qt.Key.Key_Escape)
     assert not about.isVisible()
+
+
+def test_that_ctrl_f_goes_to_the_search(about: AboutWindow, qtbot: QtBot) -> None:
+    about.text.setFocus()
+    qtbot.waitUntil(about.text.hasFocus)
+    qtbot.keyClick(about.text, Qt.Key.Key_F, Qt.KeyboardModifier.ControlModifier)
+    assert about.search.hasFocus()
 
 
 def test_that_the_chosen_part_is_the_one_whose_licence_is_shown(about: AboutWindow) -> None:

@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.dialogs.help import ShortcutSheet
+from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
 from kirigami_studio.gui.look.theme import DARK, LIGHT
 from kirigami_studio.gui.main_window import MainWindow
 from kirigami_studio.gui.views.callout import beside

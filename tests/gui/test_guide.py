@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.dialogs.help import GuideWindow
+from kirigami_studio.gui.dialogs.guide import GuideWindow
 from kirigami_studio.gui.main_window import MainWindow
 
 

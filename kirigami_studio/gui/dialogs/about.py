@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QFontDatabase, QKeyEvent
+from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import (
     QHBoxLayout,
-    QHeaderView,
     QLabel,
-    QLineEdit,
     QPlainTextEdit,
     QSplitter,
-    QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
     QWidget,
@@ -20,12 +17,13 @@ from PySide6.QtWidgets import (
 from kirigami_studio import __version__
 from kirigami_studio.foundation.licences import Component, components
 from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.dialogs.searched import SearchedList, SearchWindow
 from kirigami_studio.gui.look.icons import coloured
 
 #: Edge of the program's icon, pixels.
 ICON = 56
 #: Width of the licences' names, pixels; characters in a line of their texts.
-LICENCE, COLUMNS = 150, 84
+LICENCE, COLUMNS = 176, 84
 #: The paper that the program implements.
 PAPER = "https://arxiv.org/abs/2605.08098"
 PURPOSE = mark("Designs kirigami sheets that open into a silhouette.")
@@ -34,29 +32,20 @@ QT = mark(
 )
 
 
-class AboutWindow(QWidget):
+class AboutWindow(SearchWindow):
     """Shows what the program is, and the licences by name; typing looks in names, licences and their texts."""
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent, Qt.WindowType.Window)
-        self.setWindowTitle(tr("About Kirigami Studio"))
+        super().__init__(
+            parent,
+            title=tr("About Kirigami Studio"),
+            prompt=tr("Search the licences"),
+            tip=tr("Show only what has these words in its name, its licence or the text of it"),
+        )
         self.components: tuple[Component, ...] = components()
-        self.search = QLineEdit()
-        self.search.setPlaceholderText(tr("Search the licences"))
-        self.search.setAccessibleName(tr("Search the licences"))
-        self.search.setToolTip(tr("Show only what has these words in its name, its licence or the text of it"))
-        self.search.setClearButtonEnabled(True)
-        self.list = QTreeWidget()
+        self.list = SearchedList([tr("Part"), tr("Version"), tr("Licence")], name=tr("What comes with the program"))
         self.list.setObjectName("licenceList")
-        self.list.setAccessibleName(tr("What comes with the program"))
-        self.list.setHeaderLabels([tr("Part"), tr("Version"), tr("Licence")])
-        self.list.setRootIsDecorated(False)
-        self.list.setUniformRowHeights(True)
-        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        self.list.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
         self.list.setColumnWidth(2, LICENCE)
-        self.found = QLabel()
-        self.found.setObjectName("muted")
         self.shown, self.paper = QLabel(), QLabel()
         for label in (self.shown, self.paper):
             label.setOpenExternalLinks(True)
@@ -66,10 +55,9 @@ class AboutWindow(QWidget):
         self.text.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
         self.text.setMinimumWidth(COLUMNS * self.text.fontMetrics().horizontalAdvance("m"))
         self._lay_out()
-        self._fill()
         self.search.textChanged.connect(self._filter)
         self.list.currentItemChanged.connect(self._show)
-        self.list.setCurrentItem(self._lines()[0])
+        self._fill()
         self.resize(1120, 680)
 
     def _lay_out(self) -> None:
@@ -117,26 +105,20 @@ class AboutWindow(QWidget):
     def _fill(self) -> None:
         for component in self.components:
             name = "Kirigami Studio" if component is self.components[0] else component.name
-            line = QTreeWidgetItem([name, component.version, component.licence])
-            line.setData(0, Qt.ItemDataRole.UserRole, f"{name}\n{component.licence}\n{component.text}".lower())
-            for column in range(3):
-                line.setToolTip(column, f"{name} {component.version}\n{component.licence}")
-            self.list.addTopLevelItem(line)
+            tip = f"{name} {component.version}\n{component.licence}"
+            words = f"{name}\n{component.licence}\n{component.text}"
+            self.list.add([name, component.version, component.licence], words, tips=[tip] * 3)
         self._filter("")
-
-    def _lines(self) -> list[QTreeWidgetItem]:
-        found = (self.list.topLevelItem(row) for row in range(self.list.topLevelItemCount()))
-        return [line for line in found if line is not None]
 
     def showing(self) -> list[str]:
         """Names of the visible lines."""
-        return [line.text(0) for line in self._lines() if not line.isHidden()]
+        return [line.text(0) for line in self.list.showing]
 
     def _filter(self, text: str) -> None:
-        words = text.lower().split()
-        for line in self._lines():
-            line.setHidden(not all(word in line.data(0, Qt.ItemDataRole.UserRole) for word in words))
-        self.found.setText(tr_n("{count} part", "{count} parts", len(self.showing())))
+        self.found.setText(tr_n("{count} part", "{count} parts", self.list.narrow(text)))
+        showing = self.list.showing
+        if showing and self.list.currentItem() not in showing:
+            self.list.setCurrentItem(showing[0])
 
     def _show(self, line: QTreeWidgetItem | None) -> None:
         if line is None:
@@ -154,12 +136,3 @@ class AboutWindow(QWidget):
                 label.clear()
                 label.setText(text)
         super().changeEvent(event)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
-        """Esc clears the search, then closes the window."""
-        if event.key() != Qt.Key.Key_Escape:
-            super().keyPressEvent(event)
-        elif self.search.text():
-            self.search.clear()
-        else:
-            self.close()
