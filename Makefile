@@ -47,13 +47,18 @@ help:
 setup: $(STAMP)
 
 # torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
+# pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
+# when it is needed.
+INSTALL := $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt
+SELDOM_USED := tests|_inductor|_dynamo|onnx|sympy|networkx|mypy|pip|pygments|mpmath
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "Kirigami Studio needs Python 3.11 or newer. Choose one with: make PYTHON=/path/to/python3 $(MAKECMDGOALS)"; exit 1; }
 	sh packaging/system_libraries.sh & libraries=$$!; \
 	{ test -x $(BIN)/python || $(PYTHON) -m venv .venv; } \
-	  && $(BIN)/python -m pip install -q --retries 1 --extra-index-url $(TORCH_INDEX) -c packaging/constraints-cpu.txt torch \
-	  && $(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[test,lint]'; made=$$?; \
+	  && $(INSTALL) --retries 1 --extra-index-url $(TORCH_INDEX) torch \
+	  && $(INSTALL) -e '.[test,lint]' \
+	  && { $(BIN)/python -m compileall -qq -j 0 -x '/($(SELDOM_USED))/' .venv/lib || true; }; made=$$?; \
 	  wait $$libraries && exit $$made
 	@touch $@
 
@@ -67,9 +72,11 @@ run: setup
 
 # First the tests that measure time, alone; then all others in two processes of one thread each.  A process that has
 # nothing left takes tests from the other: files with few tests hold some of the longest, and would end the run alone.
+# While the types are checked, all tests are read once: pytest keeps what it compiled, and both processes begin with it.
 test: setup
-	@sh packaging/system_libraries.sh tests & libraries=$$!; \
-	  $(MAKE) --no-print-directory lint; right=$$?; wait $$libraries && exit $$right
+	@{ sh packaging/system_libraries.sh tests; \
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest --collect-only -qq > /dev/null 2>&1; } & reading=$$!; \
+	  $(MAKE) --no-print-directory lint; right=$$?; wait $$reading; exit $$right
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock $(LENGTH)
 	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock" $(LENGTH)
 
