@@ -17,7 +17,7 @@ import pytest
 pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
 
 #: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
-THEME, THEME_LIMIT = "switch the theme", 0.5
+THEME, THEME_LIMIT = "switch the theme", 0.3
 #: Sessions played until no step froze the UI, the best turn of each counts: a cache that is cold or a
 #: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
 #: A session that is played again ends with the last step that is still in doubt.

@@ -196,6 +196,7 @@ def apply(application: QApplication, palette: Palette) -> None:
     # The style sheet hides the name of the style below it, which was set with the first one.
     if not application.styleSheet() and application.style().objectName() != "fusion":
         application.setStyle("Fusion")
+    application.setStyleSheet("")  # over a sheet in place Qt dresses every widget again and again: four times as long
     application.setPalette(_qt_palette(palette))
     application.setStyleSheet(sheet)
 
