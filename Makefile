@@ -48,7 +48,7 @@ setup: $(STAMP)
 
 # torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
-# when it is needed.
+# when it is needed.  As pip does, this goes on past files that are no Python: templates that come with PySide.
 INSTALL := $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt
 SELDOM_USED := tests|_inductor|_dynamo|onnx|sympy|networkx|mypy|pip|pygments|mpmath
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh

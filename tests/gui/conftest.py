@@ -117,7 +117,6 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     made.controller.history.mark_saved()
     assert made.close()
     assert not any(thread.isRunning() for thread in made.findChildren(QThread))
-    QApplication.processEvents()  # a view that was to draw its last cards in the next turn need not any more
     assert [timer.parent() for timer in made.findChildren(QTimer) if timer.isActive()] == []
     made.deleteLater()
     # Outside an event loop nothing is deleted later: the window would live on into the next test and slow it down.

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio import __version__
 from kirigami_studio.foundation.licences import Component, components
 from kirigami_studio.foundation.words import mark, tr, tr_n
-from kirigami_studio.gui.dialogs.searched import SearchedList, SearchWindow
+from kirigami_studio.gui.dialogs.search_window import SearchedList, SearchWindow
 from kirigami_studio.gui.look.icons import coloured
 
 #: Edge of the program's icon, pixels.
@@ -112,11 +112,11 @@ class AboutWindow(SearchWindow):
 
     def showing(self) -> list[str]:
         """Names of the visible lines."""
-        return [line.text(0) for line in self.list.showing]
+        return [line.text(0) for line in self.list.shown_lines]
 
     def _filter(self, text: str) -> None:
         self.found.setText(tr_n("{count} part", "{count} parts", self.list.narrow(text)))
-        showing = self.list.showing
+        showing = self.list.shown_lines
         if showing and self.list.currentItem() not in showing:
             self.list.setCurrentItem(showing[0])
 

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import language, tr
-from kirigami_studio.gui.dialogs.searched import SearchWindow
+from kirigami_studio.gui.dialogs.search_window import SearchWindow
 
 #: Headings down to this level are in the guide's contents.
 DEEPEST = 3

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.command import Command
-from kirigami_studio.gui.dialogs.searched import SearchedList, SearchWindow
+from kirigami_studio.gui.dialogs.search_window import SearchedList, SearchWindow
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class ShortcutSheet(SearchWindow):
 
     def showing(self) -> list[tuple[str, str]]:
         """The visible lines: effect, keys."""
-        return [(line.text(0), line.text(1)) for line in self.list.showing]
+        return [(line.text(0), line.text(1)) for line in self.list.shown_lines]
 
     def _filter(self, text: str) -> None:
         self.found.setText(tr_n("{count} line", "{count} lines", self.list.narrow(text)))

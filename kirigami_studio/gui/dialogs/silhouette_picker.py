@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QIcon, QKeyEvent
-from PySide6.QtWidgets import QFrame, QLabel, QLineEdit, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.dialogs.search_window import search_field
 from kirigami_studio.gui.look.theme import Palette
 from kirigami_studio.gui.scene.layout_items import target_pixmap
 from kirigami_studio.outlines import silhouettes
@@ -24,10 +25,7 @@ class SilhouettePicker(QFrame):
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("popup")
         self._listens = False
-        self.search = QLineEdit()
-        self.search.setPlaceholderText(tr("Search the library"))
-        self.search.setClearButtonEnabled(True)
-        self.search.setAccessibleName(tr("Search the library"))
+        self.search = search_field(tr("Search the library"))
         self.list = QListWidget()
         self.list.setObjectName("libraryList")
         self.list.setAccessibleName(tr("Library silhouettes"))

@@ -12,17 +12,23 @@ from PySide6.QtWidgets import QHeaderView, QLabel, QLineEdit, QTreeWidget, QTree
 WORDS = Qt.ItemDataRole.UserRole
 
 
+def search_field(prompt: str) -> QLineEdit:
+    """A field that says what it searches while it is empty, with a button that clears it."""
+    field = QLineEdit()
+    field.setPlaceholderText(prompt)
+    field.setAccessibleName(prompt)
+    field.setClearButtonEnabled(True)
+    return field
+
+
 class SearchWindow(QWidget):
     """A window with a search field: Ctrl+F goes to it, Esc clears it, then closes the window."""
 
     def __init__(self, parent: QWidget, title: str, prompt: str, tip: str) -> None:
         super().__init__(parent, Qt.WindowType.Window)
         self.setWindowTitle(title)
-        self.search = QLineEdit()
-        self.search.setPlaceholderText(prompt)
-        self.search.setAccessibleName(prompt)
+        self.search = search_field(prompt)
         self.search.setToolTip(tip)
-        self.search.setClearButtonEnabled(True)
         self.found = QLabel()
         self.found.setObjectName("muted")
         QShortcut(QKeySequence.StandardKey.Find, self, self._begin_search)
@@ -81,7 +87,7 @@ class SearchedList(QTreeWidget):
         return self._heads[text]
 
     @property
-    def showing(self) -> list[QTreeWidgetItem]:
+    def shown_lines(self) -> list[QTreeWidgetItem]:
         """The lines that are shown, in the order they were added."""
         return [line for line in self._lines if not line.isHidden()]
 
@@ -92,4 +98,4 @@ class SearchedList(QTreeWidget):
             line.setHidden(not all(word in line.data(0, WORDS) for word in words))
         for head in self._heads.values():
             head.setHidden(all(line.isHidden() for line in self._lines if line.parent() is head))
-        return len(self.showing)
+        return len(self.shown_lines)
