@@ -65,7 +65,8 @@ def read_at_most(path: Path, most_bytes: int) -> bytes:
         As :func:`opened_file`.
     """
     with opened_file(path, most_bytes) as stream:
-        return stream.read(most_bytes)
+        # A read takes memory for all that it asks for, however short the file is: no more than there is to read.
+        return stream.read(os.fstat(stream.fileno()).st_size)
 
 
 def read_toml(path: Path) -> dict[str, Any]:

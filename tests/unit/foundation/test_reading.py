@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,18 @@ def test_that_a_file_is_read_up_to_its_limit(tmp_path: Path) -> None:
     assert read_at_most(path, 5) == b"12345"
     with pytest.raises(OSError, match="too large"):
         read_at_most(path, 4)
+
+
+def test_that_a_short_file_takes_little_memory_however_long_one_may_be(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"12345")
+    tracemalloc.start()
+    try:
+        assert read_at_most(path, 2**28) == b"12345"
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 2**20
 
 
 def test_that_a_link_leads_to_its_file(tmp_path: Path) -> None:
