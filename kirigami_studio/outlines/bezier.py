@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
 #: Vertices of a curve between two points.
 CURVE_VERTICES = 15
@@ -43,7 +43,7 @@ def point_on(
 def flattened_curve(controls: FloatArray, tolerance: float) -> FloatArray:
     """Vertices of a quadratic or cubic curve without its start, at evenly spaced parameters.
 
-    Their number follows from the chord error ``h^2 / 8 * max|B''|``.
+    :func:`curve_pieces` of them.
 
     Parameters
     ----------
@@ -56,14 +56,32 @@ def flattened_curve(controls: FloatArray, tolerance: float) -> FloatArray:
     vertices : (P, 2) float
         ``MOST_PIECES`` at most.
     """
-    degree = len(controls) - 1
-    bend = degree * (degree - 1) * float(np.max(np.linalg.norm(np.diff(controls, n=2, axis=0), axis=1)))
-    pieces = int(np.clip(np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300)))), 1, MOST_PIECES))
+    pieces = int(curve_pieces(controls, tolerance))
     t = np.arange(1, pieces + 1)[:, None, None] / pieces
     corners = controls[None]
-    for _ in range(degree):  # de Casteljau, all parameters at once
+    for _ in range(len(controls) - 1):  # de Casteljau, all parameters at once
         corners = corners[:, :-1] * (1 - t) + corners[:, 1:] * t
     return corners[:, 0]
+
+
+def curve_pieces(controls: FloatArray, tolerance: float) -> IntArray:
+    """How many chords keep the error ``h^2 / 8 * max|B''|`` of quadratic or cubic curves below a tolerance.
+
+    Parameters
+    ----------
+    controls : (..., 3 or 4, 2) float
+    tolerance : float
+
+    Returns
+    -------
+    pieces : (...) int
+        From 1 to ``MOST_PIECES``.
+    """
+    degree = controls.shape[-2] - 1
+    bend = degree * (degree - 1) * np.max(np.linalg.norm(np.diff(controls, n=2, axis=-2), axis=-1), axis=-1)
+    wanted = np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300))))
+    pieces: IntArray = np.clip(wanted, 1, MOST_PIECES).astype(np.intp)
+    return pieces
 
 
 def split(start: FloatArray, out: FloatArray, into: FloatArray, end: FloatArray, t: float) -> tuple[FloatArray, ...]:

@@ -17,9 +17,9 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.outlines.bezier import flattened_curve
+from kirigami_studio.outlines.bezier import curve_pieces, flattened_curve
 from kirigami_studio.outlines.contour import thinned
-from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
+from kirigami_studio.outlines.joining import MOST_VERTICES, closed_gaps, join, joined, refuse_scribbles
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import (
     Cap,
@@ -351,7 +351,7 @@ def flattened(path: Any, tolerance: float | None = None) -> list[FloatArray]:
     Raises
     ------
     TargetError
-        A coordinate is not finite.
+        A coordinate is not finite, or the chains would have more than ``MOST_VERTICES`` vertices.
     """
     chains: list[list[FloatArray]] = []  # each a start, and the controls of every segment behind it
     current: list[FloatArray] = []
@@ -375,14 +375,23 @@ def flattened(path: Any, tolerance: float | None = None) -> list[FloatArray]:
     if not np.isfinite(size):
         raise TargetError("drawing.not_finite")
     error = FLATNESS * size if tolerance is None else tolerance
-    return [_chain(chain, error) for chain in chains]
+    segments = [[chain[0], *map(_behind, chain, chain[1:])] for chain in chains]
+    if (vertices := sum(_vertices_of(chain, error) for chain in segments)) > MOST_VERTICES:
+        raise TargetError("drawing.too_many_vertices", vertices=vertices, limit=MOST_VERTICES)
+    return [
+        np.concatenate([one if len(one) == 1 else flattened_curve(one, error) for one in chain]) for chain in segments
+    ]
 
 
-def _chain(controls: list[FloatArray], tolerance: float) -> FloatArray:
-    vertices = controls[:1]
-    for one in controls[1:]:
-        vertices.append(one if len(one) == 1 else flattened_curve(np.vstack([vertices[-1][-1:], one]), tolerance))
-    return np.concatenate(vertices)
+def _behind(before: FloatArray, controls: FloatArray) -> FloatArray:
+    """The end of a line, or the controls of a curve with its start, which is the end of what is ``before`` it."""
+    return controls if len(controls) == 1 else np.concatenate([before[-1:], controls])
+
+
+def _vertices_of(chain: list[FloatArray], tolerance: float) -> int:
+    """How many vertices it has when it is flattened; curves are counted together, which takes no time."""
+    by_length = [[one for one in chain if len(one) == length] for length in (1, 3, 4)]
+    return len(by_length[0]) + sum(int(curve_pieces(np.stack(same), tolerance).sum()) for same in by_length[1:] if same)
 
 
 def _points(*points: Any) -> FloatArray:
