@@ -91,7 +91,9 @@ def test_that_no_reader_opens_what_a_file_refers_to(tmp_path: Path, secret: Path
         for name, content in linking(to).items():
             path = tmp_path / f"{kind}_{name}"
             path.write_text(content, encoding="utf-8")
-            asked += [f"{reader}={path}" for reader in READERS if path.suffix in READERS[reader].endings]
+            # Artwork is drawn by Qt, past this watch: see the next test.
+            readers = (name for name in READERS if path.suffix in READERS[name].endings and name != "artwork")
+            asked += [f"{reader}={path}" for reader in readers]
     tests = str(Path(__file__).parents[1])
     done = subprocess.run(
         [sys.executable, "-c", WATCHED, str(secret), *asked],
@@ -190,9 +192,12 @@ def calls_in(code: str) -> list[str]:
     """Calls that could run what a file says: NumPy and torch with pickles, pickle itself, eval and exec."""
     found = []
     for call in (node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Call)):
+        last = getattr(call.func, "attr", getattr(call.func, "id", ""))
+        if last not in ("load", "loads", "open", "eval", "exec", "read_array"):
+            continue
         name = ast.unparse(call.func)
         given = {word.arg: ast.unparse(word.value) for word in call.keywords}
-        if name in ("np.load", "numpy.load") or name.endswith("read_array"):
+        if name in ("np.load", "numpy.load") or last == "read_array":
             if given.get("allow_pickle") != "False":
                 found.append(ast.unparse(call))
         elif name == "torch.load":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from kirigami_studio.project.verdict import Verdict
 
 ANIMATION = ".gif"
+#: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
+MOST_PLANS = 16
 
 
 class Motion(Enum):
@@ -148,8 +151,27 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     yield planned(request, cancel)
 
 
+_PLANS: OrderedDict[tuple[object, ...], Planned] = OrderedDict()
+
+
 def planned(request: CutRequest, cancel: Cancel) -> Planned:
-    """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline."""
+    """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline.
+
+    What was planned lately is not planned again.
+    """
+    from kirigami_studio.project.cutting import material_for
+
+    settings = request.settings
+    # The target, because a trim is known by its pose and depth.
+    key = (request.candidate, request.target, settings, material_for(settings), request.name)
+    made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
+    _PLANS[key] = made
+    while len(_PLANS) > MOST_PLANS:
+        _PLANS.popitem(last=False)
+    return made
+
+
+def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.project.cutting import plan_of
 
