@@ -107,7 +107,7 @@ quick: setup
 	  -m "not slow and not torch and not qt" $(QUICK_TESTS)
 
 lint: setup
-	@$(BIN)/mypy & types=$$!; $(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports; rest=$$?; \
+	@$(BIN)/mypy --num-workers 2 & types=$$!; $(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports; rest=$$?; \
 	  wait $$types && exit $$rest
 
 bench: setup

@@ -2,8 +2,8 @@
 
 ``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen], the longest turn of the
 event loop in it, in seconds of the machine for which limits are written (``machine_pace``).  ``--last STEP`` ends after
-that step, ``--block SECONDS`` plays only steps that are known to hold the thread up.  Another session with other steps
-is in ``watched_tools.py``.
+that step, ``--brief`` leaves out what takes long or repeats much, ``--block SECONDS`` plays only steps that are known
+to hold the thread up.  Another session with other steps is in ``watched_tools.py``.
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ from kirigami_studio.project.document import Document
 PATIENCE = 40.0
 MANY, LARGE = 64, (24, 24)
 MOST, USUAL = 256, (10, 10)
+THEME = "switch the theme"
 FULL_POLISH = max(steps for _, steps, _ in POLISH)
 
 
@@ -82,6 +83,7 @@ class WatchedSession:
 
     rest = 0.2  #: seconds that the window lives on after each step, still watched
     last = ""  #: the step after which the session ends; without one it plays them all
+    brief = False  #: whether it leaves out the longest runs and the most designs
 
     def __init__(self, folder: Path) -> None:
         self.places = Places(folder)
@@ -114,20 +116,23 @@ class WatchedSession:
         self.step(
             "choose a target", lambda: controller.targeting.open("heart"), lambda: self.window.run.generate.isEnabled()
         )
-        self.set_up(16, 0, search=False)
-        self.step("generate 16, loading the generator", self.generate, self.generated)
-        self.set_up(16, 0, search=False)
-        self.step("generate 16 again", self.generate, self.generated)
+        if not self.brief:
+            for step in ("generate 16, loading the generator", "generate 16 again"):
+                self.set_up(16, 0, search=False)
+                self.step(step, self.generate, self.generated)
         self.set_up(4, FULL_POLISH, search=False)
         self.step("generate 4 and polish fully", self.generate, self.generated)
         self.step("choose another design", lambda: self.press("next"), self.planned)
         self.step("trim", lambda: self.press("trim"), lambda: not controller.trimming.busy and self.planned())
         for command in ("undo", "redo"):
-            for number in range(3):  # every press is a gesture of its own
+            for number in range(1 if self.brief else 3):  # every press is a gesture of its own
                 self.step(f"{command} step {number + 1}", lambda command=command: self.press(command), self.planned)
         self.step("scrub", self.scrub)
-        self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
-        self.step("generate 2 and search", self.generate, self.generated)
+        if self.brief:
+            self.step(THEME, lambda: self.press("theme"))
+        else:
+            self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
+            self.step("generate 2 and search", self.generate, self.generated)
         controller.history.mark_saved()
         self.open("open a large project", "large.kiri", MANY)
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
@@ -140,10 +145,12 @@ class WatchedSession:
         self.step("save it", lambda: self.press("save_as"), self.places.saved.exists)
         self.step("export its DXF", lambda: self.press("export"), self.told)
         self.step("export everything", lambda: self.press("export_all"), self.told)
+        if self.brief:
+            return
         controller.history.mark_saved()
         self.open(f"open {MOST} designs", "many.kiri", MOST)
         self.all_designs(MOST)
-        self.step("switch the theme", lambda: self.press("theme"))
+        self.step(THEME, lambda: self.press("theme"))
 
     def open(self, step: str, name: str, designs: int) -> None:
         """Open a project."""
@@ -311,13 +318,14 @@ def main(kind: type[WatchedSession]) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--block", type=float, default=0.0)
     parser.add_argument("--last", default="")
+    parser.add_argument("--brief", action="store_true")
     chosen = parser.parse_args()
     if not chosen.block:
         kind.prepare(chosen.folder)
     create_application(["kirigami-studio"])
     paces = [slowness()]
     session = kind(chosen.folder)
-    session.last = chosen.last
+    session.last, session.brief = chosen.last, chosen.brief
     try:
         session.begin()
         if chosen.block:

@@ -30,7 +30,7 @@ def best(request: Request) -> Candidate:
     return best_of(request).best
 
 
-@pytest.mark.long(but=1)
+@pytest.mark.long
 @pytest.mark.parametrize("setting", [as_in_paper, replace], ids=["as in the paper", "as usual"])
 def test_that_four_polished_samples_match_an_outline_that_a_sheet_can_make(
     outlines: list[Outline], setting: Callable[[Request], Request]

@@ -85,7 +85,7 @@ def check_closed_contours(path: Path) -> None:
     assert found[-1].dxf.layer == "OUTLINE" and {entity.dxf.layer for entity in found[:-1]} == {"SLOTS"}
 
 
-@pytest.mark.long(but=8)
+@pytest.mark.long(but=5)
 @pytest.mark.parametrize("seed", range(DESIGNS))
 def test_that_every_profile_passes_for_random_designs(seed: int, make_design: MakeDesign, tmp_path: Path) -> None:
     made = random_job(seed, make_design)

@@ -78,6 +78,7 @@ def test_that_every_bundled_material_has_a_way_or_says_that_it_cannot() -> None:
     assert CANNOT == ["acrylic-co2", "plywood-co2"]
 
 
+@pytest.mark.long(but=4)
 @pytest.mark.parametrize("key", WAYS)
 def test_that_the_way_of_a_material_passes_every_check(key: str, easy: Mapping[str, Deployment]) -> None:
     for name, design in easy.items():
@@ -86,6 +87,7 @@ def test_that_the_way_of_a_material_passes_every_check(key: str, easy: Mapping[s
             assert problems(design, key, *NARROWER[key]) == [], name
 
 
+@pytest.mark.long(but=3)
 @pytest.mark.parametrize("key", WAYS)
 def test_that_the_way_of_a_material_is_no_failure_when_its_sheets_are_closed(
     key: str, easy: Mapping[str, Deployment]

@@ -120,6 +120,7 @@ def test_that_smoothing_keeps_straight_edges_straight_and_corners_within_half_a_
     assert 0.01 * spacing < float(moved.max()) < 0.3 * spacing
 
 
+@pytest.mark.long
 def test_that_smoothed_points_go_round_like_contour_points_on_every_outline_of_a_batch() -> None:
     wide, tall = (normalised(rectangle(*sides)) for sides in ((3.0, 2.0), (1.0, 2.0)))
     both = smoothed_points(torch.cat([wide, tall]), 64)

@@ -51,7 +51,7 @@ def test_that_the_same_request_gives_the_same_fits() -> None:
     assert fit_shape(target, (4, 4)) == fit_shape(target, (4, 4))
 
 
-@pytest.mark.long(but=2)
+@pytest.mark.long(but=1)
 @pytest.mark.usefixtures("two_rotations")
 @pytest.mark.parametrize(("grid", "phi"), [((4, 6), 0.0), ((3, 5), 0.0), ((3, 4), 0.0), ((4, 4), 0.5)])
 def test_that_grids_of_every_parity_and_open_states_are_searched(grid: tuple[int, int], phi: float) -> None:

@@ -108,6 +108,7 @@ def test_that_no_step_is_taken_where_all_sizes_are_kept_and_none_without_steps()
     assert np.array_equal(still.field.ratio, plain.field.ratio)
 
 
+@pytest.mark.long
 def test_that_the_size_is_kept_by_every_task_of_a_run() -> None:
     target = load("star")
     request = Request(target, (4, 4), k=4, polish=10, search=1, least_panel=0.4, trim=True)

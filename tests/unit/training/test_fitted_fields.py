@@ -59,6 +59,7 @@ def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None
     assert ious(fits.z, fits.requested).min() > SMALLEST_IOU - 1e-3
 
 
+@pytest.mark.long
 def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> None:
     for requested, number in zip(fits.requested, fits.shape, strict=True):
         drawn = resampled(drawn_shape(5, int(number)), REQUESTED_POINTS)

@@ -103,6 +103,7 @@ def test_that_codes_keep_each_targets_own_preference_and_boundary(grid: Deployed
     )
 
 
+@pytest.mark.long
 def test_that_targets_from_a_picture_are_where_they_were_but_not_quite() -> None:
     shapes = silhouettes(random_fields(OWN, 40), OWN)
     made = source(pictured=1.0).targets(shapes, 0)
