@@ -162,8 +162,9 @@ def planned(request: CutRequest, cancel: Cancel) -> Planned:
     from kirigami_studio.project.cutting import material_for
 
     settings = request.settings
-    # The target, because a trim is known by its pose and depth.
-    key = (request.candidate, request.target, settings, material_for(settings), request.name)
+    name = request.name if settings.engrave else ""
+    # The target, because what a trim keeps takes no part in comparisons.
+    key = (request.candidate, request.target, settings, material_for(settings), name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
