@@ -20,6 +20,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 # The same examples on every run: a red test is red for everybody.  HYPOTHESIS_PROFILE=search looks for new ones.
 _COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow], "print_blob": True}
 settings.register_profile("quick", max_examples=10, derandomize=True, **_COMMON)
+settings.register_profile("short", max_examples=25, derandomize=True, **_COMMON)
 settings.register_profile("repeatable", max_examples=50, derandomize=True, **_COMMON)
 settings.register_profile("search", max_examples=1000, **_COMMON)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
@@ -29,6 +30,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Let golden files be written anew on purpose, and a run be short."""
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
     parser.addoption("--short", action="store_true", help="leave long tests out, and most cases of some")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Half of the examples are enough for a short run, unless somebody has chosen."""
+    if config.getoption("short") and "HYPOTHESIS_PROFILE" not in os.environ:
+        settings.load_profile("short")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

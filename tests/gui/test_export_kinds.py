@@ -33,6 +33,7 @@ def test_that_the_window_offers_what_the_exporters_write() -> None:
     assert [kind.extension for kind in FILE_KINDS] == list(exporters())
 
 
+@pytest.mark.long(but=4)
 @pytest.mark.parametrize("extension", [kind.extension for kind in FILE_KINDS])
 def test_that_the_menu_writes_each_kind(
     designed: MainWindow, files: object, until: Until, tmp_path: Path, extension: str

@@ -77,6 +77,7 @@ def test_that_all_writes_and_verifies_the_whole_set(
     assert not (tmp_path / "bare" / "cut.json").exists()
 
 
+@pytest.mark.long(but=3)
 @pytest.mark.parametrize("profile", PROFILES)
 def test_that_a_profile_reaches_the_file_and_its_verification(
     profile: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path

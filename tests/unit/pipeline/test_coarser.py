@@ -22,6 +22,7 @@ def dense() -> Candidate:
     return Candidate(even.sheet, evaluate(even, target, 0.0), seed=0, index=0)
 
 
+@pytest.mark.long
 def test_that_coarser_grids_keep_parities_symmetry_and_rank(dense: Candidate) -> None:
     request = Request(load("heart"), grid=(8, 9), k=1)
     found = list(coarser_designs(dense, request))
