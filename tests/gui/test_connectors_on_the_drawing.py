@@ -280,6 +280,7 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     until(lambda: page.hinges.selection_text.text() == "2 connectors")
 
 
+@pytest.mark.long(but=4)
 @pytest.mark.parametrize("size", [(260, 260), (700, 700), (1600, 1200)])
 @pytest.mark.parametrize("cells", [3, 8, 20])
 def test_that_a_dot_is_no_wider_than_a_third_of_nine_panels_in_ten(cells: int, size: tuple[int, int]) -> None:

@@ -50,6 +50,7 @@ def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> 
     assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
 
 
+@pytest.mark.long(but=2)
 @pytest.mark.parametrize(
     ("name", "value"),
     [("style_", ConnectorStyle.TEARDROP), ("order", CutOrder.SPREAD), ("profile", "lightburn"), ("dxf_version", "R12")],

@@ -193,6 +193,7 @@ def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> N
 # shapes -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long(but=3)
 @pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
 def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
     use(board, tool)

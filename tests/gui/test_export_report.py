@@ -198,6 +198,7 @@ def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_pat
     assert window.fabrication.options.dxf_version.currentData() == "R12"
 
 
+@pytest.mark.long(but=3)
 @pytest.mark.parametrize(
     "content",
     [

@@ -146,6 +146,7 @@ window.close()
 """
 
 
+@pytest.mark.long
 def test_that_opening_the_first_project_imports_nothing_in_the_windows_thread() -> None:
     environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
     done = subprocess.run([sys.executable, "-c", OPENED], env=environment, capture_output=True, text=True, check=True)

@@ -71,6 +71,7 @@ def test_that_damaged_files_are_read_or_refused_in_a_sentence(files: int, tmp_pa
     assert len(lines) == len(READERS)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_that_the_suite_names_files_that_end_a_reader_and_goes_on_behind_them(tmp_path: Path) -> None:
     (share,) = fuzzed("faulty", 6, 1, tmp_path)

@@ -72,6 +72,7 @@ def test_that_random_designs_hold_and_connectors_are_as_wide_as_asked() -> None:
     assert figures["off_where_not_wider_mm"] <= 1e-3  # type: ignore[operator]
 
 
+@pytest.mark.long
 def test_that_the_suite_runs_from_the_command_line(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -158,6 +158,7 @@ def test_that_the_project_chooses_the_version_unless_told(
         assert ezdxf.readfile(tmp_path / "x.dxf").acad_release == release
 
 
+@pytest.mark.long
 def test_that_a_name_is_engraved_on_request_and_the_file_carries_it(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -230,6 +231,7 @@ def test_that_the_switch_to_engrave_takes_no_target(switch: list[str]) -> None:
     assert read.targets == ["a.svg", "b.svg"] and read.engrave is (switch[0] == "--engrave")
 
 
+@pytest.mark.long
 def test_that_copies_fill_one_file_and_are_told(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:

@@ -267,6 +267,7 @@ def test_that_the_start_is_asked_by_counted_calls_where_a_reward_compares(
     assert records[-1]["reward"] < 0.0
 
 
+@pytest.mark.long
 def test_that_a_unet_prior_can_be_aligned(tmp_path: Path, tiny: GrpoSettings) -> None:
     torch.manual_seed(0)
     shape = UNetShape(4, 4, channels=(8, 8), residuals=1, latent=8, mask=32)
