@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import FloatArray
 
 #: Vertices of a curve between two points.
 CURVE_VERTICES = 15
@@ -55,6 +55,11 @@ def flattened_curve(controls: FloatArray, tolerance: float) -> FloatArray:
     -------
     vertices : (P, 2) float
         ``MOST_PIECES`` at most.
+
+    Raises
+    ------
+    ValueError
+        A control is not a number.
     """
     pieces = int(curve_pieces(controls, tolerance))
     t = np.arange(1, pieces + 1)[:, None, None] / pieces
@@ -64,7 +69,7 @@ def flattened_curve(controls: FloatArray, tolerance: float) -> FloatArray:
     return corners[:, 0]
 
 
-def curve_pieces(controls: FloatArray, tolerance: float) -> IntArray:
+def curve_pieces(controls: FloatArray, tolerance: float) -> FloatArray:
     """How many chords keep the error ``h^2 / 8 * max|B''|`` of quadratic or cubic curves below a tolerance.
 
     Parameters
@@ -74,13 +79,12 @@ def curve_pieces(controls: FloatArray, tolerance: float) -> IntArray:
 
     Returns
     -------
-    pieces : (...) int
-        From 1 to ``MOST_PIECES``.
+    pieces : (...) float
+        Whole numbers from 1 to ``MOST_PIECES``; not a number where a control is none.
     """
     degree = controls.shape[-2] - 1
     bend = degree * (degree - 1) * np.max(np.linalg.norm(np.diff(controls, n=2, axis=-2), axis=-1), axis=-1)
-    wanted = np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300))))
-    pieces: IntArray = np.clip(wanted, 1, MOST_PIECES).astype(np.intp)
+    pieces: FloatArray = np.clip(np.ceil(np.sqrt(bend / (8.0 * max(tolerance, 1e-300)))), 1, MOST_PIECES)
     return pieces
 
 

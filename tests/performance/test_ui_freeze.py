@@ -13,11 +13,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from watched_session import THEME
 
 pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
 
 #: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
-THEME, THEME_LIMIT = "switch the theme", 0.3
+THEME_LIMIT = 0.3
 #: Sessions played until no step froze the UI, the best turn of each counts: a cache that is cold or a
 #: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
 #: A session that is played again ends with the last step that is still in doubt.
@@ -28,7 +29,7 @@ SESSIONS = 3
 #: size, 1440 x 900.  The third one fills 2560 x 1440 with as many and paints the window four times as large: there one
 #: painting of all that is seen takes 0.04 to 0.1 s, as the machine's speed comes and goes.
 SESSION, TOOLS = "watched_session.py", "watched_tools.py"
-SCRIPTS = {(SESSION, "--brief"): (28, 0.1), (SESSION,): (50, 0.1), (TOOLS,): (48, 0.2)}
+SCRIPTS = {(SESSION, "--brief"): (30, 0.1), (SESSION,): (50, 0.1), (TOOLS,): (48, 0.2)}
 
 Turns = dict[str, tuple[float, float, float]]
 

@@ -11,6 +11,8 @@ from PIL import Image, ImageDraw
 from shapely.geometry import Point, Polygon, box
 
 from kirigami_studio.foundation.errors import KirigamiError, TargetError
+from kirigami_studio.outlines import read_svg
+from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import MOST_PARTS, PartKind, SourceParts
@@ -306,6 +308,33 @@ def test_that_a_drawing_that_unfolds_without_end_is_given_up_in_time(write, tmp_
     except TargetError as error:
         assert len(str(error)) < 400
     assert time.thread_time() - begun < 5.0
+
+
+def test_that_curves_are_counted_as_they_are_flattened_and_refused_before(tmp_path, monkeypatch) -> None:
+    path = written_svg('<path d="M0 0 L9 0 Q20 5 9 9 C5 30 -5 30 0 9 A6 9 0 0 1 0 0 Z"/>')(tmp_path)
+    drawn: list[int] = []
+
+    def counting(controls, tolerance):
+        vertices = flattened_curve(controls, tolerance)
+        drawn.append(len(vertices))
+        return vertices
+
+    monkeypatch.setattr(read_svg, "flattened_curve", counting)
+    read_parts(path)
+    curves, vertices = len(drawn), sum(drawn) + 3  # the start, the end of the line, and the start again
+    assert curves > 3
+    monkeypatch.setattr(read_svg, "MOST_VERTICES", vertices)
+    read_parts(path)
+    assert len(drawn) == 2 * curves
+    monkeypatch.setattr(read_svg, "MOST_VERTICES", vertices - 1)
+    with pytest.raises(TargetError, match=f"have {vertices} points"):
+        read_parts(path)
+    assert len(drawn) == 2 * curves
+
+
+def test_that_a_control_that_is_no_number_is_an_error() -> None:
+    with pytest.raises(ValueError, match="NaN"):
+        flattened_curve(np.array([[0.0, 0.0], [np.nan, 1.0], [2.0, 0.0]]), 0.1)
 
 
 def read_parts_of_a_square(tmp_path: Path) -> None:
