@@ -67,7 +67,7 @@ run: setup
 	  $(BIN)/kirigami-studio; \
 	else \
 	  echo "No display: playing a session off-screen. Pictures and the cut file go to out/"; \
-	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out; \
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --out out; \
 	fi
 
 # First the tests that measure time, alone; then all others in two processes of one thread each.  A process that has
@@ -124,27 +124,27 @@ demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
 
 states: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.state_sheet --out out/states-200 --scale 2
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states-200 --scale 2
 
 pairs: setup
 	$(BIN)/python packaging/make_pairs.py
 
 pictures: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --out out/pictures
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
 	$(BIN)/kirigami-studio animate resources/examples/heart.kiri --out docs/pictures/heart.gif
 	$(BIN)/python -c "import kirigami_studio as ks; print(ks.load_project('resources/examples/heart.kiri').best._repr_svg_())" \
 	  > docs/pictures/python-api.svg
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --pairs --scale 2 --out out/pictures
 	cp out/pictures/pairs.png docs/pictures/pairs.png
 	cp out/pictures/pairs-small.png resources/guide/pairs.png
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --out resources/guide
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.guide_pictures --language de --out resources/guide/de
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.guide_pictures --out resources/guide
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.guide_pictures --language de --out resources/guide/de
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.tutorial_pictures --out docs/pictures/tutorials
-	$(BIN)/python -m kirigami_studio.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.tutorial_pictures --out docs/pictures/tutorials
+	$(BIN)/python -m kirigami_studio.lab.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
 	  --out docs/pictures/artwork.png
 
@@ -155,10 +155,10 @@ shapes: setup
 	cp out/shapes.png docs/pictures/shapes.png
 
 figures: setup
-	$(BIN)/python -m kirigami_studio.demonstrations.mathematics_figures --out docs/pictures/mathematics
+	$(BIN)/python -m kirigami_studio.lab.demonstrations.mathematics_figures --out docs/pictures/mathematics
 
 animation: setup $(DOCS_STAMP)
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.demonstrations.screencast --out docs/pictures
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.screencast --out docs/pictures
 
 notebook: setup $(DOCS_STAMP)
 	$(BIN)/python packaging/play_notebook.py docs/first-design.ipynb

@@ -1,7 +1,7 @@
 """What a frozen program starts with: the command line, a polishing worker, or one module of the package.
 
-``kirigami-studio -m kirigami_studio.demonstrations.offscreen_session --out out`` does what the interpreter does with
-these words; ``packaging/smoke.py`` plays a session with it where no Python is installed.
+``kirigami-studio -m kirigami_studio.lab.demonstrations.offscreen_session --out out`` does what the interpreter does
+with these words; ``packaging/smoke.py`` plays a session with it where no Python is installed.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from pathlib import Path
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 DESIGN_FILES = ("design.kiri", "cut.dxf", "layout.svg", "preview.png", "candidates.json")
-SESSION = "kirigami_studio.demonstrations.offscreen_session"
+SESSION = "kirigami_studio.lab.demonstrations.offscreen_session"
 #: What the program says when its polishing workers do not start; it then does their work itself.
 NO_WORKERS = ("polishing goes on in one process", "a polishing worker died")
 

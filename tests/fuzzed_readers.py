@@ -185,13 +185,13 @@ def _learned(reader: str) -> list[bytes]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "a")
         if reader == "baseline":
-            from kirigami_studio.baselines.conditional import FieldPixels
-            from kirigami_studio.baselines.cvae import Cvae
-            from kirigami_studio.baselines.stored import store_generator
+            from kirigami_studio.lab.baselines.conditional import FieldPixels
+            from kirigami_studio.lab.baselines.cvae import Cvae
+            from kirigami_studio.lab.baselines.stored import store_generator
 
             store_generator("cvae", Cvae(FieldPixels(3, 3)), path, {})
         else:
-            from kirigami_studio.training.learner import Checkpoint
+            from kirigami_studio.lab.training.learner import Checkpoint
 
             tensors = {"a": torch.ones(2, 2)}
             Checkpoint(1, tensors, tensors, {"state": {}}, {"rate": 0.1}, torch.get_rng_state()).save(path)

@@ -25,11 +25,11 @@ from thread_watch import ThreadWatch, in_another_thread, long_number
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.application import create_application, create_window
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import FIRST, MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.panels.settings_panel import POLISH
+from kirigami_studio.gui.run.settings_panel import POLISH
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_application, create_window
+from kirigami_studio.gui.window.main_window import FIRST, MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet

@@ -124,7 +124,7 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        from kirigami_studio.gui.jobs.artwork_jobs import svg_to_png
+        from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
 
         return svg_to_png(content, side)
 

@@ -31,7 +31,7 @@ class SubCommand:
     name, about : str
         A name of two words belongs to a group, see ``GROUPS``.
     run : str
-        ``module:function`` inside this package, imported when the command is called.
+        ``module:function`` inside this package, or below ``lab``, imported when the command is called.
     options : tuple
         ``add_argument`` calls.
     examples : tuple of str
@@ -528,7 +528,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio coupon --material film-uv --out coupon.dxf", "kirigami-studio coupon --gap-mm 0.29 0.31")),
     SubCommand("variants", "list the bundled generator variants", "library:variants", (JSON,),
             ("kirigami-studio variants",)),
-    SubCommand("dataset", "generate and verify training data as the paper describes", "learning:dataset", (
+    SubCommand("dataset", "generate and verify training data as the paper describes", "lab.cli.learning:dataset", (
         option("family", choices=("sobol", "structured", "drawn"),
                help="distribution of the ratio fields; drawn: fits of procedural drawn shapes, for training only"),
         option("--out", required=True,
@@ -546,7 +546,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio dataset structured --out data --scheduler tcp://10.0.0.5:8786",
         "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
     SubCommand("train prior", "train a generator; resumes from the checkpoint in its run folder",
-        "learning:train", (
+        "lab.cli.learning:train", (
         RUN_FOLDER,
         option("--steps", type=count, default=12_000, help="total optimiser steps (default 12000)"),
         option("--backbone", choices=("perceptron", "unet"), default="perceptron",
@@ -577,16 +577,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "the paper's network and settings, 400 epochs of 5000 targets (on a GPU):",
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
-    SubCommand("train cvae", "train the paper's conditional autoencoder, to compare with", "learning:cvae",
+    SubCommand("train cvae", "train the paper's conditional autoencoder, to compare with", "lab.cli.learning:cvae",
         training_of_a_baseline(2e-4, "32,64,64"), ("kirigami-studio train cvae --steps 4000 --out runs/cvae",)),
-    SubCommand("train cgan", "train the paper's conditional GAN, to compare with", "learning:cgan",
+    SubCommand("train cgan", "train the paper's conditional GAN, to compare with", "lab.cli.learning:cgan",
         training_of_a_baseline(2e-4, "32,64"), ("kirigami-studio train cgan --steps 4000 --out runs/cgan",)),
-    SubCommand("train diffusion", "train the paper's diffusion model, to compare with", "learning:diffusion",
+    SubCommand("train diffusion", "train the paper's diffusion model, to compare with", "lab.cli.learning:diffusion",
         training_of_a_baseline(2e-5, "64,128,256,384", RESIDUALS),
         ("kirigami-studio train diffusion --channels 32,48,64,96 --residuals 1 --latent 16 --learning-rate 5e-4 "
          "--steps 4000 --out runs/diffusion",)),
     SubCommand("train align", "align a prior for match and regularity, by gradients through sampler and geometry",
-        "learning:align", (
+        "lab.cli.learning:align", (
         RUN_FOLDER,
         option("--start", default="bundled", metavar="WEIGHTS",
                help="prior to align: 'bundled' (default), or the .safetensors of a run"),
@@ -609,7 +609,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
     SubCommand("train grpo", "align a generator with a reward, by the paper's GRPO; resumes from its checkpoint",
-        "learning:grpo", (
+        "lab.cli.learning:grpo", (
         RUN_FOLDER,
         option("--reward", choices=("accuracy", "regularity", "balanced", "none", "fabrication"), default="accuracy",
                help="what the reward prefers; none: nothing, to compare with; fabrication: even sheets that can be cut "
@@ -640,35 +640,38 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both",
         "kirigami-studio train grpo --reward none --keep-at 0 1000 2500 5000 10000 --out runs/none")),
-    SubCommand("benchmark generator", "score one bundled variant on a set of targets", "benchmarks:generator", (
+    SubCommand("benchmark generator", "score one bundled variant on a set of targets", "lab.cli.benchmarks:generator", (
         *targets_of_a_suite(500), EXACT, GRID, VARIANT, samples(1), STEPS, POLISH, SEEDS, *FIGURES,
     ), ("kirigami-studio benchmark generator --count 100 --json",
         "kirigami-studio benchmark generator --targets library --k 8 --polish 15 --seeds 0",
         "kirigami-studio benchmark generator --k 4 --polish 15 --seeds 0 --exact")),
-    SubCommand("benchmark variants", "compare the bundled variants with the prior", "benchmarks:variants", (
+    SubCommand("benchmark variants", "compare the bundled variants with the prior", "lab.cli.benchmarks:variants", (
         *targets_of_a_suite(500), EXACT, GRID, VARIANTS, samples(1), STEPS, SEEDS, *FIGURES,
     ), ("kirigami-studio benchmark variants --split validation --count 100",)),
-    SubCommand("benchmark spread", "measure how much the samples for one target differ", "benchmarks:spread", (
+    SubCommand("benchmark spread", "measure how much the samples for one target differ", "lab.cli.benchmarks:spread", (
         *targets_of_a_suite(50), EXACT, GRID, VARIANTS, samples(32), STEPS, SEED, *FIGURES,
     ), ("kirigami-studio benchmark spread --variants prior --out spread.json",)),
-    SubCommand("benchmark nearness", "measure how near 'more like this' stays to a design", "benchmarks:nearness", (
+    SubCommand("benchmark nearness", "measure how near 'more like this' stays to a design",
+               "lab.cli.benchmarks:nearness", (
         *targets_of_a_suite(50), EXACT, GRID, VARIANT, samples(8), STEPS, POLISH, SEED, *FIGURES,
     ), ("kirigami-studio benchmark nearness --targets library",)),
-    SubCommand("benchmark robustness", "measure what rotated, noisy and coarse targets cost", "benchmarks:robustness", (
+    SubCommand("benchmark robustness", "measure what rotated, noisy and coarse targets cost",
+               "lab.cli.benchmarks:robustness", (
         *targets_of_a_suite(100), GRID, VARIANTS, STEPS, POLISH, SEEDS, *FIGURES,
     ), ("kirigami-studio benchmark robustness --count 50",)),
-    SubCommand("benchmark polish", "measure polishing alone, or search alone", "benchmarks:polish", (
+    SubCommand("benchmark polish", "measure polishing alone, or search alone", "lab.cli.benchmarks:polish", (
         *targets_of_a_suite(500), EXACT, GRID,
         option("--polish", type=whole, default=40, help="polishing steps (default 40)"),
         option("--effort", type=whole, default=None, help="search with this effort instead of polishing"),
         *FIGURES,
     ), ("kirigami-studio benchmark polish --targets library --effort 1",)),
-    SubCommand("benchmark regularity", "measure match and variation by preference", "benchmarks:regularity", (
+    SubCommand("benchmark regularity", "measure match and variation by preference", "lab.cli.benchmarks:regularity", (
         *targets_of_a_suite(500), EXACT, GRID, VARIANT,
         option("--polish", type=count, default=None, help="polishing steps (default: as many as 'design' takes)"),
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark regularity --exact --count 100",)),
-    SubCommand("benchmark designs", "design a sheet for each target and list the results", "benchmarks:designs", (
+    SubCommand("benchmark designs", "design a sheet for each target and list the results",
+               "lab.cli.benchmarks:designs", (
         *targets_of_a_suite(500), EXACT,
         option("--grid", default="10x10",
                help="voids, ROWSxCOLUMNS or auto, or several separated by commas (default 10x10)"),
@@ -687,7 +690,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
         "kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --picture all.png --states",
     )),
-    SubCommand("benchmark starts", "design targets from other sheets than rectangles", "benchmarks:starts", (
+    SubCommand("benchmark starts", "design targets from other sheets than rectangles", "lab.cli.benchmarks:starts", (
         option("--starts", nargs="+", default=["circle", "triangle", "hexagon", "ellipse", "square"], metavar="SHAPE",
                help="shapes of the flat sheet, as for 'design --start' "
                     "(default: circle triangle hexagon ellipse square)"),
@@ -703,7 +706,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark starts --fields 1000",)),
     SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
-               "benchmarks:solvers", (
+               "lab.cli.benchmarks:solvers", (
         *targets_of_a_suite(20), EXACT, GRID, SEEDS,
         option("--methods", default=None, metavar="NAMES",
                help="of cma-es, swarm, local-search, powell, fit, sample, sample-fit, separated by commas "
@@ -712,7 +715,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio benchmark solvers --out runs/solvers",
         "kirigami-studio benchmark solvers --count 5 --methods cma-es,fit --seeds 0 --processes 1")),
     SubCommand("benchmark generators", "compare conditional generators, one sample a target (the paper's Table 2)",
-               "benchmarks:generators", (
+               "lab.cli.benchmarks:generators", (
         *targets_of_a_suite(50), EXACT,
         option("--generators", nargs="+", default=["prior"], metavar="GENERATOR",
                help="bundled variants, and .safetensors files of training runs (default: prior)"),
@@ -726,7 +729,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "earlier call may have begun it"),
         JSON,
     ), ("kirigami-studio benchmark generators --generators prior runs/cvae/cvae.safetensors --out runs/table-2",)),
-    SubCommand("benchmark judge", "judge your own generator beside baselines", "benchmarks:judge", (
+    SubCommand("benchmark judge", "judge your own generator beside baselines", "lab.cli.benchmarks:judge", (
         option("generators", nargs="+", metavar="GENERATOR",
                help="MODULE:CALLABLE (targets -> tables of ratios), a baseline (uniform, cma-es, swarm, local-search, "
                     "powell, fit, sample, sample-fit, a bundled variant), or a .safetensors file of a training run"),
@@ -737,7 +740,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio benchmark judge mine:generate prior",
         "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),
     SubCommand("benchmark grpo", "judge what GRPO made of a prior, one sample a target (the paper's Table 3)",
-               "benchmarks:grpo", (
+               "lab.cli.benchmarks:grpo", (
         option("runs", nargs="+", metavar="RUN", help="folders of 'train grpo --keep-at 0 ...'"),
         *targets_of_a_suite(20), EXACT, SEEDS,
         *WORKERS,
@@ -746,7 +749,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "may have begun it"),
         JSON,
     ), ("kirigami-studio benchmark grpo runs/accuracy runs/none --out runs/grpo",)),
-    SubCommand("benchmark best-of-k", "measure what more candidates or runs give and cost", "benchmarks:best_of_k", (
+    SubCommand("benchmark best-of-k", "measure what more candidates or runs give and cost",
+               "lab.cli.benchmarks:best_of_k", (
         *targets_of_a_suite(5), EXACT, GRID,
         option("--methods", default=None, metavar="NAMES",
                help="of sample, sample-fit, swarm, cma-es, separated by commas (default: all)"),
@@ -754,7 +758,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *SOLVING,
     ), ("kirigami-studio benchmark best-of-k --out runs/solvers",
         "kirigami-studio benchmark best-of-k --methods sample,sample-fit --count 50")),
-    SubCommand("benchmark grid-sweep", "measure solvers, fits and samples on growing grids", "benchmarks:grid_sweep", (
+    SubCommand("benchmark grid-sweep", "measure solvers, fits and samples on growing grids",
+               "lab.cli.benchmarks:grid_sweep", (
         option("--targets", nargs="+", default=["heart", "circle", "hexagon"],
                help="silhouettes, files or folders (default: heart circle hexagon)"),
         option("--sizes", type=count, nargs="+", default=[6, 8, 10, 12, 16, 20, 24, 32, 48], metavar="N",
@@ -764,7 +769,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio benchmark grid-sweep --out runs/sweep",
         "kirigami-studio benchmark grid-sweep --methods fit,sample --sizes 10 24 48")),
     SubCommand("benchmark report", "write tables and plots of finished suites beside the paper's numbers",
-               "benchmarks:report", (
+               "lab.cli.benchmarks:report", (
         option("--runs", required=True, metavar="FOLDER",
                help="folder with solvers/ (best-of-k, too), grid-sweep/, generators/, grpo/ (--out of these suites), "
                     "shapes/*.json and *.png (designs), as-cut.json, and training/, one run in each folder there"),
@@ -773,22 +778,24 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio benchmark report --runs runs --out report.md",
         "kirigami-studio benchmark report --quick --runs quick --out quick/report.md")),
-    SubCommand("benchmark generation-speed", "time loading and sampling", "benchmarks:generation_speed", (
+    SubCommand("benchmark generation-speed", "time loading and sampling", "lab.cli.benchmarks:generation_speed", (
         VARIANTS, GRID, STEPS, *FIGURES,
     ), ("kirigami-studio benchmark generation-speed",)),
-    SubCommand("benchmark speed", "time scoring and polishing", "benchmarks:speed", FIGURES,
+    SubCommand("benchmark speed", "time scoring and polishing", "lab.cli.benchmarks:speed", FIGURES,
             ("kirigami-studio benchmark speed",)),
-    SubCommand("benchmark lattice", "time the exact geometry", "benchmarks:lattice", FIGURES,
+    SubCommand("benchmark lattice", "time the exact geometry", "lab.cli.benchmarks:lattice", FIGURES,
             ("kirigami-studio benchmark lattice",)),
-    SubCommand("benchmark fabrication", "time cut plans and compare cutting orders", "benchmarks:fabrication", (
+    SubCommand("benchmark fabrication", "time cut plans and compare cutting orders", "lab.cli.benchmarks:fabrication", (
         RANDOM_DESIGNS, SEED, *FIGURES,
     ), ("kirigami-studio benchmark fabrication",)),
-    SubCommand("benchmark mechanics", "compare the closing simulator with published tests", "benchmarks:mechanics",
+    SubCommand("benchmark mechanics", "compare the closing simulator with published tests",
+               "lab.cli.benchmarks:mechanics",
             FIGURES, ("kirigami-studio benchmark mechanics",)),
-    SubCommand("benchmark cut-files", "export random designs and read them back", "benchmarks:cut_files", (
+    SubCommand("benchmark cut-files", "export random designs and read them back", "lab.cli.benchmarks:cut_files", (
         RANDOM_DESIGNS, SEED, STYLE, *FIGURES,
     ), ("kirigami-studio benchmark cut-files --count 20",)),
-    SubCommand("benchmark as-cut", "cut silhouettes, read the files back and close the sheets", "benchmarks:as_cut", (
+    SubCommand("benchmark as-cut", "cut silhouettes, read the files back and close the sheets",
+               "lab.cli.benchmarks:as_cut", (
         option("--targets", nargs="+", default=["heart", "hexagon", "star"],
                help="silhouettes, 'library', files or folders (default: heart hexagon star)"),
         option("--connectors-mm", type=positive, nargs="+", default=[0.2, 0.5, 1.0], metavar="MM",
@@ -848,7 +855,7 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 def open_window(arguments: argparse.Namespace) -> int:
     """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
-    from kirigami_studio.gui.application import run
+    from kirigami_studio.gui.window.application import run
 
     return run(["kirigami-studio", *arguments.shown])
 
@@ -863,7 +870,8 @@ def _late(place: str) -> Callable[[argparse.Namespace], int]:
 
     def call(arguments: argparse.Namespace) -> int:
         module, function = place.split(":")
-        code: int = getattr(import_module(f"kirigami_studio.cli.{module}"), function)(arguments)
+        home = module if module.startswith("lab.") else f"cli.{module}"
+        code: int = getattr(import_module(f"kirigami_studio.{home}"), function)(arguments)
         return code
 
     return call

@@ -18,7 +18,7 @@ from kirigami_studio.foundation.words import DOMAIN, read_catalogue
 FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
 #: ``[text](place)`` and ``![text](place)``; the place without its anchor and title.
 LINK = re.compile(r"\[[^\]\n]*\]\(\s*<?([^)\s#>]+)")
-#: A path with a folder: ``gui/session.py``, ``tests/data/oracles``.
+#: A path with a folder: ``gui/session/session.py``, ``tests/data/oracles``.
 PATH = re.compile(r"(?<![\w./:-])(?:[\w-]+/)+[\w-]+(?:\.[\w-]+)*/?(?![\w/*(])")
 COMMAND = re.compile(r"kirigami-studio ([^`#\n|]+)")
 #: Made by the program or by ``make``.

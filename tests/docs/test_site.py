@@ -138,7 +138,7 @@ def test_that_every_command_and_its_options_are_in_the_reference(site: Path) -> 
 def test_that_public_python_names_are_in_the_reference(site: Path) -> None:
     text = (site / "api-reference.html").read_text(encoding="utf-8")
     for name in ("designs", "targets", "masks", "judge", "baseline", "simulate", "score"):
-        assert f'id="kirigami_studio.problem.{name}"' in text
+        assert f'id="kirigami_studio.lab.problem.{name}"' in text
     homes = {name: module for module, names in kirigami_studio._MODULES.items() for name in names}
     assert [name for name in kirigami_studio.__all__ if f'id="kirigami_studio.{homes[name]}.{name}"' not in text] == []
 

@@ -14,8 +14,8 @@ from PySide6.QtGui import QImage
 
 from kirigami_studio.export.artwork import Fitting, State
 from kirigami_studio.export.pdf_pages import page_boxes
-from kirigami_studio.gui.dialogs.artwork_editor import ArtworkEditor
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 
 Until = Callable[[Callable[[], bool]], None]

@@ -13,11 +13,11 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.grip_items import grip_places
-from kirigami_studio.gui.views.gallery_model import AS_CUT_ROLE
-from kirigami_studio.gui.views.layout_view import Overlay
-from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
+from kirigami_studio.gui.gallery.gallery_model import AS_CUT_ROLE
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.stage.grip_items import grip_places
+from kirigami_studio.gui.stage.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
+from kirigami_studio.gui.window.main_window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]

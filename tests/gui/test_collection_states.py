@@ -9,8 +9,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.demonstrations.offscreen_session import click
-from kirigami_studio.demonstrations.state_sheet import StateSheet
+from kirigami_studio.lab.demonstrations.offscreen_session import click
+from kirigami_studio.lab.demonstrations.state_sheet import StateSheet
 from kirigami_studio.project.document import Mark
 
 

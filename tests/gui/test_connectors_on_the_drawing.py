@@ -13,13 +13,13 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.cuts_page import CutsPage
-from kirigami_studio.gui.panels.hinge_bar import RULES
-from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
-from kirigami_studio.gui.scene.view_transform import ViewTransform
-from kirigami_studio.gui.views.hinge_gestures import HingeDrag
+from kirigami_studio.gui.make.cuts_page import CutsPage
+from kirigami_studio.gui.make.hinge_bar import RULES
+from kirigami_studio.gui.make.hinge_gestures import HingeDrag
+from kirigami_studio.gui.stage.connector_items import Connectors, paint_connectors
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project.settings import FabricationSettings
 from tests.gui.test_cut_preview import plan_of
 

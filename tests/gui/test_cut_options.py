@@ -12,9 +12,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.fabrication_panel import Extent
-from kirigami_studio.gui.panels.more_options import ORDERS, STYLES
+from kirigami_studio.gui.make.fabrication_panel import Extent
+from kirigami_studio.gui.make.more_options import ORDERS, STYLES
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.settings import FabricationSettings
 

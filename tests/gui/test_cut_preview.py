@@ -17,11 +17,11 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.cut_items import SEEN, THINNEST, CutDrawing, cut_steps
-from kirigami_studio.gui.scene.legends import round_length
-from kirigami_studio.gui.views.cut_view import CutOverlay, CutView
+from kirigami_studio.gui.make.cut_items import SEEN, THINNEST, CutDrawing, cut_steps
+from kirigami_studio.gui.make.cut_view import CutOverlay, CutView
+from kirigami_studio.gui.widgets.legends import round_length
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 

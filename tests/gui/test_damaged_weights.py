@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from worker_processes import workers_of
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 pytestmark = [pytest.mark.torch, pytest.mark.slow]

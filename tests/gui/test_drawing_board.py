@@ -12,11 +12,11 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.sketching.point_tool import PointTool
-from kirigami_studio.gui.sketching.pose_tool import TURN, PoseTool
-from kirigami_studio.gui.views.target_view import DRAWING, Tool
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.target.point_tool import PointTool
+from kirigami_studio.gui.target.pose_tool import TURN, PoseTool
+from kirigami_studio.gui.target.target_view import DRAWING, Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.placed import Placed

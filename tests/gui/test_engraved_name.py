@@ -12,8 +12,8 @@ from PySide6.QtGui import QColor, QImage
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import candidate_edits, store
 
 Until = Callable[[Callable[[], bool]], None]

@@ -12,11 +12,11 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.export.registry import exporters
-from kirigami_studio.gui.dialogs.files import follow_filter
-from kirigami_studio.gui.file_kinds import FILE_KINDS, kind_of
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.files.file_dialogs import follow_filter
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
+from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 Until = Callable[[Callable[[], bool]], None]
 FIRST_BYTES = {

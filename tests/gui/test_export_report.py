@@ -16,10 +16,10 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.fabricate.material import DEFAULT_PRESET
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.gui.dialogs.export_report import ExportReport, as_text, format_findings, verdict
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.make.export_report import ExportReport, as_text, format_findings, verdict
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import edits, preferences
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.preferences import Preferences

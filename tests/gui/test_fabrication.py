@@ -13,9 +13,9 @@ from ezdxf.path import make_path
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.look.readable import readable_length
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.readable import readable_length
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

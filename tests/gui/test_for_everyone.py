@@ -24,10 +24,10 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.jobs.cut_jobs import Exported
-from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.cut_files import Exported
 
 CONTROLS = (
     QAbstractButton,

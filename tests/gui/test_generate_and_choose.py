@@ -9,10 +9,10 @@ import pytest
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.designs.generation import request_of
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.views.gallery_model import described
+from kirigami_studio.gui.gallery.gallery_model import described
+from kirigami_studio.gui.run.generation import request_of
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.dialogs.guide import GuideWindow
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.guide import GuideWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 
 
 @pytest.fixture

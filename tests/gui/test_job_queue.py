@@ -12,7 +12,8 @@ from PySide6.QtCore import QEventLoop, QThread, QTimer
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue, single
+from kirigami_studio.foundation.steps import single
+from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue
 
 Until = Callable[[Callable[[], bool]], None]
 

@@ -23,12 +23,12 @@ from PySide6.QtWidgets import (
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.words import again, language, number, tr
-from kirigami_studio.gui.commands.submenus import LanguageMenu
-from kirigami_studio.gui.language import SYSTEM, speak
-from kirigami_studio.gui.look.theme import DARK
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.views.target_view import TargetView
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.target.target_view import TargetView
+from kirigami_studio.gui.widgets.language import SYSTEM, speak
+from kirigami_studio.gui.widgets.theme import DARK
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.submenus import LanguageMenu
 from kirigami_studio.project import edits, preferences
 from tests.gui.test_parts import LOGO, opened, written
 

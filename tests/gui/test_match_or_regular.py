@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import choose_grid
 from kirigami_studio.pipeline.rank import Ranking

@@ -14,9 +14,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.coupon import kerf_from_gaps
 from kirigami_studio.fabricate.material import library, presets
-from kirigami_studio.gui.dialogs.material_editor import MaterialEditor
-from kirigami_studio.gui.dialogs.material_form import NUMBERS, MaterialForm
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.make.material_editor import MaterialEditor
+from kirigami_studio.gui.make.material_form import NUMBERS, MaterialForm
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

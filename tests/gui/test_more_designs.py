@@ -13,18 +13,18 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
-from kirigami_studio.gui.designs.gallery_selection import SortOrder
-from kirigami_studio.gui.designs.generation import next_seed
-from kirigami_studio.gui.jobs.design_jobs import generating
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
+from kirigami_studio.gui.gallery.gallery_model import FRESH_ROLE
+from kirigami_studio.gui.gallery.gallery_selection import SortOrder
+from kirigami_studio.gui.run.generation import next_seed
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.studio.designing import generating
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

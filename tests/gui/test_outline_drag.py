@@ -18,10 +18,10 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.gui.jobs import vertex_drag
-from kirigami_studio.gui.jobs.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.jobs.vertex_drag import DragStart, Follower
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue
+from kirigami_studio.gui.stage import vertex_drag
+from kirigami_studio.gui.stage.vertex_drag import DragStart, Follower
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet

@@ -14,8 +14,8 @@ from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.dialogs.part_picker import PartPicker
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.target.part_picker import PartPicker
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.merging import Join
 
 Until = Callable[[Callable[[], bool]], None]

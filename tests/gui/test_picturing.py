@@ -16,10 +16,10 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.svg_reading import read_with_svgelements
+from kirigami_studio.gui.files import picture_jobs
 from kirigami_studio.gui.files.picturing import PictureMaker
-from kirigami_studio.gui.jobs import picture_jobs
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 NAMES = ["Target silhouette", "Cut preview", "Design gallery", "Whole window"]

@@ -18,9 +18,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.jobs.plot_jobs import ANGLES, Reading, batches, plotting
-from kirigami_studio.gui.look.theme import DARK, LIGHT
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading, batches, plotting
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes

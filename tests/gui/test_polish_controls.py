@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.choice_box import TOOLTIP
-from kirigami_studio.gui.panels.settings_panel import PREFER
+from kirigami_studio.gui.run.settings_panel import PREFER
+from kirigami_studio.gui.widgets.choice_box import TOOLTIP
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.polish.preferences import PREFERENCES
 
 Until = Callable[[Callable[[], bool]], None]

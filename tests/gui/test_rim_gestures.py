@@ -13,10 +13,10 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.gui.designs.rim_drag import LEAST_GAP
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.rim_items import RimShapes
-from kirigami_studio.gui.views.layout_view import LayoutView
+from kirigami_studio.gui.stage.layout_view import LayoutView
+from kirigami_studio.gui.stage.rim_drag import LEAST_GAP
+from kirigami_studio.gui.stage.rim_items import RimShapes
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import rim_table
 from kirigami_studio.project import edits

@@ -10,12 +10,12 @@ from PySide6.QtCore import QPoint, QRect, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.application import create_window
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.panels.fabrication_panel import Extent
-from kirigami_studio.gui.panels.stage_panel import LOW
+from kirigami_studio.gui.make.fabrication_panel import Extent
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.stage_panel import LOW
 
 Until = Callable[[Callable[[], bool]], None]
 

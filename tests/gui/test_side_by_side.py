@@ -13,8 +13,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

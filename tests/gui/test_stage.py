@@ -13,10 +13,10 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.look.theme import DARK, LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.deployment_bar import phase_of, phi_at
-from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.stage.deployment_bar import phase_of, phi_at
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

@@ -12,10 +12,10 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.designs.generation import request_of
-from kirigami_studio.gui.designs.rim_drag import moved, room_of
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.run.generation import request_of
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.stage.rim_drag import moved, room_of
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import laid_sheet
 from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points

@@ -18,15 +18,14 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import SheetError
-from kirigami_studio.gui.designs.generation import own_start
-from kirigami_studio.gui.designs.two_states import size_words, start_words, starts_as
-from kirigami_studio.gui.dialogs.start_board import StartBoard
-from kirigami_studio.gui.look.readable import TIMES
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.gallery_model import START_ROLE
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.gallery.gallery_model import START_ROLE
+from kirigami_studio.gui.run.generation import own_start
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.start_board import StartBoard
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.readable import TIMES
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
@@ -35,6 +34,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape, outline_start
 from kirigami_studio.polish.flat_sheet import first_sheet, uniform_sheet
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.two_states import size_words, start_words, starts_as
 
 Until = Callable[[Callable[[], bool]], None]
 HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, -20.0), (-40.0, 30.0)]

@@ -10,8 +10,8 @@ from PIL import Image
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.demonstrations.board_states import LARGE, SIZES
-from kirigami_studio.demonstrations.state_sheet import StateSheet, contact_sheets
+from kirigami_studio.lab.demonstrations.board_states import LARGE, SIZES
+from kirigami_studio.lab.demonstrations.state_sheet import StateSheet, contact_sheets
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
 def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:2])
     sheet.starts()
     for name in ("start-menu", "start-board-dark", "pairs-light", "pair-1280x720-dark"):
         assert (tmp_path / f"{name}.png").exists()
@@ -82,7 +82,7 @@ def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
 def test_that_the_second_target_is_shown_at_its_angle(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[2:])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[2:])
     sheet.window.resize(SIZES[2])
     sheet.choose_heart()
     sheet.second_target()
@@ -104,7 +104,7 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
 def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2])
     sheet.window.controller.fabrication.change(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
@@ -117,7 +117,7 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2]
+        "kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2]
     )  # one is enough, each takes seconds
     sheet.editor()
     target = sheet.window.target

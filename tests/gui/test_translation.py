@@ -33,8 +33,8 @@ from pathlib import Path
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (QAbstractButton, QAbstractSpinBox, QComboBox, QGroupBox, QLabel, QLineEdit, QWidget)
 from PySide6.QtCore import QEventLoop, Qt
-from kirigami_studio.gui.application import create_application, create_window
-from kirigami_studio.gui.look.theme import LIGHT
+from kirigami_studio.gui.window.application import create_application, create_window
+from kirigami_studio.gui.widgets.theme import LIGHT
 
 application = create_application(["kirigami-studio"])
 window = create_window(LIGHT)

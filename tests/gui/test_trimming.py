@@ -16,9 +16,9 @@ from pytestqt.qtbot import QtBot
 from trimmed_panels import deployed_parts
 
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.scene.mismatch_items import mismatch
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.mismatch_items import mismatch
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store

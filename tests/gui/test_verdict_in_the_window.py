@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project.verdict import Level
 
 LEFT = Qt.MouseButton.LeftButton

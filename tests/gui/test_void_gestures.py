@@ -27,9 +27,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.designs import hand_editor
-from kirigami_studio.gui.designs.hand_editor import JOINS_WITHIN
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.stage import hand_editor
+from kirigami_studio.gui.stage.hand_editor import JOINS_WITHIN
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.edits import Edit
 

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Origin
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 
 
 def lock(window: MainWindow, *voids: tuple[int, int]) -> None:

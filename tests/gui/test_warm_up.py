@@ -13,8 +13,8 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.application import WarmUp
-from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.window.application import WarmUp
+from kirigami_studio.studio import importing
 
 
 def test_that_it_happens_once_after_a_rest(qtbot: QtBot) -> None:
@@ -110,7 +110,7 @@ def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
 @pytest.mark.long
 def test_that_collections_leave_out_what_the_start_has_made() -> None:
     script = (
-        "import gc; from kirigami_studio.gui.application import create_application, create_window;"
+        "import gc; from kirigami_studio.gui.window.application import create_application, create_window;"
         "create_application(['kirigami-studio']); before = gc.get_freeze_count(); window = create_window();"
         "print(before, gc.get_freeze_count(), len(gc.get_objects())); window.close()"
     )
@@ -124,7 +124,7 @@ OPENED = """
 import sys, threading, time
 from PySide6.QtCore import QCoreApplication
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.window.application import create_application, create_window
 
 class Finder:
     def find_spec(self, name, path=None, target=None):

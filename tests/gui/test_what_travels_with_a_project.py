@@ -12,9 +12,9 @@ import pytest
 
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
-from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message
+from kirigami_studio.gui.session.messages import Message
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 from kirigami_studio.project import edits, picture_record, recovery, store
 from kirigami_studio.project.document import Document

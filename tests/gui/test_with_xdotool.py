@@ -22,7 +22,7 @@ from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document

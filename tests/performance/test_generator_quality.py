@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kirigami_studio.benchmark.generator_suite import measure_generator
+from kirigami_studio.lab.benchmark.generator_suite import measure_generator
+from kirigami_studio.lab.training.dataset import SPLITS, generate_split
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
-from kirigami_studio.training.dataset import SPLITS, generate_split
 
 pytestmark = pytest.mark.torch
 

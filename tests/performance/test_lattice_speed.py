@@ -9,7 +9,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 pytestmark = pytest.mark.torch
 pytest.importorskip("torch")
 
-from kirigami_studio.benchmark.lattice_suite import (  # noqa: E402
+from kirigami_studio.lab.benchmark.lattice_suite import (  # noqa: E402
     LatticeTiming,
     time_batch,
     time_growth,

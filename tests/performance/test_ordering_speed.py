@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 
-from kirigami_studio.benchmark.fabrication_suite import random_design
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.options import CutOptions, CutOrder
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.lab.benchmark.fabrication_suite import random_design
 
 
 def test_that_600_slits_are_ordered_in_a_second() -> None:

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.lab.training.dataset import SPLITS, generate_split
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.training.dataset import SPLITS, generate_split
 
 pytestmark = pytest.mark.torch
 COUNT = 12

@@ -25,7 +25,7 @@ def lost():
         return 0.0
 began, before = time.perf_counter(), lost()
 import sys
-from kirigami_studio.gui.application import create_application, create_window, open_first
+from kirigami_studio.gui.window.application import create_application, create_window, open_first
 application = create_application(["kirigami-studio"])
 window = create_window()
 open_first(window, "heart")

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from kirigami_studio.benchmark import cut_files_suite
-from kirigami_studio.benchmark.cut_files_suite import CutFileFigures
 from kirigami_studio.cli import main
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.lab.benchmark import cut_files_suite
+from kirigami_studio.lab.benchmark.cut_files_suite import CutFileFigures
 
 pytestmark = pytest.mark.torch
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from command_line import answer
 
-from kirigami_studio.benchmark.run_store import RunStore
-from kirigami_studio.benchmark.solver_suite import SolverSettings, measure_solvers
 from kirigami_studio.cli import main
 from kirigami_studio.foundation.processes import HERE, Workers
+from kirigami_studio.lab.benchmark.run_store import RunStore
+from kirigami_studio.lab.benchmark.solver_suite import SolverSettings, measure_solvers
+from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.training.dataset import generate_split
 
 pytestmark = [pytest.mark.slow, pytest.mark.torch]
 

@@ -12,8 +12,8 @@ import pytest
 from kirigami_studio.cli import main
 from kirigami_studio.generator.unet import UNetShape
 from kirigami_studio.generator.weights import load_model
-from kirigami_studio.training.fitted_fields import FittedFields, fit_shapes, fitted_block
-from kirigami_studio.training.train_flow import FlowSettings
+from kirigami_studio.lab.training.fitted_fields import FittedFields, fit_shapes, fitted_block
+from kirigami_studio.lab.training.train_flow import FlowSettings
 
 pytestmark = pytest.mark.torch
 
@@ -21,8 +21,8 @@ pytestmark = pytest.mark.torch
 @pytest.fixture
 def small_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few validation targets and designs: 200 and 32 768 of them take most of a minute."""
-    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 12)
-    monkeypatch.setattr("kirigami_studio.training.train_flow.FlowSettings", partial(FlowSettings, chunk=128))
+    monkeypatch.setattr("kirigami_studio.lab.cli.learning.VALIDATION_COUNT", 12)
+    monkeypatch.setattr("kirigami_studio.lab.training.train_flow.FlowSettings", partial(FlowSettings, chunk=128))
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def fits(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_that_fits_of_drawn_shapes_are_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.training.fitted_fields.fit_shapes", partial(fit_shapes, block_size=3))
+    monkeypatch.setattr("kirigami_studio.lab.training.fitted_fields.fit_shapes", partial(fit_shapes, block_size=3))
     words = ["dataset", "drawn", "--grid", "4x4", "--count", "1", "--seed", "8", "--out", str(tmp_path), "--json"]
     assert main(words) == 0
     answered = json.loads(capsys.readouterr().out)

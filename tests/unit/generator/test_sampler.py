@@ -24,13 +24,13 @@ from kirigami_studio.generator.sampler import (
     turned_target,
 )
 from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lab.training.learner import grown_state
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
 
