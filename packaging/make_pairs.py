@@ -18,12 +18,12 @@ from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.project.verdict import assess
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+from kirigami_studio.studio.verdict import assess
 
 FOLDER = Path(__file__).resolve().parents[1] / "resources" / "pairs"
 #: Even panels count more than the last percent of match: these are to be looked at.

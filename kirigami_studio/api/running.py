@@ -18,12 +18,11 @@ from kirigami_studio.pipeline.redesign import keep_for_connectors
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import run, with_grid
 from kirigami_studio.polish.flat_sheet import width_in_cells
-from kirigami_studio.project.as_cut import jam_angles
-from kirigami_studio.project.cutting import material_for
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.project.verdict import look_at
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings, material_for
+from kirigami_studio.studio.as_cut import jam_angles
+from kirigami_studio.studio.verdict import look_at
 
 #: Told how far a run has come.
 Tell = Callable[[Progress], object]

@@ -37,12 +37,12 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.cutting import checked_plan, least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import packed_design, save
-from kirigami_studio.project.verdict import Verdict, assess, refused
+from kirigami_studio.studio.cutting import checked_plan, least_feature_mm, room_mm
+from kirigami_studio.studio.verdict import Verdict, assess, refused
 
 
 def design(arguments: argparse.Namespace) -> int:

@@ -11,7 +11,7 @@ from typing import Any
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material, library
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import AngleError, ExportError, FabricationError, GridError, UsageError
 from kirigami_studio.lattice.ratio_field import check_grid
@@ -174,6 +174,25 @@ class FabricationSettings:
                 continue
             if not _is_number(value) or value < 0 or (value == 0 and not zero_allowed) or value > LARGEST_SHEET_MM:
                 raise UsageError(code, value=value, largest_mm=LARGEST_SHEET_MM)
+
+
+def stored_material(settings: FabricationSettings) -> Material | None:
+    """The numbers of the settings' material as the project stores them; None for bundled materials."""
+    return settings.own if settings.own is not None and settings.own.key == settings.material else None
+
+
+def material_for(settings: FabricationSettings) -> Material:
+    """The material that the settings name: from the library, else as it is stored in the project.
+
+    Raises
+    ------
+    FabricationError
+        Neither has it; the sentence lists the library.
+    """
+    stored = stored_material(settings)
+    if stored is not None and stored.key not in library().materials:
+        return stored
+    return find_material(settings.material)
 
 
 #: What :func:`with_choices` takes over as it is: for the sheet and its files, and for its cuts.

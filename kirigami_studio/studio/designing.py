@@ -94,7 +94,7 @@ def generating(
     importing.import_generator()
     from kirigami_studio.generator.weights import digest_of
     from kirigami_studio.pipeline.run import grid_choice, run
-    from kirigami_studio.project.as_cut import jam_angles
+    from kirigami_studio.studio.as_cut import jam_angles
 
     yield ModelFound(digest_of(request.variant))
     if request.grid is None and request.near is None:
@@ -207,7 +207,7 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
 
     Zeros for a material that is not known here.
     """
-    from kirigami_studio.project.cutting import least_feature_mm, room_mm
+    from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
     try:
         return least_feature_mm(settings), room_mm(settings)
@@ -218,7 +218,7 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
 def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
-    from kirigami_studio.project.cutting import material_for
+    from kirigami_studio.project.settings import material_for
 
     sheet, material = candidate.sheet, material_for(settings)
     return keep_for_connectors(sheet, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

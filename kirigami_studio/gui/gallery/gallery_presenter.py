@@ -24,7 +24,7 @@ from kirigami_studio.project.document import Document, Mark
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.window.main_window import MainWindow
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 
 class DesignConnections(QObject):

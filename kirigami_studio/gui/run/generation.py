@@ -31,11 +31,11 @@ from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
-from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 from kirigami_studio.studio.designing import Decoded, GridChosen, ModelFound, RunReport, generating, sizes_of
 
 #: Angles closer than this (radians) are one.

@@ -18,11 +18,10 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.sheet_size import cut_for
-from kirigami_studio.studio.as_cut import Estimated, estimating, simulating
-from kirigami_studio.studio.cut_files import CutRequest, Planned
+from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 #: Sheets that are kept; one of 10 x 10 voids takes about half a megabyte.
 CAPACITY = 32

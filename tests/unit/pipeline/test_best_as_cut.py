@@ -17,8 +17,8 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import best_as_cut
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
-from kirigami_studio.project.verdict import CloseLook
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.verdict import CloseLook
 
 REFUSED = CloseLook(Note.of("rank.not_feasible"))
 Looks = dict[Candidate, CloseLook]
