@@ -85,22 +85,22 @@ class DesignSettings:
         check_grid(*grid)
         object.__setattr__(self, "grid", grid)
         if not _is_number(self.phi) or not 0.0 <= self.phi < math.pi:
-            raise AngleError("settings.angle_out_of_range", value=self.phi)
-        for code, value, lowest in (
-            ("settings.number_of_candidates", self.k, 1),
-            ("settings.seed", self.seed, 0),
-            ("settings.number_of_steps", self.steps, 1),
-            ("settings.number_of_polishing_steps", self.polish, 0),
-            ("settings.search_effort", self.search, 0),
+            raise AngleError("request.angle_out_of_range", phi=self.phi)
+        for code, value, least, most in (
+            ("request.k_out_of_range", self.k, 1, 1024),
+            ("request.seed_out_of_range", self.seed, 0, 2**63 - 1),
+            ("request.steps_out_of_range", self.steps, 1, 64),
+            ("request.polish_out_of_range", self.polish, 0, 200),
+            ("request.search_out_of_range", self.search, 0, 8),
         ):
-            if not _is_whole(value) or value < lowest:
-                raise UsageError(code, value=value, lowest=lowest)
+            if not _is_whole(value) or value < least:
+                raise UsageError(code, value=value, least=least, most=most)
         _check_name("settings.variant_not_a_name", self.variant)
         _check_name("settings.preference_not_a_name", self.prefer)
         _check_name("settings.symmetry_not_a_name", self.symmetry)
         _check_name("settings.rim_not_a_name", self.rim)
         if not _is_number(self.regular) or not 0.0 <= self.regular <= 1.0:
-            raise UsageError("settings.regular_out_of_range", value=self.regular)
+            raise UsageError("request.regular_out_of_range", regular=self.regular)
 
 
 @dataclass(frozen=True, slots=True)

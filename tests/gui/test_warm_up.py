@@ -90,12 +90,13 @@ import sys
 from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project.settings import FabricationSettings
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
 assert request.fitted_starts
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in designing.generating(request, None, lambda: False):
+for event in designing.generating(request, FabricationSettings(), (), False, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """

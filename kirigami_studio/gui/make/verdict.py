@@ -12,11 +12,11 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.making import CutRequest, Planned, fixing
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ class VerdictKeeper(QObject):
             return
         document = self._session.document
         try:
-            run = None if document.target is None else request_of(document.target, document.settings, request.settings)
+            run = None if document.target is None else request_for(document.target, document.settings, request.settings)
         except KirigamiError:  # its material is gone, which the verdict tells
             run = None
         callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import replace
 
 import pytest
@@ -45,8 +46,9 @@ def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:
     """The run ranked where these designs do so as cut, and the numbers of those that were looked at."""
     seen: list[int] = []
 
-    def look(candidate: Candidate) -> CloseLook:
+    def look(candidate: Candidate) -> Generator[None, None, CloseLook]:
         seen.append(candidate.index)
+        yield
         return looks[candidate]
 
     closing = dict.fromkeys(run.candidates, 0.0)
