@@ -1,7 +1,7 @@
 """Start of a frozen program: the command line, a polishing worker, or a script.
 
-``kirigami-studio -m session.py --out out`` runs a script as the interpreter does; ``packaging/smoke.py`` plays a session
-of the window so where no Python is installed.
+``kirigami-studio -m session.py --out out`` runs a script as the interpreter does; ``packaging/smoke.py`` plays a
+session of the window so where no Python is installed.
 """
 
 from __future__ import annotations
