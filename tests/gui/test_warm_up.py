@@ -87,7 +87,7 @@ def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
 
 IMPORTED = """
 import sys
-from kirigami_studio.gui.jobs import design_jobs, importing
+from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
@@ -95,7 +95,7 @@ assert request.fitted_starts
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in design_jobs.generating(request, None, lambda: False):
+for event in designing.generating(request, None, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """

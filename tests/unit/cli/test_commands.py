@@ -42,7 +42,7 @@ def ratios(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("command", all_commands(), ids=lambda command: command.name)
 def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
     module, function = command.run.split(":")
-    assert callable(vars(import_module(f"kirigami_studio.cli.{module}"))[function])
+    assert callable(vars(import_module(f"kirigami_studio.{module}"))[function])
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
