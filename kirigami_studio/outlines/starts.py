@@ -19,8 +19,10 @@ from kirigami_studio.outlines.symmetry import TOLERANCE, symmetry_of, turned
 
 #: Vertices of circles and ellipses: their areas are within 0.002 % of the true ones.
 ROUND_VERTICES = 720
+#: Shapes that are longer by this share are as long.
+ROUNDING = 1e-3
 FEWEST_SIDES, MOST_SIDES = 3, 64
-#: Longest start over its width, for shapes that are named by their proportions.
+#: Longest start over its width.
 LONGEST = 5.0
 #: Proportions of an ellipse without any.
 USUAL_ELLIPSE = 1.5
@@ -104,7 +106,7 @@ def start_shape(text: str) -> StartShape:
     UsageError
         Numbers that no such shape has.
     SheetError
-        A shape with hollows that are too large.
+        A shape that is too long, or whose hollows are too large.
     TargetError
         Neither such a name nor a file or silhouette that can be read.
     """
@@ -140,8 +142,11 @@ def outline_start(outline: Outline) -> StartShape:
     Raises
     ------
     SheetError
-        Too much of its hull is missing; the sentence says where the deepest hollow is.
+        It is too long, or too much of its hull is missing; the sentence says where the deepest hollow is.
     """
+    length = math.exp(Proportions.of(outline).longest)
+    if length > LONGEST * (1.0 + ROUNDING):
+        raise SheetError("start.too_long", name=outline.name, length=length, longest=LONGEST)
     check_hollows(outline)
     hull = outline.polygon.convex_hull
     shape = hull if hull.area <= 1.0 + FILLED else outline.polygon
