@@ -21,6 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError, UsageError
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
 
 if TYPE_CHECKING:
@@ -105,6 +106,10 @@ class Part:
     lines: tuple[FloatArray, ...] = ()
     pen: Pen = field(default_factory=Pen)
 
+    def __post_init__(self) -> None:
+        for name in ("name", "layer", "colour"):
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
+
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Left, bottom, right and top, source units."""
@@ -161,6 +166,8 @@ class SourceParts:
         "mm", "px", or "" when the source has none.
     facts : mapping of str to str
         What the file says about how it was made, if this program made it.
+
+    Names of all kinds, facts and sentences are plain lines, whatever the source has.
     """
 
     name: str
@@ -168,6 +175,12 @@ class SourceParts:
     left_out: tuple[str, ...] = ()
     unit: str = ""
     facts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        facts = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in self.facts.items()}
+        object.__setattr__(self, "name", plain_line(self.name))
+        object.__setattr__(self, "left_out", tuple(plain_line(note, LONGEST_NOTE) for note in self.left_out))
+        object.__setattr__(self, "facts", MappingProxyType(facts))
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import SheetError, UsageError
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.read import read_target
@@ -69,6 +70,7 @@ class StartShape:
     weight: float = USUAL_WEIGHT
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "name", plain_line(self.name))
         if not 0.0 < self.weight <= HEAVIEST:
             raise UsageError("start.weight_out_of_range", weight=self.weight, most=HEAVIEST)
 
