@@ -11,6 +11,7 @@ from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.files import read_toml, write_atomically
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
 
@@ -70,6 +71,7 @@ class Preferences:
             value = getattr(self, name)
             if not isinstance(value, str) or not value:
                 raise ProjectError("preferences.not_a_name", name=name, value=value)
+            object.__setattr__(self, name, plain_line(value))
         if self.theme not in THEMES:
             raise ProjectError("preferences.unknown_theme", themes=", ".join(THEMES), value=self.theme)
         for name, choices in (("size", SIZES), ("motion", MOTIONS)):

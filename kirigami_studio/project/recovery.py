@@ -98,7 +98,7 @@ def read_note(path: Path) -> Note:
     try:
         record = Record(read_json(content, NOTE), NOTE)
         digest = record.text("digest") if record.holds("digest") else ""
-        note = Note(record.text("name"), record.text("path"), record.text("changed"), digest)
+        note = Note(record.text("name"), record.verbatim("path"), record.text("changed"), digest)
         if note.when.tzinfo is None:
             raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:
