@@ -7,14 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from shapely.geometry import Polygon
 
+from kirigami_studio.api.cuts import Cuts, Exported, plan_cuts
 from kirigami_studio.api.pictures import states_picture
 from kirigami_studio.api.sheet import Sheet, SheetLike, decode
+from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.mask_siou import mask_siou
@@ -28,14 +30,10 @@ from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, picture_job
 from kirigami_studio.project.labels import cleaned_name
 from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import SUFFIX, save
-
-if TYPE_CHECKING:
-    from kirigami_studio.api.cuts import Cuts, Exported
-    from kirigami_studio.api.simulation import Simulation
+from kirigami_studio.studio.making import CutRequest, chosen_candidate, export_job
 
 #: Files that need no planned cuts.
 PICTURES = (".png", ".gif")
@@ -227,10 +225,8 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        from kirigami_studio.api.cuts import plan_cuts
-
-        given = {name: value for name, value in locals().items() if name not in ("self", "plan_cuts")}
-        return plan_cuts(self, {name: value for name, value in given.items() if value is not None})
+        given = {name: value for name, value in locals().items() if name != "self"}
+        return plan_cuts(self.document, {name: value for name, value in given.items() if value is not None})
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -254,13 +250,11 @@ class Design:
         ExportError, FabricationError, UsageError
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
-        from kirigami_studio.api.cuts import Exported
-
         goal = Path(path)
         find_exporter(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
-        return Exported((export(picture_job(self.document), goal),))
+        return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a project (.kiri) of this design alone.

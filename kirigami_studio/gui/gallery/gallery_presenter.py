@@ -150,12 +150,16 @@ class DesignConnections(QObject):
             self._show_chosen()
         self._ranked_as_cut = jams
 
-    @property
-    def _ranking(self) -> Ranking:
-        """That of the document, with what is estimated of its designs as cut."""
-        ranking, known = self._controller.session.ranking, self._controller.estimates.known
+    def _as_cut(self, ranking: Ranking) -> Ranking:
+        """The ranking with what is estimated of the designs as cut."""
+        known = self._controller.estimates.known
         estimated = {candidate: found.jam_phi for candidate, found in known.items()}
         return replace(ranking, jam_phi={**ranking.jam_phi, **estimated})
+
+    @property
+    def _ranking(self) -> Ranking:
+        """That of the document."""
+        return self._as_cut(self._controller.session.ranking)
 
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery
