@@ -13,7 +13,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from kirigami_studio.api.cuts import checked_choices, number
+from kirigami_studio.api.choices import checked_choices, number
 from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Card, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target

@@ -19,6 +19,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from kirigami_studio.foundation.resources import resource
+
 DOMAIN = "kirigami_studio"
 #: A folder of catalogues that is looked into before the bundled one.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_LOCALE"
@@ -248,8 +250,6 @@ def _find(code: str) -> Catalogue | None:
 
 
 def _folders() -> tuple[Path, ...]:
-    from kirigami_studio.foundation.resources import resource  # its errors are sentences too
-
     own = os.environ.get(FOLDER_VARIABLE)
     return (*((Path(own),) if own else ()), resource("locale"))
 
