@@ -58,28 +58,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.angle_out_of_range": mark(
         "The target angle must be at least 0 and below pi radians, got {value!r:.40}. The usual choice is 0."
     ),
-    "settings.number_of_candidates": mark(
-        "The number of candidates must be a whole number of at least {lowest}, got {value!r:.40}."
-    ),
-    "settings.seed": mark("The seed must be a whole number of at least {lowest}, got {value!r:.40}."),
-    "settings.number_of_steps": mark(
-        "The number of sampling steps must be a whole number of at least {lowest}, got {value!r:.40}."
-    ),
-    "settings.number_of_polishing_steps": mark(
-        "The number of polishing steps must be a whole number of at least {lowest}, got {value!r:.40}."
-    ),
-    "settings.search_effort": mark(
-        "The effort of the search must be a whole number of at least {lowest}, got {value!r:.40}."
-    ),
     "settings.no_such_choice": mark("There is no {name} {value:.40}. Choose one of {choices}."),
     "settings.variant_not_a_name": mark("The generator variant must be a name, got {value!r:.40}."),
     "settings.preference_not_a_name": mark("The preference of the polish must be a name, got {value!r:.40}."),
     "settings.symmetry_not_a_name": mark("The symmetry of designs must be a name, got {value!r:.40}."),
     "settings.rim_not_a_name": mark("The rim must be a name, got {value!r:.40}."),
     "project.no_such_second_target": mark("Second target {number} is not among the {targets} that the project has."),
-    "settings.regular_out_of_range": mark(
-        "The balance must be a number from 0 (the closest match) to 1 (even panels), got {value!r:.40}."
-    ),
     "settings.sheet_width": mark("The sheet's width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."),
     "settings.opened_size": mark(
         "The size of the opened shape must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."
