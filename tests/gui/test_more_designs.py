@@ -90,13 +90,15 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
 def test_that_designs_that_are_there_already_are_not_added_again(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
     request = replace(controller.generation.planner.more(silhouettes.load("heart")).request, seed=0)
-    found = [event.result for event in generating(request, (), lambda: False) if isinstance(event, Finished)]
+    steps = generating(request, controller.document.fabrication, (), True, lambda: False)
+    found = [event.result for event in steps if isinstance(event, Finished)]
     assert found[0].candidates == controller.document.candidates
     others = controller.document.candidates[1:]
-    left = [event.result for event in generating(request, others, lambda: False) if isinstance(event, Finished)]
+    steps = generating(request, controller.document.fabrication, others, True, lambda: False)
+    left = [event.result for event in steps if isinstance(event, Finished)]
     assert left[0].candidates == controller.document.candidates[:1]
     before = controller.document
-    controller.run.start(request, before.candidates)
+    controller.run.start(request, before.candidates, joins=True)
     until(lambda: not controller.running)
     assert controller.document is before and tuple(shown(drawn)) == before.candidates
     assert drawn.status_text.text() == "No new designs; 3 already in the gallery."
@@ -115,7 +117,7 @@ def test_that_designs_that_were_there_already_are_counted(
     fewer = replace(whole, candidates=whole.candidates[:staying], marks=whole.marks[:staying], labels=(), chosen=0)
     controller.history.apply(Edit("Leave some", fewer))
     request = replace(controller.generation.planner.more(silhouettes.load("heart")).request, seed=0)
-    controller.run.start(request, fewer.candidates)
+    controller.run.start(request, fewer.candidates, joins=True)
     until(lambda: not controller.running)
     assert controller.document.candidates == whole.candidates
     assert drawn.status_text.text().startswith(told + "Best new match: ")
