@@ -59,6 +59,11 @@ class CutFileFigures:
     verify_seconds: float
     slots_length_ratio: tuple[float, float, float]
 
+    @property
+    def ok(self) -> bool:
+        """Whether every file passed."""
+        return self.passed == self.files
+
     def sentences(self) -> list[str]:
         """The figures for a person."""
         low, middle, high = self.slots_length_ratio

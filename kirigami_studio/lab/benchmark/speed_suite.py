@@ -255,3 +255,8 @@ def _run_seconds(request: Request) -> float:
 def _fastest(work: Callable[[], object]) -> float:
     work()
     return min(_seconds(work) for _ in range(REPEATS))
+
+
+def all_timings() -> dict[str, object]:
+    """Time whole runs, scores and fits: ``runs`` of :func:`run_timings` beside all of :func:`polish_timings`."""
+    return {"runs": run_timings(), **polish_timings()}
