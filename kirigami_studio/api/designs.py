@@ -25,11 +25,12 @@ from kirigami_studio.foundation.errors import GridError, ProjectError, UsageErro
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.design import POLISH_STEPS, REGULAR
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78

@@ -22,7 +22,7 @@ from kirigami_studio.project.as_cut import jam_angles
 from kirigami_studio.project.cutting import material_for
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.verdict import look_at
 
 #: Told how far a run has come.
@@ -89,26 +89,9 @@ def document_of(result: Result, fabrication: FabricationSettings) -> Document:
     from kirigami_studio.generator.weights import digest_of
 
     request = result.request
-    settings = DesignSettings(
-        request.chosen_grid,
-        request.phi,
-        request.k,
-        request.seed,
-        request.variant,
-        request.steps,
-        request.polish,
-        request.prefer,
-        request.search,
-        request.grid_chosen,
-        request.symmetry,
-        request.rim,
-        request.regular,
-        request.start,
-        request.second,
-    )
     source = provenance(request, digest_of(request.variant))
     candidates = tuple(with_run(result.candidates, source))
-    return Document(request.target, settings, candidates, 0, fabrication, source)
+    return Document(request.target, request.settings, candidates, 0, fabrication, source)
 
 
 def _finished(request: Request, tell: Tell, pool: Pool | None) -> Result:

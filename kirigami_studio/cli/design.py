@@ -34,7 +34,7 @@ from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.cutting import checked_plan, least_feature_mm, room_mm
@@ -43,6 +43,7 @@ from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import packed_design, save
 from kirigami_studio.project.verdict import Verdict, assess, refused
+from kirigami_studio.settings.design import REGULAR
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -68,11 +69,11 @@ def design(arguments: argparse.Namespace) -> int:
             seed=arguments.seed,
             variant=arguments.variant,
             steps=arguments.steps,
-            polish=POLISH_STEPS if arguments.polish else 0,
+            polish=arguments.polish,
             prefer=arguments.prefer,
             trim=arguments.trim,
             search=arguments.search,
-            budget_seconds=arguments.budget,
+            budget_seconds=arguments.budget_seconds,
             symmetry=arguments.symmetry,
             rim=arguments.rim,
             regular=regular,

@@ -34,7 +34,7 @@ from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Stage
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
 
 #: Fewest rows and columns, and most unless another limit is asked for.
 COARSEST, FINEST = 6, 16
@@ -199,7 +199,7 @@ def predicted_match(
 @lru_cache(maxsize=64)
 def choose_grid(
     target: Outline,
-    symmetry: str = "auto",
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO,
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
     limit: int = FINEST,
@@ -210,7 +210,7 @@ def choose_grid(
     Parameters
     ----------
     target : Outline
-    symmetry : {"auto", "none", "mirror", "turn"}
+    symmetry : KeptSymmetry
         As for :func:`kirigami_studio.polish.symmetry.symmetric_poses`.
     width_mm : float
         Width of the flat sheet.
@@ -227,7 +227,7 @@ def choose_grid(
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
@@ -457,7 +457,7 @@ def _nearest(
     return [one for one, far in zip(found, off, strict=True) if far <= min(off) + PROPORTION_ROOM]
 
 
-def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[SymmetricPose, ...]:
+def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:
     """The symmetric set-ups of a target that sheets of a start can have on some grid.
 
     Raises
@@ -465,13 +465,13 @@ def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[Symmetric
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = symmetric_poses(target, symmetry)
     if start.is_plain:
         return poses
     kept = tuple(pose for pose in poses if any(pose.fits(grid, start) for grid in SYMMETRIC_GRIDS))
-    if poses and not kept and symmetry in ("mirror", "turn"):
+    if poses and not kept and symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         rows, columns = SYMMETRIC_GRIDS[0]
         raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=symmetry)
     return kept

@@ -23,8 +23,9 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.sheet_size import set_opened_size
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange
 from kirigami_studio.studio.as_cut import animating
 from kirigami_studio.studio.cut_files import (
     ANIMATION,

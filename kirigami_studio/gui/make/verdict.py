@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.generation import request_of
@@ -144,7 +145,7 @@ class VerdictKeeper(QObject):
             self._say(VerdictState(verdict))
             return
         # What files are written for does not matter to the sheet.
-        key = request.candidate, replace(request.settings, profile="any", dxf_version="R2010")
+        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
         if key in self._known:
             self._known.move_to_end(key)
             self._say(VerdictState(verdict, advice=self._known[key]))

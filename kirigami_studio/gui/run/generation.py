@@ -361,25 +361,8 @@ def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettin
     KirigamiError
         The settings do not go together.
     """
-    return Request(
-        target,
-        None if settings.auto_grid else settings.grid,
-        settings.phi,
-        settings.k,
-        settings.seed,
-        settings.variant,
-        settings.steps,
-        settings.polish,
-        prefer=settings.prefer,
-        search=settings.search,
-        symmetry=settings.symmetry,
-        rim=settings.rim,
-        regular=settings.regular,
-        start=settings.start,
-        second=settings.second,
-        width_mm=cut.width_mm,
-        least_feature_mm=least_feature_mm(cut),
-        room_mm=room_mm(cut),
+    return Request.of(
+        target, settings, width_mm=cut.width_mm, least_feature_mm=least_feature_mm(cut), room_mm=room_mm(cut)
     )
 
 

@@ -27,12 +27,13 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.mechanics.network import CONTACT_BELOW
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.best_as_cut import best_as_cut
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.project.as_cut import jam_angles, simulate
 from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.verdict import look_at
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: A connector counts as narrower than asked for from here on (mm); files hold a tenth of it.
 NARROWER_MM = 1e-3

@@ -439,9 +439,10 @@ def grpo(arguments: argparse.Namespace) -> int:
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.lab.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
-    from kirigami_studio.pipeline.request import REGULAR, Request
+    from kirigami_studio.pipeline.request import Request
+    from kirigami_studio.settings.design import with_balance
 
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
+    regular = with_balance({"prefer": arguments.prefer, "regular": arguments.regular})["regular"]
     start = start_shape(arguments.start)
 
     def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import argparse
 
-from kirigami_studio.cli.option_types import amount, count, number, positive, whole
+from kirigami_studio.cli.option_types import Option, amount, count, number, option, positive, setting_options, whole
 from kirigami_studio.cli.parser import (
     JSON,
     SCHEDULER,
-    SHEETS,
     START,
     START_WEIGHT,
-    STYLE,
-    Option,
+    USUAL,
     SubCommand,
-    option,
 )
-from kirigami_studio.pipeline.request import POLISH_STEPS
-from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.settings.design import POLISH_STEPS, DesignChoices
 
 #: Options that suites of ``benchmark`` share; each suite takes only its own.
 GRID = option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)")
@@ -31,6 +28,12 @@ SEEDS = option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampli
 SEED = option("--seed", type=whole, default=0, help="random seed (default 0)")
 EXACT = option(
     "--exact", action="store_true", help="targets are exact outlines, not contours traced from 128-pixel masks"
+)
+STYLE = option(
+    "--style",
+    choices=[style.value for style in ConnectorStyle],
+    default=USUAL.options.style.value,
+    help="how slits end at their connectors (default: centred)",
 )
 RANDOM_DESIGNS = option("--count", type=count, default=200, help="number of random designs (default 200)")
 FIGURES = (option("--out", default=None, help="also write the results to this .json file"), JSON)
@@ -278,9 +281,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *targets_of_a_suite(500), EXACT,
         option("--grid", default="10x10",
                help="voids, ROWSxCOLUMNS or auto, or several separated by commas (default 10x10)"),
-        VARIANT, samples(1), STEPS, POLISH, SEED, START, *SHEETS,
-        option("--prefer", choices=tuple(PREFERENCES), default="balanced",
-               help="what polishing prefers (default balanced)"),
+        VARIANT, samples(1), STEPS, POLISH, SEED, START, *setting_options(DesignChoices, "symmetry", "rim", "regular", "prefer"),
         option("--effort", "--search", type=whole, default=0, help="search with this effort (default 0: no search)"),
         option("--trim", action="store_true", help="also trim the best design of each target"),
         option("--picture", default=None, help="write a picture of all designs to this .png file"),

@@ -109,7 +109,7 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     score = replace(evaluate(even, target), iou_exact=0.5)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
     crossed = replace(irregular, score=replace(irregular.score, feasible=False), index=2)
-    result = Result(Request(target, (4, 5), regular=0.0), (irregular, uniform, crossed), 3, 0.0)
+    result = Result(Request(target, (4, 5), regular=0.0, polish=0), (irregular, uniform, crossed), 3, 0.0)
     straight = replace(document.fabrication, options=CutOptions(style=ConnectorStyle.STRAIGHT))
     found = cuttable_first(result, straight, quietly)
     assert found.candidates == (uniform, irregular, crossed)

@@ -243,7 +243,7 @@ def test_that_a_worker_ends_with_its_input_and_loads_neither_torch_nor_qt() -> N
 @pytest.mark.long
 def test_that_workers_choose_the_grid_that_one_process_chooses_and_that_it_is_remembered(pool, monkeypatch) -> None:
     wait_until_ready(pool)
-    request = Request(load("star"), None)
+    request = Request(load("star"), None, polish=0)
     monkeypatch.setattr(auto_grid, "_CHOSEN", {})
     alone = auto_grid.chosen_for(request)
     monkeypatch.setattr(auto_grid, "_CHOSEN", {})

@@ -142,7 +142,7 @@ def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deploy
     irregular = Candidate(design.sheet, evaluate(design, target, 0.0), seed=0, index=0)
     score = replace(evaluate(even, target, 0.0), iou_exact=irregular.score.iou_exact - 0.001)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
-    request = Request(target, (6, 6), regular=0.0)
+    request = Request(target, (6, 6), regular=0.0, polish=0)
     result = Result(request, (irregular, uniform), 2, 0.0)
     assert Ranking.of(request).ranked([uniform, irregular]) == result.candidates
     jams = jam_angles(result.candidates, STRAIGHT)
