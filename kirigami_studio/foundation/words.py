@@ -89,6 +89,11 @@ def mark(text: str, /) -> str:
     return text
 
 
+def mark_n(one: str, many: str, /) -> tuple[str, str]:
+    """Mark a sentence in two numbers for the catalogue that is translated later, when it is read."""
+    return one, many
+
+
 def tr(text: str, /, **values: object) -> str:
     """Return a sentence in the user's language.
 
@@ -177,10 +182,10 @@ def _say(made: Made) -> str:
     found = catalogue.texts.get(made.text)
     if made.many:
         text = (made.text if made.count == 1 else made.many) if found is None else found[catalogue.form(made.count)]
-        text = _put(text, {"count": made.count, **made.values})
+        text = fill(text, {"count": made.count, **made.values})
     else:
         text = made.text if found is None else found[0]
-        text = _put(text, made.values) if made.values else text
+        text = fill(text, made.values) if made.values else text
     ways = _state.made.get(text, {})
     passed_through = found is None and ways and catalogue.language != ENGLISH  # a translation, translated once more
     if made.text in ways or passed_through or text in made.values.values():
@@ -202,7 +207,7 @@ def _forget(said: str, text: str) -> None:
         _state.made.pop(said, None)
 
 
-def _put(text: str, values: Mapping[str, object]) -> str:
+def fill(text: str, values: Mapping[str, object]) -> str:
     try:
         return _filled(text, values)
     except (ValueError, TypeError, RecursionError):

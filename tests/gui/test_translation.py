@@ -17,7 +17,7 @@ from babel.messages.pofile import read_po, write_po
 
 from kirigami_studio.foundation.words import DOMAIN, FOLDER_VARIABLE
 
-KEYWORDS = {"tr": None, "mark": None, "tr_n": (1, 2)}
+KEYWORDS = {"tr": None, "mark": None, "tr_n": (1, 2), "mark_n": (1, 2)}
 OPEN, CLOSE = "\N{LEFT WHITE SQUARE BRACKET}", "\N{RIGHT WHITE SQUARE BRACKET}"
 #: Written in no language, or data: names of files and figures, units, abbreviations of the field, keys.
 NEUTRAL = re.compile(
