@@ -68,7 +68,7 @@ def keep(document: Document, note: Note, path: Path, picture: TracedPicture | No
     """
     # Imported here, so that reading notes does not slow the start of the window.
     from kirigami_studio.project import store
-    from kirigami_studio.project.cutting import with_stored_material
+    from kirigami_studio.project.store import with_stored_material
 
     stream = io.BytesIO(store.pack(with_stored_material(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:

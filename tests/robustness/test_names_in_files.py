@@ -75,7 +75,8 @@ def test_that_names_layers_and_facts_of_a_drawing_are_plain(hostile: str, tmp_pa
     label = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer" inkscape:label'
     svg, dxf, table = tmp_path / "a.svg", tmp_path / "a.dxf", tmp_path / "a.json"
     svg.write_text(f'<svg xmlns="http://www.w3.org/2000/svg"><g {label}="{written}">'
-                   f'<rect id="{written}" width="50" height="40"/><circle r="9"/></g></svg>', encoding="utf-8")  # fmt: skip
+                   f'<rect id="{written}" width="50" height="40"/><circle r="9"/></g></svg>',
+                   encoding="utf-8")  # fmt: skip
     drawing = ezdxf.new()
     drawing.layers.add("L" + "n" * 250)
     drawing.modelspace().add_lwpolyline([(0, 0), (50, 0), (50, 40)], close=True, dxfattribs={"layer": "L" + "n" * 250})

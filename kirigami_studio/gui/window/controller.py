@@ -40,11 +40,11 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cut_files import ANIMATION, CutRequest, Motion
 from kirigami_studio.studio.file_kinds import kind_of
+from kirigami_studio.studio.making import ANIMATION, CutRequest, Motion
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.fixes import Fix
+    from kirigami_studio.studio.fixes import Fix
 
 
 class Controller(QObject):

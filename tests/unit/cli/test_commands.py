@@ -410,7 +410,7 @@ def test_that_a_folder_that_cannot_be_written_is_refused_before_any_work(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "taken").write_text("a file")
-    monkeypatch.setattr("kirigami_studio.api.running.run", lambda *_: pytest.fail("the run was started"))
+    monkeypatch.setattr("kirigami_studio.pipeline.run.run", lambda *_: pytest.fail("the run was started"))
     for out in (tmp_path / "taken", tmp_path / "taken" / "deeper"):
         code, sentence = refusal(capsys, "design", "heart", "--k", "1", "--out", out)
         assert code == 1

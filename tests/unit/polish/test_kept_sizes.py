@@ -26,9 +26,9 @@ from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.symmetry import shared_symmetries
-from kirigami_studio.project.cutting import plan_of, room_mm
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.studio.cutting import plan_of, room_mm
 
 
 def smallest(sheet: Sheet | RatioField) -> float:
