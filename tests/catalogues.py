@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
+from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +25,25 @@ def template() -> Catalog:
     for _, _, message, _, _ in extract_from_dir(ROOT / "kirigami_studio", [("**.py", "python")], keywords=KEYWORDS):
         found.add(message)
     return found
+
+
+def write_compiled(found: Catalog, folder: Path, language: str) -> None:
+    """Put a compiled catalogue where gettext looks for it below a folder."""
+    path = folder / language / "LC_MESSAGES" / f"{DOMAIN}.mo"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_suffix(f".{os.getpid()}")
+    with new.open("wb") as stream:
+        write_mo(stream, found)
+    new.replace(path)  # another process may read it, or write it too
+
+
+def compile_stale() -> None:
+    """Compile the bundled catalogues that have changed since, as `make setup` does."""
+    for path in LOCALE.glob(f"*/LC_MESSAGES/{DOMAIN}.po"):
+        compiled = path.with_suffix(".mo")
+        if not compiled.is_file() or compiled.stat().st_mtime < path.stat().st_mtime:
+            language = path.parts[-3]
+            write_compiled(catalogue(language), LOCALE, language)
 
 
 def source_of(language: str) -> Path:

@@ -191,6 +191,12 @@ class DesignDisplay(QObject):
 class Session(QObject):
     """The open project, the one way to change it and to report to the user.
 
+    Parameters
+    ----------
+    parent : QObject, optional
+    earlier : Session, optional
+        Of a closed window, whose project is the open one, with its history.
+
     Attributes
     ----------
     queue : JobQueue
@@ -214,16 +220,16 @@ class Session(QObject):
     message_withdrawn = Signal(Message)
     status_changed = Signal(str)
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
         self.queue = JobQueue(self)
-        self.history = History()
-        self.cache = DesignCache()
+        self.history = History() if earlier is None else earlier.history
+        self.cache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
-        self.path: Path | None = None
-        self.on_disk: dict[Path, str] = {}
-        self.project = 0
-        self.as_cut: KnownAsCut | None = None
+        self.path: Path | None = None if earlier is None else earlier.path
+        self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
+        self.project = 0 if earlier is None else earlier.project
+        self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
 
     @property
     def ranking(self) -> Ranking:

@@ -248,17 +248,6 @@ class Dialogs(QObject):
             self.about = AboutWindow(self._window)
         bring_to_front(self.about)
 
-    def reword(self) -> None:
-        """The language has changed: what is only read is written anew."""
-        if self.shortcuts is not None:
-            visible = self.shortcuts.isVisible()
-            self.shortcuts.close()
-            self.shortcuts.deleteLater()
-            self.shortcuts = None
-            if visible:
-                self.show_shortcuts()
-        self._update_history()
-
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""
         self.close_report()
