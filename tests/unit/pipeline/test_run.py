@@ -209,7 +209,6 @@ def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Re
     assert beside.forward_evaluations == alone.forward_evaluations
 
 
-@pytest.mark.clock
 def test_that_a_used_up_budget_returns_what_there_is(request_for_heart: Request) -> None:
     best_of(request_for_heart)  # the generator is loaded and the target's tables are kept
     hasty = best_of(replace(request_for_heart, polish=15, budget_seconds=1e-3))
@@ -221,7 +220,6 @@ def test_that_a_used_up_budget_returns_what_there_is(request_for_heart: Request)
     assert calm.candidates == best_of(replace(request_for_heart, polish=3)).candidates
 
 
-@pytest.mark.clock
 def test_that_a_budget_that_ends_during_scoring_returns_the_first_batch(request_for_heart: Request) -> None:
     hasty = best_of(replace(request_for_heart, k=40, budget_seconds=1e-3))
     assert hasty.budget_ended
