@@ -200,7 +200,8 @@ class SnapshotRow:
 
     def sentence(self) -> str:
         """The row for people: percentages, the paper's numbers in brackets."""
-        siou, tv = ("", "") if self.paper is None else (f"({100 * self.paper.siou:.2f})", f"({self.paper.tv or 0.0:.2f})")
+        paper = self.paper
+        siou, tv = ("", "") if paper is None else (f"({100 * paper.siou:.2f})", f"({paper.tv or 0.0:.2f})")
         return (
             f"    {self.calls:6}{100 * self.siou:8.2f} +- {100 * self.siou_sd:4.2f} {siou:8}{100 * self.iou_exact:8.2f}"
             f"{100 * self.success:10.1f}{self.tv:7.2f} {tv:7}{self.tv_log10:7.3f}{self.distance:9.3f}"
