@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import PurePath
 
+from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.sentences import (
     designs,
     export,
@@ -20,7 +21,6 @@ from kirigami_studio.foundation.sentences import (
     project,
     training_and_benchmarks,
 )
-from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.words import tr, tr_n
 
 #: Every sentence by the code of its problem.

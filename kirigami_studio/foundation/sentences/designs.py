@@ -73,8 +73,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Got a weight of {weight:g} for the start. Give one above 0 and up to {most:g}; 1 holds the start firmly."
     ),
     "start.too_long": mark(
-        "The start '{name:.60}' is {length:.3g} times as long as wide, and a sheet may be {longest:g} times as long. Use "
-        "a shape that is less long."
+        "The start '{name:.60}' is {length:.3g} times as long as wide, and a sheet may be {longest:g} times as long. "
+        "Use a shape that is less long."
     ),
     "start.hollow": mark(
         "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
