@@ -221,12 +221,12 @@ class Session(QObject):
     def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
         self.queue = JobQueue(self)
-        self.history = History() if earlier is None else earlier.history
-        self.cache = DesignCache() if earlier is None else earlier.cache
+        self.history: History = History() if earlier is None else earlier.history
+        self.cache: DesignCache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
         self.path: Path | None = None if earlier is None else earlier.path
         self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
-        self.project = 0 if earlier is None else earlier.project
+        self.project: int = 0 if earlier is None else earlier.project
 
     @property
     def document(self) -> Document:
