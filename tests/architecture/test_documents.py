@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.cli.parser import SUB_COMMANDS, build_parser
+from kirigami_studio.cli.parser import all_commands, build_parser
 from tests.catalogues import catalogue, forms
 
 #: Folders with documents, beside those in the root.
@@ -59,7 +59,7 @@ def missing_paths(repository: Path, text: str, *beside: Path) -> list[str]:
 
 def refused_commands(text: str) -> list[str]:
     """Commands in a document that the command line does not take."""
-    first_words = {command.name.partition(" ")[0] for command in SUB_COMMANDS}
+    first_words = {command.name.partition(" ")[0] for command in all_commands()}
     refused = []
     for shown in COMMAND.findall(text.replace("\\\n", " ")):
         words = shlex.split(shown.replace("...", ""))

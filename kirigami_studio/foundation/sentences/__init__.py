@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import PurePath
 
+from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.sentences import (
     designs,
     export,
@@ -44,12 +45,12 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
 
 
 def one_line(value: object) -> object:
-    """A text, path or error from outside without what would end the line; other values as they are.
+    """A text, path or error from outside without what cannot be shown in a line; other values as they are.
 
     A name in a damaged file may hold anything, and a sentence is one line.
     """
     if not isinstance(value, (str, PurePath, BaseException)):
         return value
     text = str(value)
-    line = " ".join(text.splitlines())
+    line = printable(" ".join(text.splitlines()))
     return value if line == text else line

@@ -72,6 +72,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "start.weight_out_of_range": mark(
         "Got a weight of {weight:g} for the start. Give one above 0 and up to {most:g}; 1 holds the start firmly."
     ),
+    "start.too_long": mark(
+        "The start '{name:.60}' is {length:.3g} times as long as wide, and a sheet may be {longest:g} times as long. "
+        "Use a shape that is less long."
+    ),
     "start.hollow": mark(
         "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
         "width from the left and {up:.0f} % of its height from below. Fill the hollow, or start from another shape."
@@ -240,16 +244,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(
-        "The target angle must be at least 0 and below pi radians, got {phi:g}. The usual choice is 0."
+        "The target angle must be at least 0 and below pi radians, got {value!r:.40}. The usual choice is 0."
     ),
     "request.budget_not_positive": mark(
-        "The time budget must be a finite number of seconds above 0, got {budget!r:.80}."
+        "The time budget must be a finite number of seconds above 0, got {value!r:.80}."
     ),
     "request.grid_not_chosen": mark(
         "No grid is chosen yet: the run does that when it starts. Name a grid, such as 10x11."
     ),
     "request.least_feature_out_of_range": mark(
-        "The smallest panel that the material allows must be a number of at least 0 mm, got {least_mm!r:.80}."
+        "The smallest panel that the material allows must be a number of at least 0 mm, got {value!r:.80}."
     ),
     "request.k_out_of_range": mark(
         "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."

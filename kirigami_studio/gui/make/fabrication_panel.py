@@ -42,13 +42,12 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.project.cutting import stored_material
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings, stored_material
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
-    from kirigami_studio.studio.cut_files import Planned
+    from kirigami_studio.studio.making import Planned
 
 #: Field, label, accessible name, lowest, highest, step (mm), decimals, tooltip.
 LENGTHS = (

@@ -26,7 +26,6 @@ from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
-from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
 LARGEST_SEED = 2**31 - 1
@@ -154,8 +153,8 @@ class SettingsPanel(Card):
             "candidates",
             tr("Designs"),
             1,
-            LARGEST_K,
-            tr("Number of designs to generate and compare (1 to {most}).", most=LARGEST_K),
+            1024,
+            tr("Number of designs to generate and compare (1 to {most}).", most=1024),
         )
         self.seed = _whole(
             "seed",

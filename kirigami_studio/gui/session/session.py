@@ -28,7 +28,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
 from kirigami_studio.project.sheet_size import sized
-from kirigami_studio.studio.designing import Decoded, decoding
+from kirigami_studio.studio.designing import Decoded, KnownAsCut, decoding, ranking_of
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
 CAPACITY = 2048
@@ -210,6 +210,8 @@ class Session(QObject):
         SHA-256 of project files as they were read or written here last.
     project : int
         How many projects were open before this one.
+    as_cut : KnownAsCut or None
+        What the latest run has found out about designs as cut.
     """
 
     document_changed = Signal(Document)
@@ -227,6 +229,12 @@ class Session(QObject):
         self.path: Path | None = None if earlier is None else earlier.path
         self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
         self.project: int = 0 if earlier is None else earlier.project
+        self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
+
+    @property
+    def ranking(self) -> Ranking:
+        """What the document puts first, with what the latest run has found out about its designs as cut."""
+        return ranking_of(self.document, self.as_cut)
 
     @property
     def document(self) -> Document:

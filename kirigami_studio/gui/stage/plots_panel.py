@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kirigami_studio.foundation.arrays import FloatArray
     from kirigami_studio.gui.widgets.chart import Chart
     from kirigami_studio.mechanics.closing import Closing
-    from kirigami_studio.project.as_cut import SimulatedSheet
+    from kirigami_studio.studio.as_cut import SimulatedSheet
 
 #: Height of a chart that is alone (pixels), and with which all are shown; with less they are shown one at a time.
 CHART_HEIGHT, ALL_CHARTS_HEIGHT = 132, 528

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.fitted_text import fits, fitted, shortened
 from kirigami_studio.gui.widgets.number_field import number_field
 from kirigami_studio.gui.widgets.theme import Palette
 
@@ -85,14 +86,13 @@ class ElidedLabel(QLabel):
     def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
         """Set a text, and ``shorter`` versions of which the first that fits is shown."""
         self._shorter = shorter
-        super().setText(text)
-        self.setToolTip(text)
+        super().setText(shortened(text))
+        self.setToolTip(self.text())
 
     def drawn_text(self) -> str:
         """What is shown at the present width."""
-        metrics, versions, room = self.fontMetrics(), (self.text(), *self._shorter), self.contentsRect().width()
-        fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= room), versions[-1])
-        return metrics.elidedText(fitting, self._cut_off, room)
+        room = self.contentsRect().width()
+        return fitted(self.fontMetrics(), (self.text(), *self._shorter), room, self._cut_off)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
@@ -120,8 +120,7 @@ class FittingLabel(QLabel):
 
     def fit(self, width: int) -> bool:
         """Show the longest text that fits into ``width`` pixels; whether any does."""
-        metrics = self.fontMetrics()
-        chosen = next((text for text in self._texts if metrics.horizontalAdvance(text) <= width), "")
+        chosen = next((text for text in self._texts if fits(self.fontMetrics(), text, width)), "")
         self.setText(chosen)
         self.setVisible(bool(chosen))
         return bool(chosen)
@@ -182,3 +181,12 @@ def muted_label() -> QLabel:
     label.setObjectName("muted")
     label.setWordWrap(True)
     return label
+
+
+def own_markup(label: QLabel) -> None:
+    """Show a label's text as HTML: for text of the program's own, never for a name, a path or a message.
+
+    Every other label and every tooltip of the application is plain text: ``studio.qss`` says so.
+    """
+    label.setProperty("markup", True)
+    label.setTextFormat(Qt.TextFormat.RichText)

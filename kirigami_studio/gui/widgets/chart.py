@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import decimal_sign, number, tr
+from kirigami_studio.gui.widgets.card import own_markup
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
@@ -47,7 +48,7 @@ class Chart(QWidget):
         self._series = Series(np.zeros(0), tuple(np.zeros(0) for _ in names))
         self.setAccessibleName(tr("{title}, {unit}", title=title, unit=unit))
         self.numbers = QLabel()
-        self.numbers.setTextFormat(Qt.TextFormat.RichText)
+        own_markup(self.numbers)
         self.numbers.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         # Moves that follow each other closely must not be dropped: the last one says where the line is to stay.
         pg.setConfigOptions(mouseRateLimit=0)

@@ -9,6 +9,7 @@ from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy, QStyle, QStyleOptionComboBox, QStylePainter
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.fitted_text import elided
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
@@ -24,7 +25,7 @@ class ComboBox(QComboBox):
         self.initStyleOption(option)
         field = QStyle.SubControl.SC_ComboBoxEditField
         room = self.style().subControlRect(QStyle.ComplexControl.CC_ComboBox, option, field, self).width()
-        return self.fontMetrics().elidedText(self.currentText(), Qt.TextElideMode.ElideRight, room)
+        return elided(self.fontMetrics(), self.currentText(), room)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         option, painter = QStyleOptionComboBox(), QStylePainter(self)

@@ -40,11 +40,11 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cut_files import ANIMATION, CutRequest, Motion
 from kirigami_studio.studio.file_kinds import kind_of
+from kirigami_studio.studio.making import ANIMATION, CutRequest, Motion
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.fixes import Fix
+    from kirigami_studio.studio.fixes import Fix
 
 
 class Controller(QObject):
@@ -78,7 +78,8 @@ class Controller(QObject):
 
     def __init__(self, parent: QObject | None = None, earlier: Controller | None = None) -> None:
         super().__init__(parent)
-        self.session: Session = Session(self, None if earlier is None else earlier.session)
+        before: Session | None = None if earlier is None else earlier.session
+        self.session: Session = Session(self, before)
         session = self.session
         self.hand = HandEditor(session, self)
         self.trimming = TrimSwitch(session, self)

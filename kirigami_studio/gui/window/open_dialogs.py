@@ -16,7 +16,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.studio.cut_files import Exported
+from kirigami_studio.studio.making import Exported
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor

@@ -18,12 +18,12 @@ from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP
+from kirigami_studio.project.preferences import Theme
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.window.main_window import MainWindow
 
 #: The preferred theme that follows the desktop.
-SYSTEM = "system"
 #: Commands that switch what is drawn over the layout.
 OVERLAY_COMMANDS = {
     "show_target": Overlay.TARGET,
@@ -51,7 +51,7 @@ class Appearance(QObject):
     @property
     def follows_system(self) -> bool:
         """Whether the window has the desktop's theme."""
-        return self._preferences.present.theme == SYSTEM
+        return self._preferences.present.theme is Theme.SYSTEM
 
     @property
     def language(self) -> str:
@@ -86,12 +86,12 @@ class Appearance(QObject):
 
     def switch(self) -> None:
         """Change between light and dark; the choice stays until the desktop is to be followed again."""
-        self._preferences.choose_theme(theme.LIGHT.name if self._window.palette_.dark else theme.DARK.name)
+        self._preferences.choose_theme(Theme.LIGHT if self._window.palette_.dark else Theme.DARK)
         self.refresh()
 
     def follow_system(self) -> None:
         """Follow the desktop's theme, or stop at the present one."""
-        self._preferences.choose_theme(self._window.palette_.name if self.follows_system else SYSTEM)
+        self._preferences.choose_theme(Theme(self._window.palette_.name) if self.follows_system else Theme.SYSTEM)
         self.refresh()
 
 
