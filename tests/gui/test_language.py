@@ -190,7 +190,6 @@ def test_that_what_has_no_room_ends_with_dots(designed: MainWindow, code: str) -
     assert material.shown_text() == material.currentText()
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("code", ["en", "de"])
 @pytest.mark.parametrize("height", [40, 120, 190, 264, 500])
 def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(

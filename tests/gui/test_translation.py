@@ -10,7 +10,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
 from babel.messages.pofile import read_po, write_po
@@ -86,7 +85,6 @@ def test_that_the_template_for_translators_holds_every_sentence(repository: Path
     assert written == said, "run `make messages`"
 
 
-@pytest.mark.long
 def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:
     """What is said while a module is imported would stay in the language of that moment: mark it, say it later."""
     said = []
@@ -108,7 +106,6 @@ def said_on_import(module: ast.AST) -> list[int]:
     return found
 
 
-@pytest.mark.slow
 def test_that_nothing_in_the_window_is_said_in_english_only(
     repository: Path, tmp_path: Path, project_file: Path
 ) -> None:
