@@ -16,6 +16,7 @@ from hypothesis import HealthCheck, settings
 from time_budget import DURATIONS, DurationRecorder, beyond_budget, read_durations
 
 from kirigami_studio.foundation.processes import Workers
+from tests.catalogues import compile_stale
 
 # Files, users and signals of POSIX.
 collect_ignore_glob = ["robustness/*"] if sys.platform == "win32" else []
@@ -42,7 +43,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Half of the examples are enough for a run with a budget, unless somebody has chosen."""
+    """Compile catalogues; half of the examples are enough for a run with a budget, unless somebody has chosen."""
+    compile_stale()
     if config.getoption("budget") is not None and "HYPOTHESIS_PROFILE" not in os.environ:
         settings.load_profile("short")
     if config.getoption("record_durations"):

@@ -58,7 +58,7 @@ def planted(repository: Path, tmp_path: Path) -> Path:
 
 def played(repository: Path, folder: Path, *options: str) -> list[str]:
     """Play the planted tests; return their names."""
-    search_path = os.pathsep.join([str(repository / "tests"), os.environ.get("PYTHONPATH", "")])
+    search_path = os.pathsep.join([str(repository / "tests"), str(repository), os.environ.get("PYTHONPATH", "")])
     command = [sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider", "--durations-file", "durations.json"]
     done = subprocess.run(
         [*command, *options], cwd=folder, env=os.environ | {"PYTHONPATH": search_path},

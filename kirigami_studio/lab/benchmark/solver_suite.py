@@ -39,9 +39,10 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: What solvers search: z = log10 x or the ratio x, both for ratios from 0.1 to 10.
 SPACES = {"log": (-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT), "ratio": (10.0**-LOG_RATIO_LIMIT, 10.0**LOG_RATIO_LIMIT)}

@@ -20,7 +20,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.as_cut import (
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.as_cut import (
     Outcome,
     SimulatedSheet,
     StrainFigure,
@@ -28,8 +29,7 @@ from kirigami_studio.project.as_cut import (
     jam_angles,
     simulate,
 )
-from kirigami_studio.project.cutting import plan_sheet
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.cutting import plan_sheet
 
 STRAIGHT = FabricationSettings(connector_mm=0.4, options=CutOptions(style=ConnectorStyle.STRAIGHT))
 CENTRED = replace(STRAIGHT, options=CutOptions(style=ConnectorStyle.CENTRED))
@@ -142,7 +142,7 @@ def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deploy
     irregular = Candidate(design.sheet, evaluate(design, target, 0.0), seed=0, index=0)
     score = replace(evaluate(even, target, 0.0), iou_exact=irregular.score.iou_exact - 0.001)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
-    request = Request(target, (6, 6), regular=0.0)
+    request = Request(target, (6, 6), regular=0.0, polish=0)
     result = Result(request, (irregular, uniform), 2, 0.0)
     assert Ranking.of(request).ranked([uniform, irregular]) == result.candidates
     jams = jam_angles(result.candidates, STRAIGHT)
