@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Generator, Iterable
 from pathlib import Path
 
@@ -95,7 +96,7 @@ def updated(known: dict[str, float], measured: dict[str, float]) -> dict[str, fl
 def processor_seconds() -> float:
     """Processor time of this process and of the children that it has waited for, seconds."""
     times = os.times()
-    return times.user + times.system + times.children_user + times.children_system
+    return time.process_time() + times.children_user + times.children_system
 
 
 class DurationRecorder:
