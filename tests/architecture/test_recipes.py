@@ -116,3 +116,33 @@ def test_that_every_job_checks_out_sets_up_and_plays_tests(jobs: dict[str, Any])
     assert jobs["others"]["env"]["QT_QPA_PLATFORM"] == "offscreen"
     assert not any("apt" in str(step) or "make" in str(step) for step in jobs["others"]["steps"])
     assert "--budget" in run
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="system packages of Linux")
+@pytest.mark.parametrize(
+    ("user", "apt", "said", "installed"),
+    [
+        (1000, True, r"are missing: libegl1 .*xdotool\. Run: sudo apt-get install libegl1 .*xdotool xvfb$", False),
+        (1000, False, r"there is no apt-get .*: libEGL\.so\.1 .*xdotool\. .* they are called libegl1 ", False),
+        (0, True, r"^Installing system packages for the window: libegl1 .*xdotool$", True),
+    ],
+)
+def test_that_system_packages_are_installed_or_named(
+    repository: Path, tmp_path: Path, user: int, apt: bool, said: str, installed: bool
+) -> None:
+    program(tmp_path / "ldconfig", "#!/bin/sh\n")
+    program(tmp_path / "id", f"#!/bin/sh\necho {user}\n")
+    program(tmp_path / "uname", "#!/bin/sh\necho Linux\n")
+    if apt:
+        program(tmp_path / "apt-get", '#!/bin/sh\necho "$@" >> "$CALLS"\n')
+    shell = shutil.which("sh")
+    assert shell is not None
+    done = subprocess.run(
+        [shell, repository / "packaging" / "system_libraries.sh", "tests"],
+        env={"PATH": str(tmp_path), "CALLS": str(tmp_path / "calls")},
+        capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    assert re.search(said, done.stdout.strip()), done.stdout
+    assert (tmp_path / "calls").exists() == installed
+    if installed:
+        assert "install -yq --no-install-recommends libegl1" in (tmp_path / "calls").read_text(encoding="utf-8")
