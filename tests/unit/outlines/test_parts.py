@@ -262,7 +262,6 @@ def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
     assert [part.name for part in source.parts] == ["word (1)", "word (2)"]
 
 
-@pytest.mark.long
 def test_that_the_smallest_of_too_many_parts_are_left_out_and_said(svg) -> None:
     many = "".join(f'<circle cx="{9 * k}" r="{1 + k / 1000}"/>' for k in range(MOST_PARTS + 20))
     source = read_parts(svg(many))

@@ -440,7 +440,6 @@ def test_that_nan_in_the_json_is_refused(document: Document, tmp_path: Path) -> 
         store.load(write_members(tmp_path / "nan.kiri", members))
 
 
-@pytest.mark.long
 def test_that_a_zip_bomb_is_refused_before_it_unpacks(document: Document, tmp_path: Path) -> None:
     members = members_of(document) | {"bomb": bytes(store.LARGEST_CONTENT + 1)}
     with pytest.raises(ProjectError, match="unpacks to more than 128 MB"):
