@@ -8,8 +8,10 @@ import reprlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
+from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, Seco
 from kirigami_studio.fabricate.material import default_material, library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
+from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
@@ -30,7 +33,7 @@ from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.design import POLISH_STEPS, REGULAR
+from kirigami_studio.settings.design import DesignChange, DesignChoices, with_balance
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
@@ -176,23 +179,12 @@ def material_names() -> tuple[str, ...]:
 def design(
     target: TargetLike,
     *,
-    k: int = 32,
     grid: str | tuple[int, int] = "auto",
-    phi: float = 0.0,
-    seed: int = 0,
-    symmetry: str = "auto",
-    regular: float | None = None,
-    rim: str = "free",
     start: TargetLike = "rectangle",
     start_weight: float = USUAL_START_WEIGHT,
     also: TargetLike | None = None,
     also_phi: float | None = None,
     also_weight: float | None = None,
-    variant: str = "balanced",
-    steps: int = 4,
-    polish: bool = True,
-    prefer: str = "balanced",
-    search: int = 0,
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
@@ -202,6 +194,7 @@ def design(
     style: str | None = None,
     least_panel_mm: float = 0.0,
     progress: bool | Callable[[Progress], object] = False,
+    **choices: Unpack[DesignChange],
 ) -> Designs:
     """Design sheets that open into a target: sampled, fitted, ranked, best first.
 
@@ -234,8 +227,8 @@ def design(
         Generator that samples.
     steps : int
         Sampling steps.
-    polish : bool
-        Whether every design is fitted on the exact geometry.
+    polish : bool or int
+        Whether every design is fitted on the exact geometry, or in how many steps.
     prefer : str
         ``accuracy``, ``balanced``, ``regularity`` or ``calm``, among nearly equal matches.
     search : int
@@ -270,21 +263,11 @@ def design(
     fabrication = with_choices(FabricationSettings(material=default_material().key), checked_choices(given))
     least = number("least_panel_mm", least_panel_mm)
     request = Request(
-        target=outline,
-        grid=_grid(grid),
-        phi=number("phi", phi),
-        k=number("k", k, whole=True),
-        seed=number("seed", seed, whole=True),
-        variant=variant,
-        steps=number("steps", steps, whole=True),
-        polish=POLISH_STEPS if polish else 0,
-        prefer=prefer,
+        outline,
+        _grid(grid),
+        **_choices({**choices}),
         trim=trim,
-        search=number("search", search, whole=True),
         budget_seconds=None if budget_seconds is None else number("budget_seconds", budget_seconds),
-        symmetry=symmetry,
-        rim=rim,
-        regular=REGULAR.get(prefer, REGULAR["balanced"]) if regular is None else number("regular", regular),
         width_mm=fabrication.width_mm,
         least_feature_mm=max(least_feature_mm(fabrication), least),
         room_mm=room_mm(fabrication),
@@ -299,6 +282,48 @@ def design(
     finally:
         line.end()
     return Designs(document_of(result, fabrication), result)
+
+
+def _signature() -> Signature:
+    """The signature of :func:`design` with a keyword for every choice, and its default."""
+    plain = signature(design)
+    first, *others, _ = plain.parameters.values()
+    choices = [
+        Parameter(
+            one.name,
+            Parameter.KEYWORD_ONLY,
+            default=None if one.setting.open_unless_given else one.word(one.default),
+            annotation="str" if issubclass(one.kind, Enum) else one.kind.__name__,
+        )
+        for one in settings_of(DesignChoices).values()
+        if one.setting.option
+    ]
+    return plain.replace(parameters=[first, *choices, *others])
+
+
+design.__signature__ = _signature()  # type: ignore[attr-defined]
+
+
+def _choices(given: dict[str, Any]) -> dict[str, Any]:
+    """Choices with Python's own numbers in the place of NumPy's; whether to polish as the number of steps.
+
+    Raises
+    ------
+    UsageError
+        Something else where numbers belong.
+    """
+    known, values = settings_of(DesignChoices), {}
+    for name, value in given.items():
+        one = known.get(name)
+        if one is None or not one.setting.option:
+            raise TypeError(f"design() got an unexpected keyword argument {name!r}")
+        if one.setting.switched and isinstance(value, bool):
+            values[name] = one.default if value else 0
+        elif one.kind in (int, float) and not (value is None and one.setting.open_unless_given):
+            values[name] = number(name, value, whole=one.kind is int)
+        else:
+            values[name] = value
+    return with_balance(values)
 
 
 def _grid(grid: object) -> tuple[int, int] | None:

@@ -102,8 +102,8 @@ def _whole_or_word(special: SpecialValue, text: str) -> int:
 class _Switch(argparse.BooleanOptionalAction):
     """``--polish`` and ``--no-polish`` of a number: its default, or 0."""
 
-    def __init__(self, *names: str, default: int, **keywords: Any) -> None:
-        super().__init__(*names, default=None, **keywords)
+    def __init__(self, option_strings: Sequence[str], dest: str, default: int, help: str) -> None:
+        super().__init__(option_strings, dest, None, help=help)
         self.default = default
 
     def __call__(

@@ -200,6 +200,11 @@ class NamedSetting:
             raise self._refusal(value)
         return value
 
+    @staticmethod
+    def word(value: object) -> object:
+        """A choice as it stands in files and on the command line; other values as they are."""
+        return value.value if isinstance(value, Enum) else value
+
     def _refusal(self, value: object) -> KirigamiError:
         words = ", ".join(str(one.value) for one in self.kind) if issubclass(self.kind, Enum) else ""
         values = {"name": self.name, "value": value, self.name: value, "choices": words}
