@@ -8,14 +8,12 @@ import reprlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
-from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import Any, Unpack, overload
 
 import numpy as np
 
-from kirigami_studio.api.cuts import checked_choices, number
+from kirigami_studio.api.choices import checked_choices, cut_choices, design_choices, explicit_signature, number
 from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Card, contact_sheet
 from kirigami_studio.api.running import Tell, document_of, result_of_run
@@ -24,7 +22,6 @@ from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, Seco
 from kirigami_studio.fabricate.material import default_material, library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
-from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
@@ -33,7 +30,7 @@ from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.design import DesignChange, DesignChoices, with_balance
+from kirigami_studio.settings.design import DesignChange, with_balance
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
@@ -259,13 +256,13 @@ def design(
         "kerf_mm": kerf_mm,
         "style": style,
     }
-    given = {name: value for name, value in cuts.items() if value is not None}
-    fabrication = with_choices(FabricationSettings(material=default_material().key), checked_choices(given))
+    given = {name: value for name, value in checked_choices(cuts, cut_choices(), "design").items() if value is not None}
+    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
     least = number("least_panel_mm", least_panel_mm)
     request = Request(
         outline,
         _grid(grid),
-        **_choices({**choices}),
+        **with_balance(checked_choices({**choices}, design_choices(), "design")),
         trim=trim,
         budget_seconds=None if budget_seconds is None else number("budget_seconds", budget_seconds),
         width_mm=fabrication.width_mm,
@@ -284,46 +281,7 @@ def design(
     return Designs(document_of(result, fabrication), result)
 
 
-def _signature() -> Signature:
-    """The signature of :func:`design` with a keyword for every choice, and its default."""
-    plain = signature(design)
-    first, *others, _ = plain.parameters.values()
-    choices = [
-        Parameter(
-            one.name,
-            Parameter.KEYWORD_ONLY,
-            default=None if one.setting.open_unless_given else one.word(one.default),
-            annotation="str" if issubclass(one.kind, Enum) else one.kind.__name__,
-        )
-        for one in settings_of(DesignChoices).values()
-        if one.setting.option
-    ]
-    return plain.replace(parameters=[first, *choices, *others])
-
-
-design.__signature__ = _signature()  # type: ignore[attr-defined]
-
-
-def _choices(given: dict[str, Any]) -> dict[str, Any]:
-    """Choices with Python's own numbers in the place of NumPy's; whether to polish as the number of steps.
-
-    Raises
-    ------
-    UsageError
-        Something else where numbers belong.
-    """
-    known, values = settings_of(DesignChoices), {}
-    for name, value in given.items():
-        one = known.get(name)
-        if one is None or not one.setting.option:
-            raise TypeError(f"design() got an unexpected keyword argument {name!r}")
-        if one.setting.switched and isinstance(value, bool):
-            values[name] = one.default if value else 0
-        elif one.kind in (int, float) and not (value is None and one.setting.open_unless_given):
-            values[name] = number(name, value, whole=one.kind is int)
-        else:
-            values[name] = value
-    return with_balance(values)
+design.__signature__ = explicit_signature(design, design_choices())  # type: ignore[attr-defined]
 
 
 def _grid(grid: object) -> tuple[int, int] | None:
