@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from kirigami_studio.foundation.processes import Workers
+from tests.catalogues import compile_stale
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -33,7 +34,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Half of the examples are enough for a short run, unless somebody has chosen."""
+    """Compile catalogues; half of the examples are enough for a short run, unless somebody has chosen."""
+    compile_stale()
     if config.getoption("short") and "HYPOTHESIS_PROFILE" not in os.environ:
         settings.load_profile("short")
 

@@ -232,7 +232,7 @@ def choose_grid(
     poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
-    found = list(_candidates(target, figures, poses, limit, start))
+    found = list(_candidates(target, figures, poses, limit, start)) or _nearest(target, figures, poses, limit, start)
     found = [one for one in found if one.start_error <= MOST_START_ERROR] or [
         min(found, key=lambda one: one.start_error)
     ]
@@ -417,6 +417,7 @@ def _candidates(
     limit: int,
     start: StartShape,
     room: float = PROPORTION_ROOM,
+    start_room: float = START_ROOM,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries.
 
@@ -433,7 +434,7 @@ def _candidates(
         proportion = proportions.along(along)
         low, high = min(0.0, proportion) - room, max(0.0, proportion) + room
         if not start.is_plain:
-            low, high = start.proportion(1, 1) - START_ROOM, start.proportion(1, 1) + START_ROOM
+            low, high = start.proportion(1, 1) - start_room, start.proportion(1, 1) + start_room
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns
@@ -445,6 +446,15 @@ def _candidates(
                     match = predicted_match(figures, grid, proportion, start)
                     error = start_error(uniform_sheet(grid, start))
                     yield _Candidate(grid, pose, match, width_in_cells(grid, start), error)
+
+
+def _nearest(
+    target: Outline, figures: ShapeFigures, poses: tuple[SymmetricPose, ...], limit: int, start: StartShape
+) -> list[_Candidate]:
+    """Grids for a start that is longer than any: those whose proportions come nearest to it."""
+    found = list(_candidates(target, figures, poses, limit, start, start_room=math.inf))
+    off = [abs(one.proportion - start.proportion(1, 1)) for one in found]
+    return [one for one, far in zip(found, off, strict=True) if far <= min(off) + PROPORTION_ROOM]
 
 
 def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:

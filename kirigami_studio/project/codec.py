@@ -293,7 +293,9 @@ def _hinge_width(entry: object) -> tuple[int, float]:
 def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
-    return {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
+    plain = {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
+    # Longer than a name; a material makes plain text of it itself.
+    return plain | {"note": record.verbatim("note")} if kind is Material else plain
 
 
 def _candidate_json(
@@ -404,7 +406,7 @@ def _run(record: Record, runs: list[tuple[tuple[str, str], ...]]) -> tuple[tuple
 
 def _label(entry: object, number: int) -> Label:
     record = Record(entry, f"{DESIGN}.labels[{number}]")
-    return Label(record.text("code"), record.text("name"), record.text("note"))
+    return Label(record.verbatim("code"), record.verbatim("name"), record.verbatim("note"))
 
 
 def _void(entry: object) -> Void:

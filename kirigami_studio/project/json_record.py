@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, NoReturn, TypeVar
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.settings import NamedSetting, settings_of
 
 LARGEST_NUMBER = 1e300
@@ -80,16 +81,22 @@ class Record:
         return self._of_kind(bool, name, "json.not_true_or_false")
 
     def text(self, name: str) -> str:
+        """A text as one plain line."""
+        return plain_line(self.verbatim(name))
+
+    def verbatim(self, name: str) -> str:
+        """A text as it is written, for what checks it itself."""
         return self._of_kind(str, name, "json.not_a_text")
 
     def list(self, name: str) -> list[Any]:
         return self._of_kind(list, name, "json.not_a_list").copy()
 
     def texts(self, name: str) -> dict[str, str]:
+        """A table of texts, each one plain line."""
         value = self._get(name)
         if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
             self._refuse("json.not_a_table_of_texts", name, value)
-        return dict(value)
+        return {plain_line(key): plain_line(text, LONGEST_NOTE) for key, text in value.items()}
 
     def numbers(self, name: str) -> tuple[float, ...]:
         """A list of numbers."""

@@ -13,6 +13,7 @@ from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.files import read_toml, write_atomically
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -87,6 +88,8 @@ class Preferences:
 
     def __post_init__(self) -> None:
         check(self)
+        for name in ("profile", "language", "material"):
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
         try:
             FabricationSettings(width_mm=self.width_mm, opened_mm=self.opened_mm)
         except UsageError as error:

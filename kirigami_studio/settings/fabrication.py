@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
-from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material, library
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
 from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
@@ -263,6 +263,25 @@ class OptionsChange(TypedDict, total=False):
 
 class CutChange(SheetChange, OptionsChange, total=False):
     """Values for settings of a sheet, of its files and of all its cuts."""
+
+
+def stored_material(settings: FabricationSettings) -> Material | None:
+    """Return the numbers of the settings' material as the project stores them; None for bundled materials."""
+    return settings.own if settings.own is not None and settings.own.key == settings.material else None
+
+
+def material_for(settings: FabricationSettings) -> Material:
+    """Return the material that the settings name: from the library, else as it is stored in the project.
+
+    Raises
+    ------
+    FabricationError
+        Neither has it; the sentence lists the library.
+    """
+    stored = stored_material(settings)
+    if stored is not None and stored.key not in library().materials:
+        return stored
+    return find_material(settings.material)
 
 
 def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:

@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.fabricate.material import DEFAULT_PRESET
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.gui.make.export_report import ExportReport, as_text, format_findings, verdict
 from kirigami_studio.gui.session.messages import Tone
@@ -242,3 +243,18 @@ def test_that_the_file_that_must_not_be_cut_is_shown_first(designed: MainWindow)
     dialog = ExportReport(designed, (GOOD, BAD), LIGHT)
     assert dialog.shown is BAD and dialog.file.itemText(1).startswith("Do not cut")
     dialog.deleteLater()
+
+
+def test_that_another_file_is_shown_after_the_language_has_changed(
+    window: MainWindow, english_afterwards: None
+) -> None:
+    """Before, the figures were known by their captions, in the language that was spoken when the report opened."""
+    report = ExportReport(window, (GOOD, replace(BAD, path=Path("other.dxf"), pieces=3)), LIGHT)
+    report.show()
+    words.choose("de")
+    report.file.setCurrentIndex(0)
+    assert report.facts["Pieces"].text() == "1" and "Teile: 1" in report.text()
+    report.file.setCurrentIndex(1)
+    assert report.facts["Pieces"].text() == "3"
+    report.close()
+    report.deleteLater()

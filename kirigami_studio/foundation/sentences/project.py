@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # Fixes that were tried on a design
@@ -17,15 +17,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "fix.hinges": mark("Give all connectors the same width."),
     "fix.strain": mark("{change}: strain {strain_percent:.1f} %."),
     "fix.then": mark("{change} Then: {level}."),
-    "fix.none": (
-        mark(
-            "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
-            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
-        ),
-        mark(
-            "Nothing that was tried works: {count} changes, with {styles} styles, connectors of {narrowest_mm:g} to "
-            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
-        ),
+    "fix.none": mark_n(
+        "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
+        "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials.",
+        "Nothing that was tried works: {count} changes, with {styles} styles, connectors of {narrowest_mm:g} to "
+        "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials.",
     ),
     # The photo behind a target
     "photo.too_large": mark("{name} has {size_mb:.0f} MB; the limit is {most_mb} MB."),

@@ -83,6 +83,7 @@ class Connections(QObject):
         window, controller = self._window, self._controller
         unsaved = controller.history.unsaved
         name = controller.path.name if controller.path is not None else tr("Untitled")
-        window.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=name))
+        literal = name.replace("[*]", "[*][*]")  # or Qt would take it for the place of its own star
+        window.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=literal))
         window.setWindowModified(unsaved)
         window.heading.setText(tr("{name}  ·  unsaved changes", name=name) if unsaved else name)

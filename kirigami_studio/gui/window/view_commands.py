@@ -10,8 +10,10 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
+from kirigami_studio.foundation.words import language as spoken_language
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
@@ -38,12 +40,13 @@ OVERLAY_COMMANDS = {
 
 
 class Appearance(QObject):
-    """The window's theme and language: the desktop's until the user chooses, and again when asked to."""
+    """Theme and language of the window: the desktop's unless the preferences name others."""
 
     def __init__(self, window: MainWindow, preferences: UserPreferences) -> None:
         super().__init__(window)
         self._window = window
         self._preferences = preferences
+        self._offer: Message | None = None
 
     @property
     def follows_system(self) -> bool:
@@ -56,9 +59,19 @@ class Appearance(QObject):
         return self._preferences.present.language
 
     def choose_language(self, language: str) -> None:
-        """Say everything in another language, from now on and at the next start."""
+        """Prefer another language; it is that of the next window."""
         self._preferences.choose_language(language)
-        self._window.speak(language)
+        self.offer_start()
+
+    def offer_start(self) -> None:
+        """Offer to open the window again in the preferred language, unless it speaks that already."""
+        if self._offer is not None:
+            self._window.messages.drop(self._offer)
+            self._offer = None
+        if self.language != spoken_language():
+            sentence = tr("The language changes when Kirigami Studio is started again. Your project stays open.")
+            self._offer = Message(sentence, actions=((tr("Start again now"), self._window.start_again),))
+            self._window.messages.add(self._offer)
 
     def listen(self) -> None:
         """Change the theme whenever the desktop changes its own, if that is wanted."""

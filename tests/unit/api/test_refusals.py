@@ -149,7 +149,7 @@ def test_that_impossible_designs_are_refused_before_any_work(
     options: dict[str, object], code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if "variant" not in options:
-        monkeypatch.setattr("kirigami_studio.api.running.run", lambda *_, **__: pytest.fail("the run was started"))
+        monkeypatch.setattr("kirigami_studio.pipeline.run.run", lambda *_, **__: pytest.fail("the run was started"))
     assert code_of(lambda: ks.design("heart", **options)) == code  # type: ignore[arg-type]
 
 

@@ -42,7 +42,7 @@ def ratios(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("command", all_commands(), ids=lambda command: command.name)
 def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
     module, function = command.run.split(":")
-    assert callable(vars(import_module(f"kirigami_studio.cli.{module}"))[function])
+    assert callable(vars(import_module(f"kirigami_studio.{module}"))[function])
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
@@ -410,7 +410,7 @@ def test_that_a_folder_that_cannot_be_written_is_refused_before_any_work(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "taken").write_text("a file")
-    monkeypatch.setattr("kirigami_studio.api.running.run", lambda *_: pytest.fail("the run was started"))
+    monkeypatch.setattr("kirigami_studio.pipeline.run.run", lambda *_: pytest.fail("the run was started"))
     for out in (tmp_path / "taken", tmp_path / "taken" / "deeper"):
         code, sentence = refusal(capsys, "design", "heart", "--k", "1", "--out", out)
         assert code == 1

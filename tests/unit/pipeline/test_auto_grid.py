@@ -36,6 +36,14 @@ def nothing_remembered(monkeypatch) -> None:
     monkeypatch.setattr(auto_grid, "_CHOSEN", {})
 
 
+@pytest.mark.parametrize("start", ["rectangle:5:1", "rectangle:1:4", "ellipse:4:1"])
+def test_that_a_start_longer_than_any_grid_gets_the_longest_grids(start: str) -> None:
+    shape = start_shape(start)
+    rows, columns = choose_grid(load("heart"), start=shape).grid
+    wide = shape.proportion(1, 1) < 0.0
+    assert (columns if wide else rows) >= 2 * (rows if wide else columns)
+
+
 @pytest.mark.parametrize("name", names())
 def test_that_the_grid_has_what_the_shape_asks_for(name: str) -> None:
     choice = choose_grid(load(name))

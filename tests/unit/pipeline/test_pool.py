@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pickle
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,7 +23,7 @@ from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
 from kirigami_studio.pipeline.tasks import Answer, PolishTask, Task, scored
-from kirigami_studio.pipeline.worker import Ready
+from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready
 
 pytestmark = pytest.mark.slow
 COUNT = 6
@@ -98,6 +100,37 @@ def test_that_the_work_of_killed_workers_is_done_again(
                 one.process.kill()
     assert found == expected
     assert pool.usable  # the next run starts new ones
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="processes cannot be stopped here")
+def test_that_a_stopped_worker_is_given_up_and_its_work_done_again(
+    request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+) -> None:
+    pool = Pool(2, silence=3.0)
+    pool.start()
+    try:
+        wait_until_ready(pool)
+        stopped = pool.workers[0]
+        stopped.process.send_signal(signal.SIGSTOP)
+        assert answered(pool, request_for_heart, tasks) == expected
+        assert not stopped.alive and stopped not in pool.workers and len(pool.workers) == 1
+    finally:
+        pool.close()
+
+
+def test_that_a_worker_says_that_it_lives_while_it_works(request_for_heart: Request) -> None:
+    draw = np.random.default_rng(1)
+    large = replace(request_for_heart, grid=(20, 20))
+    (candidate,) = scored(large, [Sheet(RatioField.from_log10(draw.uniform(-0.4, 0.4, large.grid)))], 0)
+    with subprocess.Popen(worker_command(), stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None and process.stdout is not None
+        process.stdin.write(pickle.dumps(Assignment(1, 0, large, PolishTask(candidate, 30))))
+        process.stdin.flush()
+        reports = [pickle.load(process.stdout)]
+        while not isinstance(reports[-1], Done):
+            reports.append(pickle.load(process.stdout))
+        process.stdin.close()
+    assert isinstance(reports[0], Ready) and all(isinstance(one, Alive) for one in reports[1:-1]) and len(reports) > 2
 
 
 @pytest.mark.parametrize("command", [["no-such-program-anywhere"], [sys.executable, "-c", "raise SystemExit(3)"]])

@@ -26,9 +26,9 @@ from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.symmetry import shared_symmetries
-from kirigami_studio.project.cutting import plan_of, room_mm
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.studio.cutting import plan_of, room_mm
 
 
 def smallest(sheet: Sheet | RatioField) -> float:
@@ -172,6 +172,15 @@ def test_that_distinct_sizes_leave_out_edges_told_twice() -> None:
     rare = sizes.distinct()
     assert len(rare.size) < len(sizes.size)
     assert sorted(set(rare.size.round(9))) == sorted(set(sizes.size.round(9)))
+
+
+@pytest.mark.parametrize(("grid", "seed", "target"), [((15, 15), 1, "circle"), ((13, 13), 10, "gear")])
+def test_that_a_fit_goes_on_where_a_step_leaves_no_size_near_the_bound(
+    grid: tuple[int, int], seed: int, target: str
+) -> None:
+    start = RatioField.from_log10(np.random.default_rng(seed).uniform(-0.9, 0.9, grid))
+    fit = polish(start, load(target), stages=[Stage(2, even=9e-4)], least_panel=0.0912, free_rim=True)
+    assert smallest(fit.sheet) > 0.0912
 
 
 def test_that_stopping_ends_at_once() -> None:

@@ -20,7 +20,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.as_cut import (
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.as_cut import (
     Outcome,
     SimulatedSheet,
     StrainFigure,
@@ -28,8 +29,7 @@ from kirigami_studio.project.as_cut import (
     jam_angles,
     simulate,
 )
-from kirigami_studio.project.cutting import plan_sheet
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.cutting import plan_sheet
 
 STRAIGHT = FabricationSettings(connector_mm=0.4, options=CutOptions(style=ConnectorStyle.STRAIGHT))
 CENTRED = replace(STRAIGHT, options=CutOptions(style=ConnectorStyle.CENTRED))
