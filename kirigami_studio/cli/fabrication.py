@@ -67,7 +67,7 @@ def export(arguments: argparse.Namespace) -> int:
             raise
         fixes = " ".join(_advice(document, settings, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
-    job = replace(cut_job(document, plan, settings), markers=settings.markers or arguments.markers)
+    job = cut_job(document, plan, settings)
     candidate = chosen_candidate(document)
     as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
 
@@ -296,7 +296,6 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    given.pop("markers", None)  # a flag: without it, the project's choice stays
     return with_choices(saved, given)
 
 

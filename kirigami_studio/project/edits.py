@@ -149,7 +149,8 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    cut = replace(document.fabrication, **changes)
+    values: dict[str, Any] = {**changes}
+    cut = replace(document.fabrication, **values)
     if "width_mm" in changes and "opened_mm" not in changes:
         cut = replace(cut, opened_mm=None)
     changed = replace(document, fabrication=cut)
@@ -164,7 +165,8 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
     FabricationError
         The number does not fit; see :class:`CutOptions`.
     """
-    options = replace(document.fabrication.options, **changes)
+    values: dict[str, Any] = {**changes}
+    options = replace(document.fabrication.options, **values)
     changed = replace(document, fabrication=replace(document.fabrication, options=options))
     return Edit(_label(CutOptions, changes), changed, merge_key=_merge_key("options", changes))
 

@@ -7,7 +7,7 @@ designs are ranked by how they do as cut, and what project they make.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -34,8 +34,6 @@ from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
-#: What project settings and request both say.
-SHARED = frozenset(one.name for one in fields(DesignSettings)) & {one.name for one in fields(Request)} - {"grid"}
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
 
@@ -156,11 +154,9 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    shared = {name: getattr(wanted, name) for name in SHARED}
-    return Request(
+    return Request.of(
         target,
-        None if wanted.auto_grid else wanted.grid,
-        **shared,
+        wanted,
         trim=trim,
         budget_seconds=budget_seconds,
         width_mm=cut.width_mm,
@@ -336,9 +332,7 @@ def facts_of(request: Request) -> dict[str, str]:
 def document_of(result: Result, cut: FabricationSettings) -> Document:
     """The project that a run makes of its request: its designs, ranked, the best chosen."""
     request, facts = result.request, facts_of(result.request)
-    shared = {name: getattr(request, name) for name in SHARED}
-    wanted = DesignSettings(request.chosen_grid, **shared, auto_grid=request.grid_chosen)
-    empty = Document(request.target, wanted, fabrication=cut)
+    empty = Document(request.target, request.settings, fabrication=cut)
     return renew_candidates(empty, NewDesigns(result.candidates, facts), result.ranking.key).document
 
 
