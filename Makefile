@@ -15,6 +15,8 @@ unexport PYTHONDONTWRITEBYTECODE
 QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
   --ignore=tests/unit/evaluate/test_siou.py
 
+CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
+
 .PHONY: help setup run test test-all fuzz soak quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
@@ -39,12 +41,16 @@ help:
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"
 	@echo "make site    build the documentation into build/site; works without a network once .venv is there"
-	@echo "make messages  collect all sentences for translators in resources/locale"
+	@echo "make messages  collect all sentences for translators in build/kirigami_studio.pot"
 	@echo "make package   wheel, source archive, frozen program and Debian package of this tree in dist, each tried as installed"
 	@echo "make release   the same of a commit whose version is in the changelog, with checksums"
 	@echo "make clean   remove what the other targets made, except .venv"
 
-setup: $(STAMP)
+setup: $(STAMP) $(CATALOGUES)
+
+# Catalogues as gettext reads them.
+%.mo: %.po | $(STAMP)
+	$(BIN)/pybabel -q compile -i $< -o $@
 
 # torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
@@ -177,8 +183,9 @@ site-serve: setup $(DOCS_STAMP)
 
 # The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup
-	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
-	  -o resources/locale/kirigami_studio.pot kirigami_studio
+	@mkdir -p build
+	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 -k mark_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
+	  -o build/kirigami_studio.pot kirigami_studio
 
 # docs/releasing.md says what has to agree.  Both make environments of their own, below build.
 package:

@@ -12,8 +12,10 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
 from hypothesis import HealthCheck, settings
+from time_budget import DURATIONS, DurationRecorder
 
 from kirigami_studio.foundation.processes import Workers
+from tests.catalogues import compile_stale
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -29,11 +31,16 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Let golden files be written anew on purpose, and a run be short."""
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
+    parser.addoption("--record-durations", action="store_true", help="measure every test for tests/durations.json")
+    parser.addoption("--durations-file", type=Path, default=DURATIONS, help="where --record-durations writes")
     parser.addoption("--short", action="store_true", help="leave long tests out, and most cases of some")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Half of the examples are enough for a short run, unless somebody has chosen."""
+    """Compile catalogues; half of the examples are enough for a short run, unless somebody has chosen."""
+    compile_stale()
+    if config.getoption("record_durations"):
+        config.pluginmanager.register(DurationRecorder(config.getoption("durations_file")), "durations")
     if config.getoption("short") and "HYPOTHESIS_PROFILE" not in os.environ:
         settings.load_profile("short")
 

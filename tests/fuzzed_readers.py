@@ -118,8 +118,8 @@ def _drawings(reader: str) -> list[bytes]:
     from kirigami_studio.lattice.deployment import deploy
     from kirigami_studio.lattice.ratio_field import RatioField
     from kirigami_studio.project import store
-    from kirigami_studio.project.cutting import plan_sheet
     from kirigami_studio.project.settings import FabricationSettings
+    from kirigami_studio.studio.cutting import plan_sheet
 
     design = deploy(RatioField.uniform(3, 3))
     plan = plan_sheet(design, FabricationSettings(60.0, connector_mm=0.8))

@@ -25,10 +25,10 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import preferences, recent, recovery, store
-from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.preferences import Preferences
 from kirigami_studio.project.recent import Recent
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.cutting import plan_sheet
 
 RESOURCES = Path(__file__).parents[1] / "resources"
 #: Different contents that a file goes through.

@@ -26,11 +26,11 @@ from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.project.as_cut import simulate
-from kirigami_studio.project.cutting import check_connectors, plan_of, refuse_errors
 from kirigami_studio.project.export_job import cut_job
 from kirigami_studio.project.settings import FabricationSettings, with_choices
-from kirigami_studio.project.verdict import Level, Verdict, judge
+from kirigami_studio.studio.as_cut import simulate
+from kirigami_studio.studio.cutting import check_connectors, plan_of, refuse_errors
+from kirigami_studio.studio.verdict import Level, Verdict, judge
 
 #: Choices that are numbers, and those of them that are whole ones.
 LENGTHS, COUNTS = ("width_mm", "connector_mm", "kerf_mm", "tab_mm", "copy_gap_mm"), ("tabs", "copies")

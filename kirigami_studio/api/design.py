@@ -340,7 +340,7 @@ def design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: floa
         outline = Outline.from_points(deployment.outline(phi), "own silhouette")
     else:
         outline = load_target(target).outline
-    settings = DesignSettings(deployment.sheet.grid, phi, auto_grid=False)
+    settings = DesignSettings(deployment.sheet.grid, auto_grid=False, phi=phi)
     found = Candidate(deployment.sheet, evaluate(deployment, outline, phi), 0, 0, origin=Origin.EDITED)
     document = Document(outline, settings, (found,), 0)
     return Design(set_label(document, 0, cleaned_name(name), "").document if name else document)

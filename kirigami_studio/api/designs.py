@@ -16,7 +16,6 @@ import numpy as np
 from kirigami_studio.api.cuts import checked_choices, number
 from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Card, contact_sheet
-from kirigami_studio.api.running import Tell, document_of, result_of_run
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.fabricate.material import default_material, library
@@ -25,11 +24,11 @@ from kirigami_studio.foundation.errors import GridError, ProjectError, UsageErro
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
-from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings, with_choices
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.design import POLISH_STEPS, REGULAR
+from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
@@ -268,9 +267,10 @@ def design(
     given = {name: value for name, value in cuts.items() if value is not None}
     fabrication = with_choices(FabricationSettings(material=default_material().key), checked_choices(given))
     least = number("least_panel_mm", least_panel_mm)
-    request = Request(
-        target=outline,
-        grid=_grid(grid),
+    chosen = _grid(grid)
+    choices: dict[str, Any] = dict(
+        **({} if chosen is None else {"grid": chosen}),
+        auto_grid=chosen is None,
         phi=number("phi", phi),
         k=number("k", k, whole=True),
         seed=number("seed", seed, whole=True),
@@ -278,26 +278,29 @@ def design(
         steps=number("steps", steps, whole=True),
         polish=POLISH_STEPS if polish else 0,
         prefer=prefer,
-        trim=trim,
         search=number("search", search, whole=True),
-        budget_seconds=None if budget_seconds is None else number("budget_seconds", budget_seconds),
         symmetry=symmetry,
         rim=rim,
-        regular=REGULAR.get(prefer, REGULAR["balanced"]) if regular is None else number("regular", regular),
-        width_mm=fabrication.width_mm,
-        least_feature_mm=max(least_feature_mm(fabrication), least),
-        room_mm=room_mm(fabrication),
+        regular=_regular_of(prefer) if regular is None else number("regular", regular),
         start=_start(start, number("start_weight", start_weight)),
         second=_second(also, also_phi, also_weight),
     )
+    wanted = DesignSettings(**choices)
+    budget = None if budget_seconds is None else number("budget_seconds", budget_seconds)
+    request = request_for(outline, wanted, fabrication, least_panel_mm=least, trim=trim, budget_seconds=budget)
     line = _Line()
     tell: Tell = progress if callable(progress) else line.show if progress else _quietly
     try:
-        as_cut = material is not None
-        result = result_of_run(request, fabrication, tell, least_panel_mm=least, as_cut=as_cut)
+        run = run_design(request, fabrication, as_cut=material is not None, least_panel_mm=least)
+        result = completed(run, tell)
     finally:
         line.end()
     return Designs(document_of(result, fabrication), result)
+
+
+def _regular_of(prefer: str) -> float:
+    """Return where a preference stands between match and regular; the middle for one that the settings refuse."""
+    return next((value for name, value in REGULAR.items() if name == prefer), 0.5)
 
 
 def _grid(grid: object) -> tuple[int, int] | None:

@@ -15,10 +15,10 @@ from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.export_job import chosen_candidate, cut_job
 from kirigami_studio.project.store import load
+from kirigami_studio.studio.cutting import plan_of
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0

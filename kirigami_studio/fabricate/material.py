@@ -20,6 +20,7 @@ import platformdirs
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.files import read_toml
+from kirigami_studio.foundation.plain_text import plain_line, plain_lines
 from kirigami_studio.foundation.resources import resource
 
 #: The preset that a new project starts with: the film of the paper's specimens.
@@ -119,6 +120,10 @@ class Material:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
+            # The key stays as it was given: whoever writes a file of that name checks it.
+            if isinstance(value, str) and field.name != "key":
+                plain = plain_lines(value) if field.name == "note" else plain_line(value)
+                object.__setattr__(self, field.name, plain)
             if field.type == "float":
                 self._check_number(field.name, value, zero_allowed=field.name in MAY_BE_ZERO)
             elif type(value).__name__ != field.type:
@@ -249,4 +254,4 @@ def read_preset(path: Path) -> Material:
     if unknown := entries.keys() - expected.keys():
         names = ", ".join(sorted(unknown))
         raise FabricationError("material.entries_unknown", path=path, names=names, count=len(unknown))
-    return Material(key=path.stem, **entries)
+    return Material(key=plain_line(path.stem), **entries)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from typing import TypeVar
 
+from kirigami_studio.foundation.errors import Cancelled
+
 T = TypeVar("T")
 Result = TypeVar("Result")
 #: Whether the work has been asked to stop.
@@ -41,3 +43,22 @@ def result_of(steps: Generator[object, None, Result]) -> Result:
         except StopIteration as end:
             result: Result = end.value
             return result
+
+
+def in_turns(steps: Generator[None, None, Result], cancel: Cancel) -> Iterator[Result | None]:
+    """None after every step, so that other jobs have their turn; at last the result.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true between two steps.
+    """
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as end:
+            yield end.value
+            return
+        yield None

@@ -48,7 +48,10 @@ def test_that_the_wheel_carries_every_module_and_every_bundled_file(wheel: Path,
         names = archive.namelist()
     assert len(names) == len(set(names))
     expected = {f"kirigami_studio/{name}" for name in files_below(repository / "kirigami_studio")}
-    expected |= {f"kirigami_studio/resources/{name}" for name in files_below(repository / "resources")}
+    bundled = {name.removesuffix(".po") + ".mo" if name.endswith(".po") else name
+               for name in files_below(repository / "resources")}  # fmt: skip
+    assert "locale/de/LC_MESSAGES/kirigami_studio.mo" in bundled
+    expected |= {f"kirigami_studio/resources/{name}" for name in bundled}
     assert any(name.startswith("kirigami_studio/resources/silhouettes/") for name in expected)
     carried = {name for name in names if ".dist-info/" not in name}
     assert carried == expected

@@ -14,7 +14,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import kirigami_studio
-from kirigami_studio.cli.parser import SUB_COMMANDS
+from kirigami_studio.cli.parser import all_commands
 from kirigami_studio.foundation.resources import resource
 
 pytest.importorskip("mkdocs")
@@ -130,8 +130,8 @@ def test_that_formulas_are_drawn_by_the_browser_alone(site: Path) -> None:
 
 def test_that_every_command_and_its_options_are_in_the_reference(site: Path) -> None:
     text = (site / "command-line-options.html").read_text(encoding="utf-8")
-    assert [one.name for one in SUB_COMMANDS if f">{one.name}<a" not in text] == []
-    options = {name for one in SUB_COMMANDS for names, _ in one.options for name in names if name.startswith("--")}
+    assert [one.name for one in all_commands() if f">{one.name}<a" not in text] == []
+    options = {name for one in all_commands() for names, _ in one.options for name in names if name.startswith("--")}
     assert [option for option in sorted(options) if option not in text] == []
 
 

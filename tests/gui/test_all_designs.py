@@ -28,8 +28,8 @@ from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

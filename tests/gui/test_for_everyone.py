@@ -27,7 +27,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.studio.cut_files import Exported
+from kirigami_studio.studio.making import Exported
 
 CONTROLS = (
     QAbstractButton,

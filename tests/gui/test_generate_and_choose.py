@@ -10,13 +10,13 @@ from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.gallery.gallery_model import described
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]
 #: Designs of a run that a test stops after the first ones.
@@ -27,7 +27,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 def test_that_a_run_has_as_many_designs_as_the_settings_say() -> None:
-    request = request_of(load("heart"), DesignSettings(k=32, polish=15), FabricationSettings())
+    request = request_for(load("heart"), DesignSettings(k=32, polish=15), FabricationSettings())
     assert request.k == 32 and request.fitted_starts == 8 and request.k - request.fitted_starts == 24
 
 

@@ -44,14 +44,11 @@ def test_that_a_preset_can_be_copied_but_not_changed(editor: MaterialEditor, qtb
     assert presets()["film-uv"] == library().materials["film-uv"]
 
 
-def test_that_a_german_window_tells_of_presets_in_german(
-    editor: MaterialEditor, designed: MainWindow, english_afterwards: None
-) -> None:
-    english = editor.form.texts["note"].text()
-    designed.speak("de")
-    editor.form.show_material(editor.chosen, editable=False)
+@pytest.mark.usefixtures("german")
+def test_that_a_german_window_tells_of_presets_in_german(editor: MaterialEditor, designed: MainWindow) -> None:
+    english = editor.chosen.note
     assert editor.form.texts["note"].text().startswith("Schnittfuge nach") and english.startswith("Kerf from")
-    assert editor.form.changes() == {} and editor.chosen.note == english
+    assert editor.form.changes() == {}
     assert "Schnittfuge nach" in designed.fabrication.material.toolTip()
 
 

@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.stage.rim_drag import moved, room_of
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -23,6 +22,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, start_shape
 from kirigami_studio.pipeline.auto_grid import predicted_for
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]
 LISTED = ["rectangle", "square", "circle", "ellipse:3:2", "triangle", "hexagon"]
@@ -85,7 +85,7 @@ def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: 
     until(lambda: settings.auto.accessibleDescription() != "")
     document = controller.document
     assert document.target is not None
-    wanted = predicted_for(request_of(document.target, document.settings, document.fabrication))
+    wanted = predicted_for(request_for(document.target, document.settings, document.fabrication))
     assert (settings.rows.value(), settings.columns.value()) == wanted.grid
     assert settings.auto.accessibleDescription() == wanted.reason
 

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.project.verdict import Level
+from kirigami_studio.studio.verdict import Level
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]

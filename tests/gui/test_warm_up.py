@@ -87,15 +87,16 @@ def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
 
 IMPORTED = """
 import sys
-from kirigami_studio.gui.jobs import design_jobs, importing
+from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project.settings import FabricationSettings
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
 assert request.fitted_starts
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in design_jobs.generating(request, None, lambda: False):
+for event in designing.generating(request, FabricationSettings(), (), False, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """
@@ -141,7 +142,7 @@ while not window.controller.verdict.state.known or window.controller.verdict.sta
     assert time.monotonic() < end
     QCoreApplication.processEvents()
     time.sleep(0.01)
-print("kirigami_studio.project.verdict" in found[False], found[True])
+print("kirigami_studio.studio.verdict" in found[False], found[True])
 window.close()
 """
 

@@ -22,7 +22,7 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.studio.cut_files import CutRequest, export_job, planned
+from kirigami_studio.studio.making import CutRequest, export_job, planned
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
 BAND = 1_000_000

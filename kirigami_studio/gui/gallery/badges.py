@@ -11,7 +11,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.pipeline.rank import Ranking
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 SMALLEST_CARD = 132
 #: Pixels above the picture, for the name and the marks, and below it, for two lines of text.

@@ -25,7 +25,7 @@ from kirigami_studio.project.labels import Label
 from kirigami_studio.studio.two_states import TwoStates, start_of
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2

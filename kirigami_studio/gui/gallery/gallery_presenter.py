@@ -14,7 +14,6 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, OPEN_ROLE
 from kirigami_studio.gui.gallery.side_by_side import SideBySide
-from kirigami_studio.gui.run.generation import ranking_of
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.widgets import icons
@@ -24,7 +23,7 @@ from kirigami_studio.project.document import Document, Mark
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.window.main_window import MainWindow
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 
 class DesignConnections(QObject):
@@ -55,7 +54,7 @@ class DesignConnections(QObject):
         settings.regular_moved.connect(self._move_balance)
         settings.regular_chosen.connect(self._choose_balance)
         self._controller.estimates.changed.connect(self._show_estimates)
-        regularity.ranked.connect(lambda ranking: window.gallery.view.rank_by(self._as_cut(ranking)))
+        regularity.ranked.connect(lambda ranking: window.gallery.view.rank_by(self._estimated(ranking)))
         regularity.busy_changed.connect(self._show_fitting)
         regularity.progressed.connect(window.run.show_progress)
 
@@ -143,22 +142,26 @@ class DesignConnections(QObject):
         view.model_.set_as_cut(known, self._controller.estimates.strain_limit)
         if self._controller.running or not known:
             return
-        ranking = self._as_cut(ranking_of(self._controller.document))
+        ranking = self._ranking
         jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
         if jams or self._ranked_as_cut:  # the document's order stays where all designs close
             view.rank_by(ranking)
             self._show_chosen()
         self._ranked_as_cut = jams
 
-    def _as_cut(self, ranking: Ranking) -> Ranking:
-        """The ranking with what is known of the designs as cut."""
-        known = self._controller.estimates.known
-        return replace(ranking, jam_phi={candidate: found.jam_phi for candidate, found in known.items()})
+    @property
+    def _ranking(self) -> Ranking:
+        """That of the document, with what is estimated of its designs as cut."""
+        return self._estimated(self._controller.session.ranking)
+
+    def _estimated(self, ranking: Ranking) -> Ranking:
+        found = {candidate: one.jam_phi for candidate, one in self._controller.estimates.known.items()}
+        return replace(ranking, jam_phi={**ranking.jam_phi, **found})
 
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery
         running = self._controller.running
-        gallery.view.set_measure(document.fabrication.width_mm, None if running else self._as_cut(ranking_of(document)))
+        gallery.view.set_measure(document.fabrication.width_mm, None if running else self._ranking)
         marks = dict(zip(document.candidates, document.marks, strict=True))
         gallery.view.model_.set_labels(dict(zip(document.candidates, document.labels, strict=True)))
         gallery.view.show_marks(marks, self._controller.generation.planner.added)
@@ -171,7 +174,7 @@ class DesignConnections(QObject):
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         view, document = self._window.gallery.view, self._controller.document
         running = self._controller.running
-        ranking = self._controller.session.display.ranking if running else self._as_cut(ranking_of(document))
+        ranking = self._controller.session.display.ranking if running else self._ranking
         view.model_.set_ranking(ranking)
         view.show_entries(list(entries), document.target)
         self._controller.alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)

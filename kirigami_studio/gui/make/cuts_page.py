@@ -28,7 +28,7 @@ from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
-    from kirigami_studio.studio.cut_files import Planned
+    from kirigami_studio.studio.making import Planned
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0

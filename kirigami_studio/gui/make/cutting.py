@@ -20,19 +20,20 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import edits
-from kirigami_studio.project.cutting import stored_material
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.settings import stored_material
 from kirigami_studio.project.sheet_size import set_opened_size
-from kirigami_studio.studio.as_cut import animating
-from kirigami_studio.studio.cut_files import (
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange
+from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
     Exported,
     ManyPages,
     Motion,
     Planned,
+    animating,
     exporting,
     exporting_all,
     exporting_artwork,
@@ -41,8 +42,8 @@ from kirigami_studio.studio.cut_files import (
 )
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import SimulatedSheet
-    from kirigami_studio.project.verdict import Verdict
+    from kirigami_studio.studio.as_cut import SimulatedSheet
+    from kirigami_studio.studio.verdict import Verdict
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.material import library
-from kirigami_studio.foundation.words import again, mark, tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.make.more_options import MoreOptions
 from kirigami_studio.gui.make.verdict import VerdictState
@@ -42,13 +42,12 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.project.cutting import stored_material
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings, stored_material
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
-    from kirigami_studio.studio.cut_files import Planned
+    from kirigami_studio.studio.making import Planned
 
 #: Field, label, accessible name, lowest, highest, step (mm), decimals, tooltip.
 LENGTHS = (
@@ -380,12 +379,6 @@ class FabricationPanel(Card):
         text = self._summaries[self._extent is not Extent.ALL]
         self.summary.setText(text)
         self.summary.setVisible(bool(text))
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            with_numbers, without = self._summaries
-            self._summaries = (again(with_numbers), again(without))
 
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QSpinBox, QVBoxLayout, QWidget
 
-from kirigami_studio.export.paper import NO_PAPER
+from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, MOST_TABS, ConnectorStyle, CutOrder
 from kirigami_studio.foundation.words import mark, tr
@@ -38,7 +38,7 @@ VERSIONS = (
     ("R12", "R12", mark("For old software. Stores no unit: import as mm.")),
 )
 PAPER_CHOICES = (
-    (NO_PAPER, mark("One page"), mark("As large as the sheet, for plotters and print shops.")),
+    (Paper.NONE, mark("One page"), mark("As large as the sheet, for plotters and print shops.")),
     ("a4", mark("A4 pages"), mark("Spread over A4 pages that overlap, with crosses to lay them over.")),
     (
         "letter",

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.studio.as_cut import fixing
-from kirigami_studio.studio.cut_files import CutRequest, Planned
+from kirigami_studio.studio.designing import request_for
+from kirigami_studio.studio.making import CutRequest, Planned, fixing
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.fixes import Advice
-    from kirigami_studio.project.verdict import Verdict
+    from kirigami_studio.studio.fixes import Advice
+    from kirigami_studio.studio.verdict import Verdict
 
 #: Designs and settings whose fixes are kept.
 CAPACITY = 32
@@ -119,7 +119,7 @@ class VerdictKeeper(QObject):
     def take_refusal(self, request: CutRequest, sentence: str) -> None:
         """The cuts of a design cannot be planned, for this reason."""
         from kirigami_studio.fabricate.findings import Problem
-        from kirigami_studio.project.verdict import Verdict
+        from kirigami_studio.studio.verdict import Verdict
 
         self._planned = None
         self._look_for_fixes(request, Verdict((Problem.error("plan.refused", reason=sentence),)))
@@ -127,7 +127,7 @@ class VerdictKeeper(QObject):
     def _judge(self) -> None:
         if self._planned is None:
             return
-        from kirigami_studio.project.verdict import judge  # which planning has imported: in the worker
+        from kirigami_studio.studio.verdict import judge  # which planning has imported: in the worker
 
         (request, made), state = self._planned, self._as_cut.state
         as_cut = state.problem or (None if state.sheet is None else state.sheet.as_cut)
@@ -144,14 +144,14 @@ class VerdictKeeper(QObject):
             self._say(VerdictState(verdict))
             return
         # What files are written for does not matter to the sheet.
-        key = request.candidate, replace(request.settings, profile="any", dxf_version="R2010")
+        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
         if key in self._known:
             self._known.move_to_end(key)
             self._say(VerdictState(verdict, advice=self._known[key]))
             return
         document = self._session.document
         try:
-            run = None if document.target is None else request_of(document.target, document.settings, request.settings)
+            run = None if document.target is None else request_for(document.target, document.settings, request.settings)
         except KirigamiError:  # its material is gone, which the verdict tells
             run = None
         callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))

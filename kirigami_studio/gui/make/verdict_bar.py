@@ -14,7 +14,7 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.fixes import Fix
+    from kirigami_studio.studio.fixes import Fix
 
 #: Most of the banner's width that fixes may take.
 SHARE = 0.62

@@ -6,10 +6,9 @@ its result; :class:`DesignRun` runs at most one run at a time; :class:`StoppedRu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from types import MappingProxyType
 
 from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
@@ -31,12 +30,18 @@ from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project import candidate_edits
 from kirigami_studio.project.candidate_edits import NewDesigns
-from kirigami_studio.project.cutting import least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.studio.designing import Decoded, GridChosen, ModelFound, RunReport, generating, sizes_of
+from kirigami_studio.studio.designing import (
+    Decoded,
+    GridChosen,
+    KnownAsCut,
+    ModelFound,
+    RunReport,
+    generating,
+    request_for,
+)
 
 #: Angles closer than this (radians) are one.
 SAME_ANGLE = 1e-9
@@ -94,7 +99,7 @@ class Generation(QObject):
             return
         self.begun.emit()
         session.display.begin_run(plan.kept, plan.joins, Ranking.of(plan.request))
-        self.run.start(plan.request, plan.kept if plan.joins else None)
+        self.run.start(plan.request, plan.kept, plan.joins)
         session.set_status(plan.status)
 
     def _take_result(self, result: Result, facts: dict[str, str]) -> None:
@@ -175,7 +180,7 @@ class RunPlanner:
         document = self._session.document
         settings = document.settings
         seed = settings.seed if self.keeps_seed else self._next_seed(document)
-        request = request_of(target, replace(settings, seed=seed), document.fabrication)
+        request = request_for(target, replace(settings, seed=seed), document.fabrication)
         status = tr_n(
             "Generating {count} design for {name} …",
             "Generating {count} designs for {name} …",
@@ -235,7 +240,7 @@ class RunPlanner:
         seed = self._next_seed(document)
         same = replace(document.settings, auto_grid=False, grid=first.sheet.grid, phi=first.score.phi, seed=seed)
         # Fits from the uniform sheet do not depend on the seed: they would be the same again.
-        return replace(request_of(target, same, document.fabrication), guided=0)
+        return replace(request_for(target, same, document.fabrication), guided=0)
 
     def _joined(self, request: Request, status: str) -> RunPlan:
         seed = None if self.keeps_seed else request.seed
@@ -250,11 +255,12 @@ class RunPlanner:
         ``facts`` say where the designs come from, ``preview`` is the design that the user looked at meanwhile.
         """
         document, plan = self._session.document, self.plan
+        self._session.as_cut = KnownAsCut.of(result, document.fabrication)
         seed = None if plan is None else plan.seed
         if plan is not None and plan.joins:
             self.added = frozenset(result.candidates)
             new = NewDesigns(result.candidates, facts, seed)
-            edit = candidate_edits.add_candidates(document, new, ranking_of(document, result.jam_phi).key)
+            edit = candidate_edits.add_candidates(document, new, self._session.ranking.key)
             return _choosing(edit, preview)
         self.added = frozenset()
         staying = _staying(document, result.request)
@@ -265,7 +271,7 @@ class RunPlanner:
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, ranking_of(document, result.jam_phi).key, chosen)
+        return candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
 
     def summary(self, result: Result, before: Document, grid_reason: str = "") -> str:
         """What the status line says of a completed run, with the reason for its grid where it chose that."""
@@ -346,43 +352,6 @@ def own_start(candidate: Candidate, present: StartShape) -> StartShape:
     return StartShape(name, None, (columns + 1) * width / ((rows + 1) * height))
 
 
-def ranking_of(document: Document, jam_phi: Mapping[Candidate, float] = MappingProxyType({})) -> Ranking:
-    """What the document's settings, sheet and material put first, and where designs jam (radians) if that is known."""
-    settings, cut = document.settings, document.fabrication
-    least_mm, _ = sizes_of(cut)
-    return Ranking(settings.regular, cut.width_mm, least_mm, jam_phi)
-
-
-def request_of(target: Outline, settings: DesignSettings, cut: FabricationSettings) -> Request:
-    """The run that these settings ask for, on the sheet that is cut.
-
-    Raises
-    ------
-    KirigamiError
-        The settings do not go together.
-    """
-    return Request(
-        target,
-        None if settings.auto_grid else settings.grid,
-        settings.phi,
-        settings.k,
-        settings.seed,
-        settings.variant,
-        settings.steps,
-        settings.polish,
-        prefer=settings.prefer,
-        search=settings.search,
-        symmetry=settings.symmetry,
-        rim=settings.rim,
-        regular=settings.regular,
-        start=settings.start,
-        second=settings.second,
-        width_mm=cut.width_mm,
-        least_feature_mm=least_feature_mm(cut),
-        room_mm=room_mm(cut),
-    )
-
-
 def _staying(document: Document, request: Request) -> tuple[Candidate, ...]:
     """Pinned designs that share target, grid and angle with a run for the present target."""
     return tuple(
@@ -434,18 +403,20 @@ class DesignRun(QObject):
         """Whether candidates are being generated."""
         return self._job.busy
 
-    def start(self, request: Request, others: tuple[Candidate, ...] | None = None) -> None:
+    def start(self, request: Request, beside: tuple[Candidate, ...] = (), joins: bool = False) -> None:
         """Begin; the caller has made sure that nothing runs.
 
-        With ``others`` the result holds only designs that are not among them, perhaps none.
+        Designs are ranked with those ``beside``.  Where the run ``joins`` these, its result holds only others, perhaps
+        none.
         """
-        self._asked, self._request, self._others, self._reports = request.k, request, others or (), 0
+        self._asked, self._request, self._reports = request.k, request, 0
+        self._others = beside if joins else ()
         self._ranking, self.grid_reason = Ranking.of(request), ""
         self._clock.start()
         self._sampled.clear()
         self._latest.clear()
         callbacks = JobCallbacks(self._take, partial(self.ended.emit, False), self._cancel, self._fail)
-        steps = partial(generating, request, others, cut=self._session.document.fabrication)
+        steps = partial(generating, request, self._session.document.fabrication, beside, joins)
         self._job.start(tr("generating designs"), steps, callbacks)
         self.started.emit(request.k)
 

@@ -14,14 +14,14 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import candidate_edits, edits
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.studio.designing import Decoded, FittedAgain, fitting_again
+from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.studio.designing import Decoded, FittedAgain, fitting_again, request_for
 
 
 class Regularity(QObject):
@@ -148,6 +148,6 @@ def _request(document: Document, regular: float) -> Request | None:
         search=0,
     )
     try:
-        return replace(request_of(document.target, settings, document.fabrication), guided=0)
+        return replace(request_for(document.target, settings, document.fabrication), guided=0)
     except KirigamiError:
         return None

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import again, mark, tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.run.second_target_row import SecondTargetRow
 from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_start
 from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
@@ -26,7 +26,6 @@ from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
-from kirigami_studio.pipeline.request import LARGEST_K
 from kirigami_studio.project.settings import DesignSettings
 
 LARGEST_SEED = 2**31 - 1
@@ -154,8 +153,8 @@ class SettingsPanel(Card):
             "candidates",
             tr("Designs"),
             1,
-            LARGEST_K,
-            tr("Number of designs to generate and compare (1 to {most}).", most=LARGEST_K),
+            1024,
+            tr("Number of designs to generate and compare (1 to {most}).", most=1024),
         )
         self.seed = _whole(
             "seed",
@@ -366,9 +365,8 @@ class SettingsPanel(Card):
                 box.setValue(count)
 
     def _show_symmetry_tip(self) -> None:
-        found = again(self._symmetry_found)  # the language may have changed since
-        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, found) if part))
-        self.symmetry.setAccessibleDescription(found)
+        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, self._symmetry_found) if part))
+        self.symmetry.setAccessibleDescription(self._symmetry_found)
 
     def set_variants(self, names: tuple[str, ...]) -> None:
         """Offer these generators; the chosen one stays."""

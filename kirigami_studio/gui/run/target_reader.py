@@ -8,11 +8,11 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.run.generation import request_of
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.targets import TargetReading, reading_shape
 
 #: Milliseconds without a change after which a target is read: drags of its outline are not followed.
@@ -72,6 +72,6 @@ def next_run(document: Document) -> Request | None:
     if document.target is None:
         return None
     try:
-        return request_of(document.target, document.settings, document.fabrication)
+        return request_for(document.target, document.settings, document.fabrication)
     except KirigamiError:
         return None

@@ -28,7 +28,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
 from kirigami_studio.project.sheet_size import cut_for, sized
-from kirigami_studio.studio.designing import Decoded, decoding
+from kirigami_studio.studio.designing import Decoded, KnownAsCut, decoding, ranking_of
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
 CAPACITY = 2048
@@ -193,6 +193,12 @@ class DesignDisplay(QObject):
 class Session(QObject):
     """The open project, the one way to change it and to report to the user.
 
+    Parameters
+    ----------
+    parent : QObject, optional
+    earlier : Session, optional
+        Of a closed window, whose project is the open one, with its history.
+
     Attributes
     ----------
     queue : JobQueue
@@ -206,6 +212,8 @@ class Session(QObject):
         SHA-256 of project files as they were read or written here last.
     project : int
         How many projects were open before this one.
+    as_cut : KnownAsCut or None
+        What the latest run has found out about designs as cut.
     """
 
     document_changed = Signal(Document)
@@ -214,15 +222,21 @@ class Session(QObject):
     message_withdrawn = Signal(Message)
     status_changed = Signal(str)
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
         self.queue = JobQueue(self)
-        self.history = History()
-        self.cache = DesignCache()
+        self.history: History = History() if earlier is None else earlier.history
+        self.cache: DesignCache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
-        self.path: Path | None = None
-        self.on_disk: dict[Path, str] = {}
-        self.project = 0
+        self.path: Path | None = None if earlier is None else earlier.path
+        self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
+        self.project: int = 0 if earlier is None else earlier.project
+        self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
+
+    @property
+    def ranking(self) -> Ranking:
+        """What the document puts first, with what the latest run has found out about its designs as cut."""
+        return ranking_of(self.document, self.as_cut)
 
     @property
     def document(self) -> Document:

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.sheet_size import cut_for
-from kirigami_studio.studio.as_cut import Estimated, estimating, simulating
-from kirigami_studio.studio.cut_files import CutRequest, Planned
+from kirigami_studio.studio.designing import one_sheet
+from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 #: Sheets that are kept; one of 10 x 10 voids takes about half a megabyte.
 CAPACITY = 32
@@ -51,20 +50,6 @@ class AsCutState:
 
 
 UNKNOWN, BUSY = AsCutState(), AsCutState(busy=True)
-
-
-def one_sheet(settings: FabricationSettings) -> FabricationSettings:
-    """What matters of the settings to a sheet, whatever kind of file it is written to and how many times."""
-    plain, options = FabricationSettings(), replace(settings.options, copies=1, copy_gap_mm=COPY_GAP_MM)
-    return replace(
-        settings,
-        options=options,
-        profile=plain.profile,
-        dxf_version=plain.dxf_version,
-        paper=plain.paper,
-        markers=plain.markers,
-        engrave=plain.engrave,
-    )
 
 
 class AsCutReader(QObject):

@@ -10,7 +10,7 @@ from kirigami_studio.gui.stage.as_cut import AsCutState
 from kirigami_studio.gui.widgets.card import ElidedLabel
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.studio.as_cut import AsCut
 
 #: A sheet that is meant for an angle (radians) below this is meant to close.
 CLOSED = math.radians(0.5)
@@ -40,7 +40,7 @@ class AsCutLine(ElidedLabel):
 
 def texts(found: AsCut) -> tuple[str, ...]:
     """What was found, longest text first."""
-    from kirigami_studio.project.as_cut import Outcome
+    from kirigami_studio.studio.as_cut import Outcome
 
     phi, jam, match = math.degrees(found.phi), math.degrees(found.jam_phi), found.iou
     if found.closes:
@@ -60,7 +60,7 @@ def texts(found: AsCut) -> tuple[str, ...]:
 
 def figures(found: AsCut) -> str:
     """The figures behind the verdict, one in each line."""
-    from kirigami_studio.project.as_cut import StrainFigure
+    from kirigami_studio.studio.as_cut import StrainFigure
 
     lines = [texts(found)[0]]
     if found.iou is not None and found.ideal_iou is not None:

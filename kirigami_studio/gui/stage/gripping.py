@@ -13,11 +13,11 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader, AsCutState
-from kirigami_studio.studio.as_cut import gripping
+from kirigami_studio.studio.making import gripping
 
 if TYPE_CHECKING:
     from kirigami_studio.mechanics.gripping import Gripping
-    from kirigami_studio.project.as_cut import SimulatedSheet
+    from kirigami_studio.studio.as_cut import SimulatedSheet
 
 #: Sheets whose grips are kept.
 CAPACITY = 32

@@ -70,7 +70,7 @@ from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
     from kirigami_studio.mechanics.gripping import Gripping
-    from kirigami_studio.project.as_cut import SimulatedSheet
+    from kirigami_studio.studio.as_cut import SimulatedSheet
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)

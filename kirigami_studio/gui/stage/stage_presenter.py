@@ -17,7 +17,7 @@ from kirigami_studio.gui.stage.void_items import VoidFacts
 from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.project.sheet_size import size_of
-from kirigami_studio.studio.cut_files import Motion, Planned
+from kirigami_studio.studio.making import Motion, Planned
 from kirigami_studio.studio.two_states import match_of_start, start_of
 
 if TYPE_CHECKING:

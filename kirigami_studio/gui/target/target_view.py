@@ -1,4 +1,4 @@
-"""The target: shown, and drawn on with the tools of :mod:`kirigami_studio.gui.sketching`."""
+"""The target: shown, and drawn on with the tools beside it."""
 
 from __future__ import annotations
 

@@ -62,21 +62,21 @@ class PictureTracer(QObject):
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
+        self.pictures: OrderedDict[Outline, Picture] = OrderedDict()
         self._job: LatestJob[Traced] = LatestJob(session.queue)
         self._wanted: Picture | None = None
         self._drag_over = False
 
     def remember(self, outline: Outline, picture: Picture) -> None:
         """Keep where an outline came from."""
-        self._pictures[outline] = picture
-        self._pictures.move_to_end(outline)
-        while len(self._pictures) > CAPACITY:
-            self._pictures.popitem(last=False)
+        self.pictures[outline] = picture
+        self.pictures.move_to_end(outline)
+        while len(self.pictures) > CAPACITY:
+            self.pictures.popitem(last=False)
 
     def picture_of(self, outline: Outline | None) -> Picture | None:
         """The picture behind an outline, None when it was drawn, chosen from the library or read as lines."""
-        return None if outline is None else self._pictures.get(outline)
+        return None if outline is None else self.pictures.get(outline)
 
     def retrace(self, picture: Picture, threshold: float | None) -> None:
         """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
@@ -144,7 +144,7 @@ class TargetReader(QObject):
         super().__init__(parent)
         self._tracer = tracer
         self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
-        self._drawings: OrderedDict[Outline, str] = OrderedDict()
+        self.drawings: OrderedDict[Outline, str] = OrderedDict()
         self._asked = ("", Occasion.WANTED)
         self.source = ""  #: of the target that was read last
 
@@ -160,7 +160,7 @@ class TargetReader(QObject):
 
     def drawing_of(self, outline: Outline | None) -> str:
         """The drawing that an outline was read from, "" for none."""
-        return "" if outline is None else self._drawings.get(outline, "")
+        return "" if outline is None else self.drawings.get(outline, "")
 
     def take_chosen(self, outline: Outline, usual: bool) -> None:
         """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
@@ -189,9 +189,9 @@ class TargetReader(QObject):
 
     def _finish(self, source: str, occasion: Occasion, found: TargetRead) -> None:
         if Path(source).suffix.lower() in PART_READERS:
-            self._drawings[found.outline] = source
-            while len(self._drawings) > CAPACITY:
-                self._drawings.popitem(last=False)
+            self.drawings[found.outline] = source
+            while len(self.drawings) > CAPACITY:
+                self.drawings.popitem(last=False)
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
@@ -336,6 +336,11 @@ class Targeting(QObject):
         self.tracer.traced.connect(self._take_traced)
         self.tracer.refused.connect(session.set_status)
         self.tracer.settled.connect(session.history.end_drag)
+
+    def remember_sources(self, earlier: Targeting) -> None:
+        """Know the pictures and drawings that the targets of an earlier window were read from."""
+        self.tracer.pictures.update(earlier.tracer.pictures)
+        self.reader.drawings.update(earlier.reader.drawings)
 
     def stop(self) -> None:
         """Forget what is still being read or traced."""

@@ -61,17 +61,6 @@ class CommandActions:
         command = next(one for one in self.records if one.id == after)
         self._menus[command.menu].addMenu(menu)
 
-    def reword(self, commands: Iterable[Command]) -> None:
-        """Show the same commands in the words of another language."""
-        records = tuple(commands)
-        menus = {new.menu: self._menus[old.menu] for old, new in zip(self.records, records, strict=True)}
-        for title, menu in menus.items():
-            menu.setTitle(title)
-        self.records, self._menus = records, menus
-        self._worded.clear()
-        for command in records:
-            self._show(command)
-
     def refresh(self, *_: object) -> None:
         """Enable, check and name all commands as the window is now; takes whatever a signal carries."""
         state = self._state_now()

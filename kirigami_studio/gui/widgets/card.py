@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import again
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.fitted_text import fits, fitted, shortened
 from kirigami_studio.gui.widgets.number_field import number_field
@@ -56,21 +55,11 @@ class ToolButton(QToolButton):
         self._icon_name = icon
         self._palette: Palette | None = None
         self.setObjectName(name)
-        self._tip = tip
         self.setToolTip(tip)
         self.setAccessibleName(tip.split(".")[0])
         self.setCheckable(checkable)
         self.setIconSize(TOOL_ICON)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() != QEvent.Type.LanguageChange:
-            return
-        name = self._tip.split(".")[0]
-        self._tip = again(self._tip)
-        if self.accessibleName() in (name, again(name)):  # no other name was given
-            self.setAccessibleName(self._tip.split(".")[0])
 
     def show_icon(self, name: str) -> None:
         """Show another icon."""
@@ -100,11 +89,6 @@ class ElidedLabel(QLabel):
         super().setText(shortened(text))
         self.setToolTip(self.text())
 
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self._shorter = tuple(again(text) for text in self._shorter)
-
     def drawn_text(self) -> str:
         """What is shown at the present width."""
         room = self.contentsRect().width()
@@ -130,12 +114,6 @@ class FittingLabel(QLabel):
     def set_texts(self, *texts: str) -> None:
         """The texts to choose from, longest first."""
         self._texts = texts
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self._texts = tuple(again(text) for text in self._texts)
-            self.setText(again(self.text()))
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())

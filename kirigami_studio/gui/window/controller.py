@@ -40,15 +40,15 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, SettingsChange
 from kirigami_studio.project.history import History
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cut_files import ANIMATION, CutRequest, Motion
 from kirigami_studio.studio.file_kinds import kind_of
+from kirigami_studio.studio.making import ANIMATION, CutRequest, Motion
 
 if TYPE_CHECKING:
-    from kirigami_studio.project.fixes import Fix
+    from kirigami_studio.studio.fixes import Fix
 
 
 class Controller(QObject):
-    """Owns the session and the parts that work on it.
+    """Owns the session and the parts that work on it; goes on with the project of an ``earlier`` one that is closed.
 
     Attributes
     ----------
@@ -76,9 +76,11 @@ class Controller(QObject):
     opened = Signal(Path)
     variants_known = Signal(tuple)  #: of str, the generators on offer
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, earlier: Controller | None = None) -> None:
         super().__init__(parent)
-        self.session = session = Session(self)
+        before: Session | None = None if earlier is None else earlier.session
+        self.session: Session = Session(self, before)
+        session = self.session
         self.hand = HandEditor(session, self)
         self.trimming = TrimSwitch(session, self)
         self.refitting = Refitter(session, self)
@@ -104,6 +106,8 @@ class Controller(QObject):
         self.second = SecondReader(session, self)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
+        if earlier is not None:
+            self.targeting.remember_sources(earlier.targeting)
         self._connect()
 
     def _connect(self) -> None:
@@ -164,7 +168,7 @@ class Controller(QObject):
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
-        untouched = self.document in (Document(), self.preferences.new_document())
+        untouched = self.document in (Document(), self.preferences.new_document()) and not self.history.steps
         self.preferences.load(path)
         if untouched:
             self.session.restart(self.preferences.new_document(), self.path)

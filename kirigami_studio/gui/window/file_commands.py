@@ -17,7 +17,7 @@ from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import file_ending
-from kirigami_studio.studio.cut_files import Motion
+from kirigami_studio.studio.making import Motion
 from kirigami_studio.studio.projects import Leftover
 
 if TYPE_CHECKING:

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QLocale, QObject
 
+from kirigami_studio.export.paper import Paper
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.stage.empty_stage import moves
 from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.preferences import Motion, TypedSize
 from kirigami_studio.studio.projects import Pair, reading_sample
 
 if TYPE_CHECKING:
@@ -68,7 +70,9 @@ class FirstStart(QObject):
         wanted = replace(preferences.present, material=material, machine_asked=True)
         if known is not None and known.by_hand:
             letter = QLocale.system().territory() in LETTER_LANDS
-            wanted = replace(wanted, paper="letter" if letter else "a4", size="opened", opened_mm=BY_HAND_MM)
+            wanted = replace(
+                wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
+            )
         preferences.keep(wanted)
         cut = wanted.new_document().fabrication
         changed = replace(session.document, fabrication=cut)
@@ -89,8 +93,8 @@ class FirstStart(QObject):
     def switch_motion(self) -> None:
         """Let what moves by itself stand still, or move again."""
         preferences, empty = self._controller.preferences, self._window.stage.empty
-        still = preferences.present.motion == "still"
-        preferences.keep(replace(preferences.present, motion="system" if still else "still"))
+        still = preferences.present.motion is Motion.STILL
+        preferences.keep(replace(preferences.present, motion=Motion.SYSTEM if still else Motion.STILL))
         if moves(preferences.present.motion, self._window.style()):
             empty.start()
         else:

@@ -32,7 +32,6 @@ from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
-from kirigami_studio.gui.widgets.language import Language
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.theme import Palette
@@ -84,6 +83,7 @@ class MainWindow(QMainWindow):
         self.palette_ = palette
         self._laid_out = False
         self._sizes_before: list[int] = []
+        self.starts_again = False  #: another window goes on with the project
         self.setObjectName("studio")
         self.setWindowIcon(QIcon(str(resource("icons", "kirigami-studio.svg"))))
         self.setMinimumSize(SMALLEST)
@@ -108,7 +108,6 @@ class MainWindow(QMainWindow):
         self.drops.file_dropped.connect(self.files.open)
         self.dialogs = Dialogs(self, controller)
         self.appearance = Appearance(self, controller.preferences)
-        self.language = Language(self, self._reword)
         self.pasting = PasteReader(controller.session, self)
         self.picturing = PictureMaker(self, controller.session, controller.cutting)
         self.heading = self._heading()
@@ -302,15 +301,14 @@ class MainWindow(QMainWindow):
             part.set_palette(palette)
         self.commands.set_palette(palette)
 
-    def speak(self, language: str) -> None:
-        """Say everything in another language, "system" or a code; nothing else changes."""
-        self.language.change(language)
-
-    def _reword(self) -> None:
-        """Say again what depends on the document, and the commands."""
-        self.commands.reword(all_commands(self))
-        self.dialogs.reword()
-        self.controller.session.document_changed.emit(self.controller.document)
+    def start_again(self) -> None:
+        """Close, for another window to go on with the project, saved or not; a run has to end first."""
+        if self.controller.running:
+            self.controller.session.set_status(tr("Wait for the run to finish, or cancel it, then start again."))
+            self.appearance.offer_start()
+        elif not self.controller.hand.postpones(self.start_again):
+            self.starts_again = True
+            self.close()
 
     def restore(self, settings: QSettings) -> None:
         """Restore the size and columns of the last session."""
@@ -322,8 +320,9 @@ class MainWindow(QMainWindow):
         self.fabrication.restore(settings)
         self.settings.restore(settings)
 
-    def remember(self, settings: QSettings) -> None:
-        """Save size and columns for the next session."""
+    def remember(self, settings: QSettings | None = None) -> None:
+        """Save size and columns for the next session, in the user's settings without others."""
+        settings = QSettings() if settings is None else settings
         settings.setValue("geometry", self.saveGeometry())
         if self._laid_out:
             settings.setValue("columns", self.columns.saveState())
@@ -332,7 +331,7 @@ class MainWindow(QMainWindow):
         self.settings.remember(settings)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
-        if not self.unsaved.may_close():
+        if not (self.starts_again or self.unsaved.may_close()):
             event.ignore()
             return
         self.stage.player.play.setChecked(False)

@@ -16,7 +16,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.studio.cut_files import Exported
+from kirigami_studio.studio.making import Exported
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
@@ -247,17 +247,6 @@ class Dialogs(QObject):
         if self.about is None:
             self.about = AboutWindow(self._window)
         bring_to_front(self.about)
-
-    def reword(self) -> None:
-        """The language has changed: what is only read is written anew."""
-        if self.shortcuts is not None:
-            visible = self.shortcuts.isVisible()
-            self.shortcuts.close()
-            self.shortcuts.deleteLater()
-            self.shortcuts = None
-            if visible:
-                self.show_shortcuts()
-        self._update_history()
 
     def close(self) -> None:
         """The window is closing, and its dialogs with it."""

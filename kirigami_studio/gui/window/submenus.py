@@ -171,7 +171,7 @@ class LanguageMenu(QMenu):
         super().__init__(tr("Language"), parent)
         self._appearance = appearance
         self.choices: dict[str, QAction] = {}
-        self.menuAction().setStatusTip(tr("Change the language of the window at once"))
+        self.menuAction().setStatusTip(tr("Change the language of the window"))
         group = QActionGroup(self)
         for code in (SYSTEM, *languages()):
             name = tr("&System") if code == SYSTEM else NAMES.get(code, code)

@@ -10,7 +10,6 @@ import math
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -26,13 +25,10 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.mechanics.network import CONTACT_BELOW
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.best_as_cut import best_as_cut
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
-from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.project.as_cut import jam_angles, simulate
-from kirigami_studio.project.cutting import least_feature_mm, plan_of, room_mm
-from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.verdict import look_at
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.studio.as_cut import simulate
+from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.studio.designing import completed, request_for, run_design
 
 #: A connector counts as narrower than asked for from here on (mm); files hold a tenth of it.
 NARROWER_MM = 1e-3
@@ -154,14 +150,8 @@ def measure_as_cut(
     with tempfile.TemporaryDirectory() as folder:
         for target, width in product(targets, connectors_mm):
             settings = FabricationSettings(connector_mm=width, options=CutOptions(style=style))
-            designs = best_of(
-                Request(
-                    target=target, grid=grid, k=k, seed=seed, polish=POLISH_STEPS, width_mm=settings.width_mm,
-                    least_feature_mm=least_feature_mm(settings), room_mm=room_mm(settings),
-                )
-            )  # fmt: skip
-            jams, look = jam_angles(designs.candidates, settings), partial(look_at, settings=settings, target=target)
-            best = result_of(best_as_cut(designs, jams, look)).best
+            wanted = DesignSettings(grid, k=k, seed=seed, auto_grid=False)
+            best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best
             try:
                 sheets.append(cut_sheet(target, best, settings, width, Path(folder) / "cut.dxf"))
             except KirigamiError as error:

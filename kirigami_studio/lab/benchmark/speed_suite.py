@@ -19,7 +19,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished
 from kirigami_studio.pipeline.pool import Pool, worker_count
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of, run, sample, with_grid
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.polish.boundary_target import BoundaryTarget
@@ -28,6 +28,7 @@ from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: Silhouettes whose runs at grid auto are timed, after that of another one, and workers that do them.
 RUNS, WARMING, RUN_WORKERS = ("heart", "star", "butterfly", "drop", "hexagon"), "egg", 2
@@ -89,7 +90,8 @@ def _timings(
     # Past the cache of load_model, so that every load reads, verifies and builds.
     loads = [_seconds(lambda: load_model.__wrapped__(variant)) for _ in range(LOADS)]
     requests = [
-        as_in_paper(Request(_unseen(shape, number), grid, k=K, variant=variant, steps=steps)) for shape in shapes
+        as_in_paper(Request(_unseen(shape, number), grid, k=K, variant=variant, steps=steps, polish=0))
+        for shape in shapes
     ]
     best_of(requests[0])
     drawing = [_seconds(lambda request=request: sample(request)) for request in requests[1:]]  # type: ignore[misc]
@@ -253,3 +255,8 @@ def _run_seconds(request: Request) -> float:
 def _fastest(work: Callable[[], object]) -> float:
     work()
     return min(_seconds(work) for _ in range(REPEATS))
+
+
+def all_timings() -> dict[str, object]:
+    """Time whole runs, scores and fits: ``runs`` of :func:`run_timings` beside all of :func:`polish_timings`."""
+    return {"runs": run_timings(), **polish_timings()}

@@ -9,13 +9,14 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, replace
 from importlib import import_module
 from importlib.metadata import version
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -40,82 +41,102 @@ if TYPE_CHECKING:
     from kirigami_studio.lab.problem import Generator
 
 Report = Callable[[int, int], None]
+Command = Callable[[argparse.Namespace], int]
 
 
-def generator(arguments: argparse.Namespace) -> int:
-    """A bundled variant on the named targets, or on the test splits of both families."""
-    from kirigami_studio.lab.benchmark.generator_suite import measure_generator
+def on_targets(suite: str, **renamed: str) -> Command:
+    """Return the command of a suite that measures one set of targets after the other.
 
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_generator(
-            outlines,
-            arguments.variant,
-            k=arguments.k,
-            steps=arguments.steps,
-            polish=arguments.polish,
-            grid=parse_grid(arguments.grid),
-            seeds=tuple(arguments.seeds),
-            report=report,
-        ),
-    )
+    Parameters
+    ----------
+    suite : str
+        ``module:function`` of ``lab.benchmark``.  The function takes outlines first; its other parameters are the
+        command's options of the same name, and ``report``.
+    **renamed : str
+        Options of parameters that have another name.
+    """
 
+    def command(arguments: argparse.Namespace) -> int:
+        measure = _suite(suite)
+        options = _options_of(measure, arguments, renamed)
+        line = ProgressLine()
+        figures: dict[str, object] = {
+            family: measure(outlines, **options, report=_shown_on(line, family))
+            for family, outlines in _target_sets(arguments, arguments.exact).items()
+        }
+        return _print_figures(arguments, line, figures)
 
-def variants(arguments: argparse.Namespace) -> int:
-    """Bundled variants side by side, each beside the prior."""
-    from kirigami_studio.lab.benchmark.variants_suite import measure_variants
-
-    named = _variants(arguments)
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_variants(
-            outlines,
-            named,
-            k=arguments.k,
-            steps=arguments.steps,
-            grid=parse_grid(arguments.grid),
-            seeds=tuple(arguments.seeds),
-            report=report,
-        ),
-    )
+    return command
 
 
-def spread(arguments: argparse.Namespace) -> int:
-    """How much the samples for one target differ, variant by variant."""
-    from kirigami_studio.lab.benchmark.variants_suite import measure_spread
+def alone(suite: str, title: str, **renamed: str) -> Command:
+    """Return the command of a suite with targets of its own; its exit code is 1 where the figures are not ``ok``.
 
-    named = _variants(arguments)
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_spread(
-            outlines,
-            named,
-            k=arguments.k,
-            steps=arguments.steps,
-            grid=parse_grid(arguments.grid),
-            seed=arguments.seed,
-            report=report,
-        ),
-    )
+    Parameters
+    ----------
+    suite : str
+        ``module:function`` of ``lab.benchmark``; its parameters are the command's options of the same name, and
+        ``report`` where it tells how far it is.
+    title : str
+        Shown while it runs.
+    **renamed : str
+        Options of parameters that have another name.
+    """
+
+    def command(arguments: argparse.Namespace) -> int:
+        measure = _suite(suite)
+        options = _options_of(measure, arguments, renamed)
+        line = ProgressLine()
+        line.show(title)
+        if "report" in signature(measure).parameters:
+            options["report"] = _shown_on(line, title)
+        made = measure(**options)
+        if isinstance(made, dict):
+            return _print_figures(arguments, line, made)
+        ok = getattr(made, "ok", None)
+        figures = asdict(made) if ok is None else {**asdict(made), "ok": ok}
+        _print_figures(arguments, line, figures, made.sentences())
+        return 1 if ok is False else 0
+
+    return command
 
 
-def nearness(arguments: argparse.Namespace) -> int:
-    """How near samples lie to a design that they were asked to be like."""
-    from kirigami_studio.lab.benchmark.nearness_suite import measure_nearness
+def _suite(place: str) -> Callable[..., Any]:
+    module, function = place.split(":")
+    found: Callable[..., Any] = getattr(import_module(f"kirigami_studio.lab.benchmark.{module}"), function)
+    return found
 
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_nearness(
-            outlines,
-            arguments.variant,
-            k=arguments.k,
-            steps=arguments.steps,
-            polish=arguments.polish,
-            grid=parse_grid(arguments.grid),
-            seed=arguments.seed,
-            report=report,
-        ),
-    )
+
+def _options_of(
+    measure: Callable[..., Any], arguments: argparse.Namespace, renamed: Mapping[str, str]
+) -> dict[str, Any]:
+    """Return the options of a command that a function has parameters for, as the function takes them."""
+    options: dict[str, Any] = {}
+    for name in signature(measure).parameters:
+        option = renamed.get(name, name)
+        if option == "variants":
+            options[name] = _variants(arguments)
+        elif option != "targets" and option in arguments:
+            value = getattr(arguments, option)
+            options[name] = AS_TAKEN[option](value) if option in AS_TAKEN else value
+    return options
+
+
+#: How suites take options that the command line leaves as they were written.
+AS_TAKEN: dict[str, Callable[[Any], object]] = {"grid": parse_grid, "seeds": tuple, "style": ConnectorStyle}
+
+generator = on_targets("generator_suite:measure_generator")
+variants = on_targets("variants_suite:measure_variants")
+spread = on_targets("variants_suite:measure_spread")
+nearness = on_targets("nearness_suite:measure_nearness")
+polish = on_targets("polish_suite:measure_polish", steps="polish")
+regularity = on_targets("polish_suite:measure_regularity")
+generation_speed = alone("speed_suite:generation_timings", "Timing the generator")
+speed = alone("speed_suite:all_timings", "Timing runs, scores and fits")
+lattice = alone("lattice_suite:measure_lattice", "Timing the lattice")
+fabrication = alone("fabrication_suite:measure_fabrication", "Random designs", designs="count")
+cut_files = alone("cut_files_suite:measure_cut_files", "Random designs")
+mechanics = alone("mechanics_suite:measure_mechanics", "Closing published networks")
 
 
 def robustness(arguments: argparse.Namespace) -> int:
@@ -141,40 +162,6 @@ def robustness(arguments: argparse.Namespace) -> int:
         for family, outlines in _target_sets(arguments, exact=True).items()
     }
     return _print_figures(arguments, line, figures)
-
-
-def polish(arguments: argparse.Namespace) -> int:
-    """The fit alone, from the uniform sheet or by continuation."""
-    from kirigami_studio.lab.benchmark.polish_suite import measure_polish
-
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_polish(
-            outlines,
-            grid=parse_grid(arguments.grid),
-            steps=arguments.polish,
-            effort=arguments.effort,
-            report=report,
-        ),
-    )
-
-
-def regularity(arguments: argparse.Namespace) -> int:
-    """Match and total variation, unpolished and at every preference."""
-    from kirigami_studio.lab.benchmark.polish_suite import measure_regularity
-    from kirigami_studio.pipeline.request import POLISH_STEPS
-
-    return _on_targets(
-        arguments,
-        lambda outlines, report: measure_regularity(
-            outlines,
-            arguments.variant,
-            polish=arguments.polish or POLISH_STEPS,
-            grid=parse_grid(arguments.grid),
-            seed=arguments.seed,
-            report=report,
-        ),
-    )
 
 
 def solvers(arguments: argparse.Namespace) -> int:
@@ -452,9 +439,10 @@ def grpo(arguments: argparse.Namespace) -> int:
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.lab.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
-    from kirigami_studio.pipeline.request import REGULAR, Request
+    from kirigami_studio.pipeline.request import Request
+    from kirigami_studio.settings.design import with_balance
 
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
+    regular = with_balance({"prefer": arguments.prefer, "regular": arguments.regular})["regular"]
     start = start_shape(arguments.start)
 
     def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:
@@ -486,7 +474,12 @@ def designs(arguments: argparse.Namespace) -> int:
             write_contact_sheet(shown, Path(arguments.picture), arguments.states)
         return design_figures(made)
 
-    return _on_targets(arguments, measure)
+    line = ProgressLine()
+    figures: dict[str, object] = {
+        family: measure(outlines, _shown_on(line, family))
+        for family, outlines in _target_sets(arguments, arguments.exact).items()
+    }
+    return _print_figures(arguments, line, figures)
 
 
 def starts(arguments: argparse.Namespace) -> int:
@@ -513,69 +506,6 @@ def starts(arguments: argparse.Namespace) -> int:
     return 0 if all(one.ok for one in fields) else 1
 
 
-def generation_speed(arguments: argparse.Namespace) -> int:
-    """Timings of loading and sampling, variant by variant."""
-    from kirigami_studio.lab.benchmark.speed_suite import generation_timings
-
-    line = ProgressLine()
-    report = _shown_on(line, "Timing the generator")
-    report(0, len(named := _variants(arguments)))
-    figures = generation_timings(named, steps=arguments.steps, grid=parse_grid(arguments.grid), report=report)
-    return _print_figures(arguments, line, figures)
-
-
-def speed(arguments: argparse.Namespace) -> int:
-    """Timings of whole runs, of scoring and of polishing."""
-    from kirigami_studio.lab.benchmark.speed_suite import polish_timings, run_timings
-
-    line = ProgressLine()
-    line.show("Timing runs, scores and fits")
-    return _print_figures(arguments, line, {"runs": run_timings(), **polish_timings()})
-
-
-def lattice(arguments: argparse.Namespace) -> int:
-    """Timings of the exact geometry, with the ratio to the marching reference."""
-    from kirigami_studio.lab.benchmark.lattice_suite import measure_lattice
-
-    line = ProgressLine()
-    line.show("Timing the lattice")
-    timing = measure_lattice()
-    return _print_figures(arguments, line, asdict(timing), timing.sentences())
-
-
-def fabrication(arguments: argparse.Namespace) -> int:
-    """Timings of plan, check and DXF, travel of the orders of cutting, and random designs planned and checked."""
-    from kirigami_studio.lab.benchmark.fabrication_suite import measure_fabrication
-
-    line = ProgressLine()
-    line.show("Timing plans and orders")
-    figures = measure_fabrication(arguments.count, arguments.seed, _shown_on(line, "Random designs"))
-    return _print_figures(arguments, line, figures)
-
-
-def cut_files(arguments: argparse.Namespace) -> int:
-    """Random designs through every machine profile, read back by two readers; 1 when a file did not pass."""
-    from kirigami_studio.lab.benchmark.cut_files_suite import measure_cut_files
-
-    line = ProgressLine()
-    figures = measure_cut_files(
-        arguments.count, arguments.seed, _shown_on(line, "Random designs"), ConnectorStyle(arguments.style)
-    )
-    _print_figures(arguments, line, asdict(figures), figures.sentences())
-    return 0 if figures.passed == figures.files else 1
-
-
-def mechanics(arguments: argparse.Namespace) -> int:
-    """The closing simulator beside published tests and simulations; 1 when a case is off."""
-    from kirigami_studio.lab.benchmark.mechanics_suite import measure_mechanics
-
-    line = ProgressLine()
-    line.show("Closing published networks")
-    figures = measure_mechanics()
-    _print_figures(arguments, line, {**asdict(figures), "ok": figures.ok}, figures.sentences())
-    return 0 if figures.ok else 1
-
-
 def as_cut(arguments: argparse.Namespace) -> int:
     """Silhouettes cut with several widths, read back from DXF and closed; 1 when a file did not pass."""
     from kirigami_studio.lab.benchmark.as_cut_suite import measure_as_cut
@@ -594,18 +524,6 @@ def as_cut(arguments: argparse.Namespace) -> int:
     )
     _print_figures(arguments, line, {**asdict(figures), "ok": figures.ok}, figures.sentences())
     return 0 if figures.ok else 1
-
-
-def _on_targets(
-    arguments: argparse.Namespace, measure: Callable[[Sequence[Outline], Report], dict[str, object]]
-) -> int:
-    """Measure every set of targets by itself."""
-    line = ProgressLine()
-    figures: dict[str, object] = {
-        family: measure(outlines, _shown_on(line, family))
-        for family, outlines in _target_sets(arguments, arguments.exact).items()
-    }
-    return _print_figures(arguments, line, figures)
 
 
 def _shown_on(line: ProgressLine, what: str) -> Report:

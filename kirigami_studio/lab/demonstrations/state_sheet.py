@@ -23,7 +23,9 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
@@ -115,7 +117,6 @@ class StateSheet(BoardStates):
         self.choose_heart()
         self.polishing()
         self.all_sizes("designs")
-        self.german()
         self.lost_designs()
         self.collection()
         self.overlays()
@@ -146,8 +147,7 @@ class StateSheet(BoardStates):
         self.first_steps()
         self.starts()
         self.second_target()
-        window.controller.history.mark_saved()
-        window.close()
+        self.german()
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
 
@@ -163,9 +163,14 @@ class StateSheet(BoardStates):
         self.all_sizes("sample")
 
     def german(self) -> None:
-        """The main states in a language with longer words."""
-        window = self.window
-        window.speak("de")
+        """The main states in a language with longer words, in a window that is started again."""
+        self.window.start_again()
+        speak("de")
+        self.window = window = create_window(LIGHT, self.window)
+        window.controller.history.mark_saved()
+        window.show()
+        window.files.open_sample()
+        self.until(window.fabrication.export.isEnabled, "the sample was not opened")
         self.all_sizes("german-designs")
         window.stage.cuts_switch.click()
         self.all_sizes("german-cuts")
@@ -173,7 +178,8 @@ class StateSheet(BoardStates):
         window.target.set_editing(True)
         self.all_sizes("german-board")
         window.target.set_editing(False)
-        window.speak("system")
+        window.close()
+        speak(SYSTEM)
 
     def first_steps(self) -> None:
         """The tour at a control on every side, the sheet of keys, and the licences."""

@@ -26,7 +26,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, edge_sides, s
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.project.as_cut import planned_sheet
+from kirigami_studio.studio.as_cut import planned_sheet
 
 MakeDesign = Callable[..., Deployment]
 

@@ -22,9 +22,9 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import sheet_of_json
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.project.as_cut import AsCut
 from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.verdict import Level, assess
+from kirigami_studio.studio.as_cut import AsCut
+from kirigami_studio.studio.verdict import Level, assess
 
 EASY = Path(__file__).parents[2] / "data" / "easy_sheets.json"
 READY, CARE = Level.READY, Level.CARE

@@ -23,7 +23,7 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.as_cut import planned_sheet
+from kirigami_studio.studio.as_cut import planned_sheet
 
 MakeDesign = Callable[..., Deployment]
 WIDTH = 100.0

@@ -30,7 +30,7 @@ pytestmark = pytest.mark.torch
 
 @pytest.fixture(scope="module")
 def request_for_heart() -> Request:
-    return Request(load("heart"), k=4, seed=3, guided=0)
+    return Request(load("heart"), k=4, seed=3, guided=0, polish=0)
 
 
 @pytest.fixture
@@ -81,7 +81,7 @@ def test_that_every_design_of_a_run_tells_how_it_shows_a_second_target() -> None
 
 def test_that_a_second_target_before_the_first_is_refused() -> None:
     with pytest.raises(AngleError) as problem:
-        Request(load("heart"), phi=1.0, second=SecondTarget(load("circle"), 0.9, 1.0))
+        Request(load("heart"), phi=1.0, second=SecondTarget(load("circle"), 0.9, 1.0), polish=0)
     assert problem.value.code == "second_target.not_on_the_way"
 
 
@@ -114,7 +114,7 @@ def test_that_a_request_survives_pickling(request_for_heart: Request) -> None:
 
 
 def test_that_a_partly_deployed_target_is_scored_at_its_angle() -> None:
-    result = best_of(Request(load("square"), grid=(6, 6), phi=math.pi / 3, k=1))
+    result = best_of(Request(load("square"), grid=(6, 6), phi=math.pi / 3, k=1, polish=0))
     assert 0 < result.best.score.siou <= 1
     assert np.isfinite(result.best.score.iou_exact)
 
@@ -209,7 +209,6 @@ def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Re
     assert beside.forward_evaluations == alone.forward_evaluations
 
 
-@pytest.mark.clock
 def test_that_a_used_up_budget_returns_what_there_is(request_for_heart: Request) -> None:
     best_of(request_for_heart)  # the generator is loaded and the target's tables are kept
     hasty = best_of(replace(request_for_heart, polish=15, budget_seconds=1e-3))
@@ -221,7 +220,6 @@ def test_that_a_used_up_budget_returns_what_there_is(request_for_heart: Request)
     assert calm.candidates == best_of(replace(request_for_heart, polish=3)).candidates
 
 
-@pytest.mark.clock
 def test_that_a_budget_that_ends_during_scoring_returns_the_first_batch(request_for_heart: Request) -> None:
     hasty = best_of(replace(request_for_heart, k=40, budget_seconds=1e-3))
     assert hasty.budget_ended
@@ -304,7 +302,7 @@ def test_that_a_search_adds_one_candidate_after_the_samples() -> None:
 
 
 def test_that_a_search_can_be_cancelled(request_for_heart: Request) -> None:
-    wish = Request(load("heart"), k=1, search=8)
+    wish = Request(load("heart"), k=1, search=8, polish=0)
     seen = []
     cancel = lambda: any(isinstance(event, Progress) and "Searching" in event.message for event in seen)  # noqa: E731
     with pytest.raises(Cancelled, match="while searching"):

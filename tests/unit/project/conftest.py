@@ -59,7 +59,9 @@ def _candidate(field: RatioField, index: int) -> Candidate:
 def document(pentagon: Outline, candidates: tuple[Candidate, ...]) -> Document:
     return Document(
         target=pentagon,
-        settings=DesignSettings((4, 5), 0.125, 3, 11, "prior", 8, 5, prefer="calm", search=2),
+        settings=DesignSettings(
+            (4, 5), phi=0.125, k=3, seed=11, variant="prior", steps=8, polish=5, prefer="calm", search=2
+        ),
         candidates=candidates,
         chosen=1,
         fabrication=FabricationSettings(width_mm=120.0, connector_mm=0.35, kerf_mm=0.0),

@@ -29,8 +29,8 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.project import store
-from kirigami_studio.project.as_cut import planned_sheet
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.as_cut import planned_sheet
 
 WIDTH = 160.0
 

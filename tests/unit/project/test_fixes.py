@@ -17,12 +17,12 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project import fixes
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.fixes import Advice, find_fixes
 from kirigami_studio.project.history import History
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.project.verdict import Level, Verdict, assess, refused
+from kirigami_studio.studio import fixes
+from kirigami_studio.studio.fixes import Advice, find_fixes
+from kirigami_studio.studio.verdict import Level, Verdict, assess, refused
 
 FILM = FabricationSettings(connector_mm=0.4)
 STRAIGHT = replace(FILM, options=CutOptions(style=ConnectorStyle.STRAIGHT))

@@ -17,7 +17,7 @@ from kirigami_studio.lab.training.rewards import PAPER_REWARDS, FabricationRewar
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.fabricability import Fabricability, fabricability
+from kirigami_studio.studio.fabricability import Fabricability, fabricability
 
 GOOD = Verdict(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
 ACCURACY, REGULARITY = Reward("accuracy"), Reward("regularity")

@@ -22,12 +22,12 @@ from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.project import edits
-from kirigami_studio.project.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
-from kirigami_studio.project.cutting import material_for, plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import FabricationSettings
-from kirigami_studio.project.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
+from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
+from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
 #: Fixes that are offered at most.
 MOST_FIXES = 3

@@ -1,4 +1,4 @@
-"""Jobs on cuts: plan and check them, write cut files and pictures, write a material's coupon."""
+"""Making a sheet: plan and check its cuts, close it on its connectors, judge it, write and verify files, fix."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.foundation.errors import Cancelled, ExportError, ProjectError, UsageError
-from kirigami_studio.foundation.steps import Cancel
+from kirigami_studio.foundation.errors import Cancelled, ExportError, KirigamiError, ProjectError, UsageError
+from kirigami_studio.foundation.steps import Cancel, in_turns
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.settings import FabricationSettings
@@ -27,13 +28,18 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import Report
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.project.as_cut import AsCut
+    from kirigami_studio.mechanics.gripping import Gripping
+    from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
-    from kirigami_studio.project.verdict import Verdict
+    from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.studio.fixes import Advice
+    from kirigami_studio.studio.verdict import Verdict
 
 ANIMATION = ".gif"
 #: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
 MOST_PLANS = 16
+#: Designs that are estimated between two reports.
+AT_ONCE = 4
 
 
 class Motion(Enum):
@@ -159,7 +165,7 @@ def planned(request: CutRequest, cancel: Cancel) -> Planned:
 
     What was planned lately is not planned again.
     """
-    from kirigami_studio.project.cutting import material_for
+    from kirigami_studio.project.settings import material_for
 
     settings = request.settings
     name = request.name if settings.engrave else ""
@@ -174,7 +180,7 @@ def planned(request: CutRequest, cancel: Cancel) -> Planned:
 
 def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
     from kirigami_studio.fabricate.checks import check_plan
-    from kirigami_studio.project.cutting import plan_of
+    from kirigami_studio.studio.cutting import plan_of
 
     trim = request.candidate.trim
     plan = plan_of(request.candidate, request.settings, request.deployment, cancel, request.name)
@@ -270,7 +276,7 @@ def exporting_all(
 
 def _judging(request: CutRequest, made: Planned) -> Callable[[Sequence[Verification]], Verdict]:
     """A function that judges a design by its files; it is closed on its connectors here if nobody did that."""
-    from kirigami_studio.project.verdict import closed_as_cut, judge
+    from kirigami_studio.studio.verdict import closed_as_cut, judge
 
     candidate, width = request.candidate, request.settings.width_mm
     known = request.as_cut or closed_as_cut(candidate, request.deployment, made.plan, width)
@@ -342,3 +348,118 @@ def _verified(
     if path.suffix.lower() not in FORMATS:
         return ()
     return (verify_export(plan, path, settings.profile, settings.dxf_version, deployment),)
+
+
+# the sheet as cut -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Estimated:
+    """What is expected of some designs as cut, and at which strain connectors break.
+
+    Designs that cannot be cut at all are left out.
+    """
+
+    found: tuple[tuple[Candidate, AsCut], ...]
+    strain_limit: float
+
+
+def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
+    """Close a sheet on the connectors of its plan; None after every step, so that other jobs have their turn."""
+    from kirigami_studio.studio.as_cut import simulate
+
+    candidate = request.candidate
+    kept = None if candidate.trim is None else candidate.trim.kept
+    steps = simulate(
+        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
+    )
+    yield from in_turns(steps, cancel)
+
+
+def animating(
+    request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None, cancel: Cancel
+) -> Iterator[Exported | None]:
+    """Write an animation; None after every step of the simulation that it may need.
+
+    Parameters
+    ----------
+    request : CutRequest
+    path : Path
+    motion : Motion
+        A sheet whose cuts cannot be planned or closed is shown in its ideal motion, and the report says why.
+    sheet : SimulatedSheet or None
+        The design as cut, if it is known already.
+    cancel : function
+    """
+    importing.import_exporters()
+    from kirigami_studio.export.registry import export
+
+    why = ""
+    if motion is Motion.AS_CUT and sheet is None:
+        try:
+            for found in simulating(request, planned(request, cancel), cancel):
+                sheet = found
+                yield None
+        except Cancelled:
+            raise
+        except KirigamiError as error:
+            why = str(error)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    written = export(replace(export_job(request, None), motion=shown), path)
+    yield Exported(written, None, motion=shown, not_as_cut=why)
+
+
+def fixing(
+    request: CutRequest, verdict: Verdict, others: Mapping[str, Candidate], run: Request | None, cancel: Cancel
+) -> Iterator[Advice | None]:
+    """Try changes on a design that is not ready to cut; None after every step, so that other jobs have their turn.
+
+    ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
+    there are none.
+    """
+    from kirigami_studio.pipeline.coarser import coarser_designs
+    from kirigami_studio.studio.cutting import plan_of
+    from kirigami_studio.studio.fixes import find_fixes
+    from kirigami_studio.studio.verdict import refused
+
+    try:
+        plan_of(request.candidate, request.settings, request.deployment, cancel)
+    except Cancelled:
+        raise
+    except KirigamiError as error:
+        verdict = refused(error)  # with its numbers, which lead to the first changes
+    coarser = () if run is None else coarser_designs(request.candidate, run)
+    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser)
+    yield from in_turns(steps, cancel)
+
+
+def gripping(
+    sheet: SimulatedSheet, deployment: Deployment, width_mm: float, cancel: Cancel
+) -> Iterator[Gripping | None]:
+    """Find where to hold and pull a sheet as far as it comes; None after every step, so that other jobs have turns."""
+    from kirigami_studio.mechanics.closing import CLOSED
+    from kirigami_studio.mechanics.gripping import grip_steps
+
+    end = max(sheet.as_cut.reached, CLOSED)
+    steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
+    yield from in_turns(steps, cancel)
+
+
+def estimating(
+    designs: tuple[tuple[Candidate, Deployment, FabricationSettings], ...], cancel: Cancel
+) -> Iterator[Estimated]:
+    """Estimate whether designs close, each as it would be cut, a few at a time; all are of one material."""
+    from kirigami_studio.project.settings import material_for
+    from kirigami_studio.studio.as_cut import estimate
+
+    material = material_for(designs[0][2])
+    for start in range(0, len(designs), AT_ONCE):
+        found = []
+        for candidate, deployment, settings in designs[start : start + AT_ONCE]:
+            try:
+                # On several threads, narrow matrices wait for each other, and the window for them.
+                with one_blas_thread():
+                    found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
+            except KirigamiError:
+                continue  # its cuts cannot be planned, which planning explains once it is chosen
+        yield Estimated(tuple(found), material.strain_limit)

@@ -7,7 +7,7 @@ the material bears.  Window, report, record and command line show this one list.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
@@ -16,14 +16,14 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
-from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
+from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:
     from kirigami_studio.export.verification import Verification
@@ -187,11 +187,19 @@ def closed_as_cut(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
 ) -> AsCut | str:
     """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
+    return result_of(closing_as_cut(candidate, deployment, plan, width_mm, target))
+
+
+def closing_as_cut(
+    candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
+) -> Generator[None, None, AsCut | str]:
+    """The same step by step."""
     kept = None if candidate.trim is None else candidate.trim.kept
     try:
-        return result_of(simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)).as_cut
+        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
     except KirigamiError as error:
         return str(error)
+    return sheet.as_cut
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,18 +229,37 @@ class CloseLook:
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
-    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors."""
+    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors, in one go."""
+    return result_of(looking(candidate, settings, target))
+
+
+def looking(
+    candidate: Candidate,
+    settings: FabricationSettings,
+    target: Outline | None = None,
+    cancel: Callable[[], bool] = lambda: False,
+) -> Generator[None, None, CloseLook]:
+    """Look at a design closely, see :func:`look_at`; yields between the steps, for others to have their turn.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true.
+    """
     try:
         motion = deploy(candidate.final_sheet)
-        plan = plan_of(candidate, settings, motion)
+        plan = plan_of(candidate, settings, motion, cancel)
+    except Cancelled:
+        raise
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
+    yield
     report = check_plan(plan, phi=candidate.final_phi)
     found = judge(candidate, plan, report, None)
     small = next((problem for problem in found.problems if problem.code in TOO_SMALL), None)
     if found.level is Level.FAILS or small is not None:
         return CloseLook(small or found.problems[0])
-    as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm, target)
+    as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
     new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
     refusal = next((problem for problem in new if problem.code != NEARLY), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)

@@ -1,26 +1,21 @@
-"""From a design and its fabrication settings to the material and the cut plan: the one way for window and command line.
-
-A person's own material is stored in the project with its numbers, for machines whose library of materials lacks it.
-"""
+"""From a design and its fabrication settings to the cut plan, and the room that its material and connectors need."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.fabricate.material import Material, find_material, library
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings, material_for
 
 
 def plan_of(
@@ -126,20 +121,6 @@ def check_connectors(candidate: Candidate, options: CutOptions) -> None:
         raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)
 
 
-def material_for(settings: FabricationSettings) -> Material:
-    """The material that the settings name: from the library, else as it is stored in the project.
-
-    Raises
-    ------
-    FabricationError
-        Neither has it; the sentence lists the library.
-    """
-    stored = stored_material(settings)
-    if stored is not None and stored.key not in library().materials:
-        return stored
-    return find_material(settings.material)
-
-
 #: Edges and necks that fits leave to panels, in widths of their connectors.  Connectors on shorter edges get narrower
 #: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
 #: and close with it.
@@ -173,19 +154,3 @@ def room_mm(settings: FabricationSettings) -> float:
 
 def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
     return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
-
-
-def stored_material(settings: FabricationSettings) -> Material | None:
-    """The numbers of the settings' material as the project stores them; None for bundled materials."""
-    return settings.own if settings.own is not None and settings.own.key == settings.material else None
-
-
-def with_stored_material(document: Document) -> Document:
-    """The document as it is saved: with the numbers of its material, if that is a person's own."""
-    settings, known = document.fabrication, library()
-    numbers = stored_material(settings)
-    if settings.material in known.materials:
-        numbers = known.materials[settings.material] if settings.material in known.own else None
-    if numbers == settings.own:
-        return document
-    return replace(document, fabrication=replace(settings, own=numbers))

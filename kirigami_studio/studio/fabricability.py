@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from kirigami_studio.evaluate.evenness import evenness_of_many
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.project.as_cut import estimate
-from kirigami_studio.project.cutting import least_feature_mm, material_for
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.studio.as_cut import estimate
+from kirigami_studio.studio.cutting import least_feature_mm
 
 #: What generators are judged by: polypropylene on a sheet of 100 mm with connectors of 1 mm.  Film with connectors of
 #: 0.2 mm lets every design of 10 x 10 voids close, acrylic lets none.
