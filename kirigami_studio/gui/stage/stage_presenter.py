@@ -95,6 +95,8 @@ class StageConnections(QObject):
         self._window.stage.show_entry(entry, document.target, name)
         self._controller.curves.show(None if entry is None else entry.design, document.target)
         view.mark(None if entry is None else entry.candidate)
+        if entry is None or entry.candidate.trim is None:
+            self._window.fabrication.show_untrimmed()
         self._window.facts.setText("" if entry is None else "   ·   ".join(_facts(entry)))
 
     def _show_width(self) -> None:
