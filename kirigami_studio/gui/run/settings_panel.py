@@ -321,7 +321,7 @@ class SettingsPanel(Card):
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
-        self.polish.setToolTip(tr(self.form.settings["polish"].setting.about, steps=steps))
+        self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
     def _show_preference(self, fitted: bool) -> None:
         self.prefer.setEnabled(fitted)
