@@ -216,9 +216,10 @@ def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -
 
 
 def _label(kind: type, changes: Mapping[str, object]) -> str:
-    """What the Undo menu says of a change; of several at once it names the first."""
-    name = next(iter(changes))
-    return tr(settings_of(kind)[name].setting.undo or OTHER_CHANGE)
+    """What the Undo menu says of a change; of several at once the first of the settings, which brings the others."""
+    settings = settings_of(kind)
+    name = next(name for name in settings if name in changes)
+    return tr(settings[name].setting.undo or OTHER_CHANGE)
 
 
 def _merge_key(part: str, changes: Mapping[str, object]) -> str:

@@ -30,7 +30,8 @@ from kirigami_studio.project.document import Document
 
 #: Said by the off-screen platform itself about what it lacks.
 PLATFORM_SAYS = "This plugin does not support"
-PATIENCE = 30_000
+#: Milliseconds of the clock after which a test gives up: nothing is measured by it.
+PATIENCE = 120_000
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

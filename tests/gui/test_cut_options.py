@@ -50,7 +50,6 @@ def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> 
     assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize(
     ("name", "value"),
     [("style_", ConnectorStyle.TEARDROP), ("order", CutOrder.SPREAD), ("profile", "lightburn"), ("dxf_version", "R12")],
@@ -124,7 +123,6 @@ def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(optio
     assert panel.export.isVisible() and options.gallery.view.viewport().height() > 100
 
 
-@pytest.mark.long
 def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     options: MainWindow, until: Until, files: object, tmp_path: Path, qtbot: QtBot
 ) -> None:
@@ -153,7 +151,6 @@ def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     assert panel.rows.text() == ""
 
 
-@pytest.mark.long
 def test_that_as_many_copies_as_fit_follow_the_bed_and_the_sheet_is_not_closed_again(
     options: MainWindow, until: Until
 ) -> None:

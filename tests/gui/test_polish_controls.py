@@ -47,7 +47,6 @@ def test_that_there_is_nothing_to_prefer_without_a_fit(window: MainWindow) -> No
     assert window.settings.prefer.isEnabled()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_run_gets_the_preference_and_tells_how_far_polish_and_search_are(
     heart: MainWindow, qtbot: QtBot, until: Until

@@ -78,8 +78,7 @@ class DesignConnections(QObject):
         window.gallery.bar.set_ready(False)
         window.stage.set_trimmable(False)
         window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
-        window.stage.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
-        window.stage.allow_sample(False)
+        window.stage.show_run(self._controller.document.target)
         window.fabrication.show_waiting()
         window.stage.cuts.show_plan(None)
         window.messages.dismiss(Tone.HINT, Tone.DONE)
@@ -89,7 +88,7 @@ class DesignConnections(QObject):
         window = self._window
         window.run.show_idle()
         window.stage.set_trimmable(True)
-        window.stage.allow_sample(True)
+        window.stage.show_idle()
         hint = tr("Designs appear here, best first, as they are generated.")
         window.gallery.view.set_hint(tr("No designs yet"), hint)
         self._show_ready(self._controller.document)

@@ -340,9 +340,18 @@ class FabricationPanel(Card):
         self._forget_numbers()
         self._warn(sentence, calm=False)
 
-    def _forget_numbers(self) -> None:
+    def show_untrimmed(self) -> None:
+        """The design is whole: what was said of a trimmed one goes at once, before its own plan is made."""
+        if self.summary.toolTip():
+            self._forget_summary()
+
+    def _forget_summary(self) -> None:
         self._summaries = ("", "")
+        self.summary.setToolTip("")
         self._show_summary()
+
+    def _forget_numbers(self) -> None:
+        self._forget_summary()
         for label in self.numbers.values():
             label.setText(UNKNOWN)
 

@@ -78,7 +78,9 @@ class Controller(QObject):
 
     def __init__(self, parent: QObject | None = None, earlier: Controller | None = None) -> None:
         super().__init__(parent)
-        self.session = session = Session(self, None if earlier is None else earlier.session)
+        before: Session | None = None if earlier is None else earlier.session
+        self.session: Session = Session(self, before)
+        session = self.session
         self.hand = HandEditor(session, self)
         self.trimming = TrimSwitch(session, self)
         self.refitting = Refitter(session, self)
