@@ -157,11 +157,6 @@ class NamedSetting:
     setting: Setting
 
     @property
-    def spoken(self) -> str:
-        """Its name for screen readers."""
-        return self.setting.spoken or self.setting.label.replace("&", "")
-
-    @property
     def is_plain(self) -> bool:
         """Whether it holds a flag, a number, a text or a choice."""
         return issubclass(self.kind, (bool, int, float, str, Enum))

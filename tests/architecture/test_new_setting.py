@@ -138,7 +138,6 @@ def found_in(folder: Path, command: str, changed: str = "rings") -> dict[str, An
     return found
 
 
-@pytest.mark.slow
 @pytest.mark.qt
 @pytest.mark.parametrize("planted", [SEARCH, SHEET], ids=lambda planted: planted.command)
 def test_that_a_new_choice_costs_its_setting_its_use_and_a_test(
@@ -154,7 +153,6 @@ def test_that_a_new_choice_costs_its_setting_its_use_and_a_test(
     assert found["field"] == [3, 9, "Rings around the sheet (0 to 9).", "Rings", {"rings": 5}]
 
 
-@pytest.mark.slow
 @pytest.mark.qt
 def test_that_a_field_that_says_nothing_of_itself_appears_nowhere(repository: Path, tmp_path: Path) -> None:
     copy_with(SEARCH, SILENT, repository, tmp_path)
