@@ -157,11 +157,6 @@ class NamedSetting:
     setting: Setting
 
     @property
-    def spoken(self) -> str:
-        """Its name for screen readers."""
-        return self.setting.spoken or self.setting.label.replace("&", "")
-
-    @property
     def is_plain(self) -> bool:
         """Whether it holds a flag, a number, a text or a choice."""
         return issubclass(self.kind, (bool, int, float, str, Enum))
@@ -206,17 +201,10 @@ class NamedSetting:
         return value.value if isinstance(value, Enum) else value
 
     def _refusal(self, value: object, told: Mapping[str, object]) -> KirigamiError:
+        setting, values = self.setting, {"name": self.name, "value": value, self.name: value, **told}
         words = ", ".join(str(one.value) for one in self.kind) if issubclass(self.kind, Enum) else ""
-        values: dict[str, object] = {
-            "name": self.name,
-            "value": value,
-            self.name: value,
-            "choices": words,
-            "kind": self.kind.__name__,
-        }
-        return self.setting.error(
-            self.setting.code, **{**values, **told}, least=self.setting.least, most=self.setting.most
-        )
+        values |= {"choices": words, "kind": self.kind.__name__, "least": setting.least, "most": setting.most}
+        return setting.error(setting.code, **values)
 
 
 @cache

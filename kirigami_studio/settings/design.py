@@ -248,7 +248,6 @@ class DesignChoices:
     polish: int = field(
         default=POLISH_STEPS,
         metadata=Setting(
-            about=mark("How thoroughly designs are fitted to the target: up to {steps} steps."),
             help="fit every design on the exact geometry (default: yes)",
             least=0,
             most=200,

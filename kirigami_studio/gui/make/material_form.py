@@ -13,7 +13,7 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.settings import NamedSetting
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.form import Form, spoken
 from kirigami_studio.gui.widgets.number_field import DecimalField
 
 #: Texts and numbers of a material, in the order of the form.
@@ -69,7 +69,7 @@ class MaterialForm(QWidget):
         one = self.fields.settings[name]
         unit = one.setting.unit
         box = self.fields.decimal(name, f" {unit}")
-        box.setAccessibleName(f"{tr(one.spoken)}, {unit}")
+        box.setAccessibleName(f"{spoken(one)}, {unit}")
         about = tr(one.setting.about)
         box.setToolTip(tr("{tip} Unit: {unit}, {low:g} to {high:g}.", tip=about, unit=unit, **one.numbers))
         return box
@@ -106,7 +106,7 @@ class MaterialForm(QWidget):
 def _text(one: NamedSetting) -> QLineEdit:
     line = QLineEdit()
     line.setObjectName(f"material_{one.name}")
-    line.setAccessibleName(tr(one.spoken))
+    line.setAccessibleName(spoken(one))
     line.setAccessibleDescription(tr(one.setting.about))
     return line
 

@@ -72,15 +72,15 @@ class SettingsPanel(Card):
         self.form = Form(DesignSettings, 48, parent=self)
         #: What is known about generators by their names; others are listed by name alone.
         self._variants = {str(one.value): one for one in self.form.settings["variant"].setting.choices}
-        described = self.form.settings
+        auto, regular = self.form.settings["auto_grid"].setting, self.form.settings["regular"].setting
         self.auto = QToolButton()
-        self.auto.setObjectName(described["auto_grid"].setting.widget)
+        self.auto.setObjectName(auto.widget)
         self.auto.setText(tr("Auto"))
         self.auto.setCheckable(True)
         self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.auto.setFixedHeight(29)
-        self.auto.setAccessibleName(tr(described["auto_grid"].spoken))
-        self.auto.setToolTip(tr(described["auto_grid"].setting.about))
+        self.auto.setAccessibleName(tr(auto.spoken))
+        self.auto.setToolTip(tr(auto.about))
         self.rows = _voids("rows", tr("Rows"), tr(ROWS, low=SMALLEST_GRID, high=LARGEST_GRID))
         self.columns = _voids("columns", tr("Columns"), tr(COLUMNS, low=SMALLEST_GRID, high=LARGEST_GRID))
         self.candidates, self.seed = self.form.whole("k"), self.form.whole("seed")
@@ -101,8 +101,8 @@ class SettingsPanel(Card):
         self.regular.setSingleStep(POSITIONS // 20)
         self.regular.setPageStep(POSITIONS // 4)
         self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.regular.setAccessibleName(tr(described["regular"].spoken))
-        self.regular.setToolTip(tr(described["regular"].setting.about))
+        self.regular.setAccessibleName(tr(regular.spoken))
+        self.regular.setToolTip(tr(regular.about))
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
             "moreSettings",
@@ -256,7 +256,8 @@ class SettingsPanel(Card):
     def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
         """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
         self._chosen_grid = grid
-        about = tr(self.form.settings["auto_grid"].setting.about)
+        auto = self.form.settings["auto_grid"].setting
+        about = tr(auto.about)
         self.auto.setToolTip(f"{about}\n{reason}" if reason else about)
         self.auto.setAccessibleDescription(reason)
         if grid is not None and self.auto.isChecked():
@@ -321,7 +322,7 @@ class SettingsPanel(Card):
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
-        self.polish.setToolTip(tr(self.form.settings["polish"].setting.about, steps=steps))
+        self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
     def _show_preference(self, fitted: bool) -> None:
         self.prefer.setEnabled(fitted)

@@ -18,6 +18,11 @@ from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, 
 Field = QSpinBox | DecimalField | ChoiceBox | QCheckBox
 
 
+def spoken(one: NamedSetting) -> str:
+    """Return the name of a setting for screen readers."""
+    return tr(one.setting.spoken) if one.setting.spoken else tr(one.setting.label).replace("&", "")
+
+
 class Form(QObject):
     """The fields of the settings of a dataclass.
 
@@ -75,7 +80,7 @@ class Form(QObject):
         ``show`` shows a value in the place of :meth:`ChoiceBox.choose`.
         """
         one = self.settings[name]
-        box = ChoiceBox("", tr(one.spoken), one.setting.choices if choices is None else choices)
+        box = ChoiceBox("", spoken(one), one.setting.choices if choices is None else choices)
         self._bind(one, box, show or box.choose)
         box.activated.connect(lambda _: self.changed.emit({name: box.currentData()}))
         return box
@@ -135,7 +140,7 @@ class Form(QObject):
     def _bind(self, one: NamedSetting, field: Field, show: Callable[[Any], None]) -> None:
         setting = one.setting
         field.setObjectName(setting.widget or self._prefix + one.name)
-        field.setAccessibleName(tr(one.spoken))
+        field.setAccessibleName(spoken(one))
         if setting.about:
             field.setToolTip(tr(setting.about, **one.numbers))
         self.fields[one.name], self._show[one.name] = field, show
