@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -331,7 +331,7 @@ class MaterialStore(QObject):
             )
             keep = (tr("Add to my materials"), partial(self.keep, material))
             self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
-        elif known != material:
+        elif known != replace(material, name=known.name, note=known.note):  # words do not cut
             sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
             self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
 
