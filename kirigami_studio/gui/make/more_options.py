@@ -80,8 +80,8 @@ class MoreOptions(QWidget):
         self.tabs.setAccessibleName(tr("Number of tabs"))
         self.tabs.setToolTip(
             tr(
-                "Uncut bridges in the outline that hold the sheet until you remove it (0 to {most_tabs}).",
-                most_tabs=MOST_TABS,
+                "Uncut bridges in the outline that hold the sheet until you remove it (0 to {most}).",
+                most=MOST_TABS,
             )
         )
         self.tab_mm = LengthField()
@@ -98,9 +98,9 @@ class MoreOptions(QWidget):
         self.copies.setAccessibleName(tr("Number of copies"))
         self.copies.setToolTip(
             tr(
-                "Copies of the sheet in one file, in rows (1 to {most_copies}); below 1: as many as fit on the "
+                "Copies of the sheet in one file, in rows (1 to {most}); below 1: as many as fit on the "
                 "material's bed.",
-                most_copies=MOST_COPIES,
+                most=MOST_COPIES,
             )
         )
         self.copy_gap = LengthField()
