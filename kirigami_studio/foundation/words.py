@@ -183,7 +183,11 @@ def _say(made: Made) -> str:
         text = _put(text, made.values) if made.values else text
     ways = _state.made.get(text, {})
     passed_through = found is None and ways and catalogue.language != ENGLISH  # a translation, translated once more
-    if made.text in ways or passed_through or text in made.values.values():
+    if (
+        made.text in ways
+        or passed_through
+        or any(isinstance(value, str) and value == text for value in made.values.values())
+    ):
         return text
     _state.made[text] = ways
     ways[made.text] = made
