@@ -118,7 +118,7 @@ class Form(QObject):
         return found
 
     def show(self, values: Mapping[str, Any]) -> None:
-        """Show values, by the names of their settings, without reporting them as edits; None leaves a field as it is."""
+        """Show values, by the names of their settings, without an edit; None leaves a field as it is."""
         for name, value in values.items():
             if name in self.fields and value is not None:
                 with QSignalBlocker(self.fields[name]):
