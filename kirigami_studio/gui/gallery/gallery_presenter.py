@@ -149,14 +149,15 @@ class DesignConnections(QObject):
             self._show_chosen()
         self._ranked_as_cut = jams
 
-    @property
-    def _ranking(self) -> Ranking:
-        """That of the document, with what is estimated of its designs as cut."""
-        return self._estimated(self._controller.session.ranking)
-
     def _estimated(self, ranking: Ranking) -> Ranking:
+        """Return a ranking with what is estimated of the designs as cut."""
         found = {candidate: one.jam_phi for candidate, one in self._controller.estimates.known.items()}
         return replace(ranking, jam_phi={**ranking.jam_phi, **found})
+
+    @property
+    def _ranking(self) -> Ranking:
+        """That of the document."""
+        return self._estimated(self._controller.session.ranking)
 
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery
