@@ -56,8 +56,8 @@ SHEET = Planted(
     "export",
     "settings/fabrication.py",
     "    own: Material | None = field(",
-    "project/export_job.py",
-    ("markers=settings.markers", "markers=settings.markers or settings.rings > 0"),
+    "studio/making.py",
+    ("markers=request.settings.markers", "markers=request.settings.markers or request.settings.rings > 0"),
 )
 #: Prints what a user of the copy finds of the choice.
 PROGRAM = """
