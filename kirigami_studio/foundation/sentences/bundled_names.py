@@ -95,9 +95,9 @@ NOTES = (
         "and speed: starting values. Cut the coupon before trusting it."
     ),
     mark(  # film-uv
-        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speeds and acceleration are typical values. Cut the coupon "
-        "before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its general specifications "
-        "(typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5 GPa)."
+        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speeds and acceleration are typical values. Cut the "
+        "coupon before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its general "
+        "specifications (typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5 GPa)."
     ),
     mark(  # foil-uv
         "Expect connectors to fail: the aluminium sheet that the paper tried could be cut, but its connectors "
