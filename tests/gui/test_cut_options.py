@@ -13,7 +13,6 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.gui.make.fabrication_panel import Extent
-from kirigami_studio.gui.make.more_options import ORDERS, STYLES
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.settings import FabricationSettings
@@ -46,7 +45,8 @@ def test_that_the_options_are_folded_until_asked_for(designed: MainWindow, qtbot
 
 def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> None:
     panel = options.fabrication.options
-    assert {row[0] for row in STYLES} == set(ConnectorStyle) and {row[0] for row in ORDERS} == set(CutOrder)
+    for box, choices in ((panel.style_, ConnectorStyle), (panel.order, CutOrder)):
+        assert {box.itemData(row) for row in range(box.count())} == set(choices)
     assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
 
 
