@@ -119,7 +119,7 @@ soak: setup
 	  --generations $(GENERATIONS) --edits $(EDITS)
 
 #: Seconds of processors for the tests of `make quick`; to read them takes 5 more.
-QUICK_BUDGET ?= 10
+QUICK_BUDGET ?= 6
 quick: setup
 	@HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt --budget $(QUICK_BUDGET) $(QUICK_TESTS)
 

@@ -13,7 +13,7 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
 from hypothesis import HealthCheck, settings
-from time_budget import DURATIONS, DurationRecorder, beyond_budget, read_durations
+from time_budget import DURATIONS, DurationRecorder, beyond_budget, read_durations, shared_fixtures
 
 from kirigami_studio.foundation.processes import Workers
 from tests.catalogues import compile_stale
@@ -58,7 +58,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if budget is None:
         return
     durations = read_durations(config.getoption("durations_file"))
-    left_out = beyond_budget([item.nodeid for item in items], durations, budget)
+    left_out = beyond_budget({item.nodeid: shared_fixtures(item) for item in items}, durations, budget)
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left_out])
     items[:] = [item for item in items if item.nodeid not in left_out]
 

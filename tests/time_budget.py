@@ -3,6 +3,8 @@
 ``durations.json`` holds what ``make test-durations`` measured: file -> test -> case -> processor seconds of the process
 that played it and of the children it waited for, set-up and tear-down included.  Processor time hardly depends on what
 else a machine does.  Tests below :data:`RECORDED` are not listed and count as :data:`UNLISTED`, and so do new ones.
+Fixtures that several tests share are listed beside the tests of the file or folder that defines them: whichever test
+comes first sets them up.
 """
 
 from __future__ import annotations
@@ -10,7 +12,8 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Generator, Iterable
+from collections import Counter
+from collections.abc import Collection, Generator, Mapping
 from pathlib import Path
 
 import pytest
@@ -28,7 +31,7 @@ def function_of(test: str) -> str:
     return test.partition("[")[0]
 
 
-def beyond_budget(tests: Iterable[str], durations: dict[str, float], budget: float) -> set[str]:
+def beyond_budget(tests: Mapping[str, Collection[str]], durations: dict[str, float], budget: float) -> set[str]:
     """Choose tests to leave out so that the others take ``budget`` processor seconds.
 
     The dearest cases go first.  The cheapest case of each function, of most of them the only one, goes only when no
@@ -36,13 +39,17 @@ def beyond_budget(tests: Iterable[str], durations: dict[str, float], budget: flo
 
     Parameters
     ----------
-    tests : iterable of str
-        Node ids.
+    tests : mapping
+        Node id -> shared fixtures that the test uses.
     durations : dict
-        Node id -> processor seconds.
+        Node id or shared fixture -> processor seconds.
     budget : float, processor seconds
     """
-    seconds = {test: durations.get(test, UNLISTED) for test in tests}
+    users = Counter(fixture for fixtures in tests.values() for fixture in fixtures)
+    alone = {test: durations.get(test, UNLISTED) for test in tests}
+    seconds = {
+        test: alone[test] + sum(durations.get(fixture, 0.0) for fixture in fixtures) for test, fixtures in tests.items()
+    }
     cheapest: dict[str, str] = {}
     for test in seconds:
         best = cheapest.setdefault(function_of(test), test)
@@ -53,13 +60,26 @@ def beyond_budget(tests: Iterable[str], durations: dict[str, float], budget: flo
     def order(test: str) -> tuple[float, str]:
         return -seconds[test] * (LAST_CASE if test in last else 1.0), test
 
-    excess, left_out = sum(seconds.values()) - budget, set[str]()
+    excess = sum(alone.values()) + sum(durations.get(fixture, 0.0) for fixture in users) - budget
+    left_out: set[str] = set()
     for test in sorted(seconds, key=order):
         if excess <= 0.0:
             break
         left_out.add(test)
-        excess -= seconds[test]
+        users.subtract(tests[test])
+        excess -= alone[test] + sum(durations.get(fixture, 0.0) for fixture in tests[test] if not users[fixture])
     return left_out
+
+
+def shared_fixtures(item: pytest.Item) -> list[str]:
+    """Return the fixtures of a test that live longer than it, each with the place that defines it."""
+    known = item._fixtureinfo.name2fixturedefs if isinstance(item, pytest.Function) else {}
+    return [fixture_name(found[-1]) for found in known.values() if found[-1].scope != "function"]
+
+
+def fixture_name(fixture: pytest.FixtureDef[object]) -> str:
+    """Return the place that defines a fixture, and its name."""
+    return f"{fixture.baseid}::{fixture.argname}"
 
 
 def read_durations(path: Path = DURATIONS) -> dict[str, float]:
@@ -106,11 +126,21 @@ class DurationRecorder:
         self.path = path
         self.measured: dict[str, float] = {}
         self._begun = 0.0
+        self._shared: dict[str, float] = {}
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self) -> Generator[None, object, object]:
-        self._begun = processor_seconds()
+        self._begun, self._shared = processor_seconds(), {}
         return (yield)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[object]) -> Generator[None, object, object]:
+        begun = processor_seconds()
+        try:
+            return (yield)
+        finally:
+            if fixturedef.scope != "function":
+                self._shared[fixture_name(fixturedef)] = processor_seconds() - begun
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(
@@ -118,13 +148,15 @@ class DurationRecorder:
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         report = yield
         if call.when == "teardown":
-            report.user_properties.append((PROPERTY, processor_seconds() - self._begun))
+            spent = processor_seconds() - self._begun - sum(self._shared.values())
+            report.user_properties.append((PROPERTY, {report.nodeid: max(0.0, spent)} | self._shared))
         return report
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         found = dict(report.user_properties).get(PROPERTY)
-        if report.when == "teardown" and isinstance(found, float):
-            self.measured[report.nodeid] = found
+        if report.when == "teardown" and isinstance(found, dict):
+            for name, seconds in found.items():
+                self.measured[name] = max(seconds, self.measured.get(name, 0.0))
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         if not hasattr(session.config, "workerinput"):

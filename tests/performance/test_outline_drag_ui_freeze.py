@@ -46,7 +46,7 @@ def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
     window = create_window(LIGHT)
     window.show()
     window.controller.open_project(tmp_path / "large.kiri")
-    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=240_000)
+    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=900_000)
     window.stage.deployment.set_phi(OPEN)
     window.commands["hand"].trigger()
     watch, longest = ThreadWatch(), []
@@ -79,6 +79,6 @@ def drag(window: MainWindow, qtbot: QtBot) -> None:
 
     timer.timeout.connect(move)
     timer.start(EVERY_MS)
-    qtbot.waitUntil(lambda: moved[0] > MOVES, timeout=240_000)
+    qtbot.waitUntil(lambda: moved[0] > MOVES, timeout=900_000)
     timer.stop()
-    qtbot.waitUntil(lambda: view.design is not before, timeout=240_000)
+    qtbot.waitUntil(lambda: view.design is not before, timeout=900_000)

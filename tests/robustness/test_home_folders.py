@@ -33,7 +33,6 @@ def run(home: Path, out: Path, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="the home folder is found otherwise")
 def test_that_a_home_that_is_no_folder_stops_no_work_and_is_not_spoken_of(tmp_path: Path) -> None:
     home = tmp_path / "home"
@@ -44,7 +43,6 @@ def test_that_a_home_that_is_no_folder_stops_no_work_and_is_not_spoken_of(tmp_pa
     assert (tmp_path / "heart.pdf").read_bytes().startswith(b"%PDF")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("importer", IMPORTERS)
 @pytest.mark.skipif(os.name == "nt", reason="the home folder is found otherwise")
 def test_that_no_file_of_the_home_folder_is_run(importer: str, tmp_path: Path) -> None:

@@ -93,7 +93,6 @@ def test_that_pipes_and_devices_without_end_are_not_read(tmp_path: Path) -> None
     assert {name: said for name, (said, _) in found.items() if not said.startswith("refused: ")} == {}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", ["DXF_hardhang.dxf", "check_DXF_crash_74d599.dxf", "DXF_hang_824ee6.dxf"])
 def test_that_libraries_add_nothing_to_what_a_command_says_of_a_damaged_file(case: str) -> None:
     words = [sys.executable, "-m", "kirigami_studio", "parts", str(ATTACKS / case)]
