@@ -14,6 +14,7 @@ from kirigami_studio.outlines.anchors import MOST_ANCHORS, Anchors
 from kirigami_studio.outlines.figures import Box, Figure, figure
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
+from tests.refusals import refused
 
 SQUARE = Placed.from_ring(figure(Figure.RECTANGLE, Box(0, 0, 40, 40)), "square")
 
@@ -97,5 +98,5 @@ def test_that_a_point_taken_away_is_the_reverse_of_one_set() -> None:
 
 def test_that_the_last_three_points_stay() -> None:
     triangle = Anchors.of(SQUARE).without(0)
-    with pytest.raises(TargetError, match="at least 3 points"):
+    with refused(TargetError, "nodes.too_few_left", fewest=3):
         triangle.without(0)

@@ -19,6 +19,7 @@ from kirigami_studio.polish.matching import outer_hinges
 from kirigami_studio.polish.objective import Objective, Stage
 from kirigami_studio.polish.preferences import Preference, PreferenceTerms
 from kirigami_studio.polish.sensitivity import OutlineModel
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -55,13 +56,13 @@ def test_that_a_stopped_cover_is_the_trim_of_the_given_field(polished: Fit, drop
 
 
 def test_that_an_impossible_depth_is_refused(polished: Fit, drop: Outline) -> None:
-    with pytest.raises(UsageError, match="cells deep"):
+    with refused(UsageError, "trim.keep_out_of_range"):
         fit_cover(polished.field, drop, keep=2.0)
 
 
 @pytest.mark.parametrize("excess", [-0.1, 1.5, float("nan")])
 def test_that_an_impossible_weight_of_excess_is_refused(excess: float, drop: Outline) -> None:
-    with pytest.raises(UsageError, match="sticks out must be a number from 0 to 1"):
+    with refused(UsageError, "fit.excess_out_of_range"):
         polish(RatioField.uniform(4, 4), drop, steps=1, excess=excess)
 
 
