@@ -3,37 +3,28 @@
 from __future__ import annotations
 
 import html
-import math
 import os
-import reprlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from kirigami_studio.api.design import Design
 from kirigami_studio.api.pictures import cuts_picture
 from kirigami_studio.api.simulation import Simulation
-from kirigami_studio.export.export_set import ExportSet, export_all
-from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.provenance import sidecar_path, write_sidecar
-from kirigami_studio.export.registry import export
-from kirigami_studio.export.verification import FORMATS, Verification, verify_export
-from kirigami_studio.fabricate.checks import Report, check_plan
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.export.cut_motion import CutMotion
+from kirigami_studio.export.verification import Verification
+from kirigami_studio.fabricate.checks import Report
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.foundation.errors import KirigamiError, UsageError
-from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.project.export_job import cut_job
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings, with_choices
-from kirigami_studio.studio.as_cut import simulate
-from kirigami_studio.studio.cutting import check_connectors, plan_of, refuse_errors
-from kirigami_studio.studio.verdict import Level, Verdict, judge
+from kirigami_studio.studio.as_cut import AsCut, simulated
+from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.making import CutRequest, Output, Planned, judged, planned, written
+from kirigami_studio.studio.verdict import Level, Verdict
 
-#: Choices that are numbers, and those of them that are whole ones.
-LENGTHS, COUNTS = ("width_mm", "connector_mm", "kerf_mm", "tab_mm", "copy_gap_mm"), ("tabs", "copies")
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
@@ -46,19 +37,29 @@ class Cuts:
 
     Attributes
     ----------
-    design : Design
-    settings : FabricationSettings
-        Material, sizes, connectors, machine.
-    plan : CutPlan
-        The value of the program: paths in cutting order, connectors, notes.
-    report : Report
-        What the check of the plan found.
+    request : CutRequest
+        The design, and how it is cut.
+    planned : Planned
+        Its cuts, and what their check found.
     """
 
-    design: Design
-    settings: FabricationSettings
-    plan: CutPlan
-    report: Report
+    request: CutRequest
+    planned: Planned
+
+    @property
+    def settings(self) -> FabricationSettings:
+        """Material, sizes, connectors, machine."""
+        return self.request.settings
+
+    @property
+    def plan(self) -> CutPlan:
+        """The value of the program: paths in cutting order, connectors, notes."""
+        return self.planned.plan
+
+    @property
+    def report(self) -> Report:
+        """What the check of the plan found."""
+        return self.planned.report
 
     @property
     def material(self) -> str:
@@ -124,11 +125,9 @@ class Cuts:
         ExportError
             An unknown extension, or a place that cannot be written.
         """
-        refuse_errors(self.report)
-        job = self._job()
-        if Path(path).suffix.lower() == ".gif":
-            job = replace(job, motion=self.simulate().simulated.motion(self.settings.width_mm))
-        return self._exported(write_file(job, path, self._judge, record=record))
+        goal = Path(path)
+        moving = goal.suffix.lower() == ".gif"
+        return self._written(Output(goal, record=record), self.simulate().simulated.motion if moving else None)
 
     def export_all(self, folder: str | os.PathLike[str]) -> Exported:
         """Write every kind of file and the record of all settings to a folder, cut files verified.
@@ -138,26 +137,29 @@ class Cuts:
         FabricationError, ExportError
             As :meth:`export`.
         """
-        refuse_errors(self.report)
-        return self._exported(export_all(self._job(), Path(folder), judged=lambda found: self._judge(found).to_json()))
+        return self._written(Output(Path(folder), "cut", record=True))
 
-    def _job(self) -> ExportJob:
-        return cut_job(self.design.document, self.plan, self.settings)
+    def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
+        refuse_errors(self.report)
+        shown = None if motion is None else motion(self.settings.width_mm)
+        found = written(self.request, self.planned, output, self._as_cut, shown)
+        return Exported(found.files, found.verifications, self)
+
+    @property
+    def _as_cut(self) -> AsCut | str:
+        """How the sheet does as cut, or why that cannot be told."""
+        try:
+            return self.simulate().as_cut
+        except KirigamiError as error:
+            return str(error)
 
     def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
-        try:
-            as_cut: Any = self.simulate().as_cut
-        except KirigamiError as error:
-            as_cut = str(error)
-        return judge(self.design.candidate, self.plan, self.report, as_cut, verifications)
-
-    def _exported(self, written: ExportSet) -> Exported:
-        return Exported(tuple(written.files), tuple(written.verifications), self)
+        return judged(self.request, self.planned, self._as_cut, verifications)
 
     def __repr__(self) -> str:
         width, height = self.size_mm
         told = "" if self.report.ok else ", cannot be cut"
-        return f"<Cuts of {self.design.name} in {self.material}: {width:.1f} x {height:.1f} mm{told}>"
+        return f"<Cuts of {self.request.name} in {self.material}: {width:.1f} x {height:.1f} mm{told}>"
 
     def _repr_html_(self) -> str:
         width, height = self.size_mm
@@ -212,96 +214,26 @@ class Exported:
         return f"<Exported {names}{read}>"
 
 
-def plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
-    """Plan and check the cuts of a design, with choices on top of those of its project.
+def plan_cuts(document: Document, given: Mapping[str, Any]) -> Cuts:
+    """Plan and check the cuts of a project's chosen design, with choices, by name, on top of those of the project.
 
     Raises
     ------
     FabricationError, UsageError
         No such material or choice, or cuts that cannot be planned.
     """
-    candidate = design.candidate
-    settings = with_choices(design.document.fabrication, checked_choices(given))
-    check_connectors(candidate, settings.options)
-    plan = plan_of(candidate, settings, name=design.name)
-    return Cuts(design, settings, plan, check_plan(plan, phi=candidate.final_phi))
-
-
-def checked_choices(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Choices with Python's own numbers in the place of NumPy's, connectors as pairs of number and width.
-
-    Raises
-    ------
-    UsageError
-        Something else where numbers belong.
-    """
-    found = dict(given)
-    for name in (*LENGTHS, *COUNTS):
-        if name in found:
-            found[name] = number(name, found[name], whole=name in COUNTS)
-    if "hinge_mm" in found:
-        widths = found["hinge_mm"]
-        if not isinstance(widths, Mapping):
-            raise UsageError("api.not_connector_widths", value=reprlib.repr(widths))
-        found["hinge_mm"] = [
-            (number("hinge_mm", one, whole=True), number("hinge_mm", width)) for one, width in widths.items()
-        ]
-    if "removed" in found:
-        removed = found["removed"]
-        if isinstance(removed, str) or not isinstance(removed, (Sequence, np.ndarray)):
-            raise UsageError("api.not_connectors", value=reprlib.repr(removed))
-        found["removed"] = [number("removed", one, whole=True) for one in removed]
-    return found
-
-
-def number(name: str, value: object, *, whole: bool = False) -> Any:
-    """A finite number as Python's own.
-
-    Raises
-    ------
-    UsageError
-        No number, or not a whole one where that is asked for; the sentence has the name.
-    """
-    plain = value.item() if isinstance(value, np.generic) else value
-    if isinstance(plain, bool) or not isinstance(plain, int if whole else (int, float)) or not math.isfinite(plain):
-        raise UsageError("api.not_whole" if whole else "api.not_a_number", name=name, value=reprlib.repr(value))
-    return plain
-
-
-def write_file(
-    job: ExportJob,
-    path: str | os.PathLike[str],
-    judged: Callable[[Sequence[Verification]], Verdict],
-    *,
-    record: bool = False,
-) -> ExportSet:
-    """Write one file; cut files that can be are read back, and the record of all settings is written where asked for.
-
-    Raises
-    ------
-    ExportError
-        Unknown extension, unwritable place, or a file that did not pass its own re-reading.
-    """
-    goal = Path(path)
-    written = export(job, goal)
-    files, verified = [written], []
-    if goal.suffix.lower() in FORMATS:
-        verified.append(verify_export(job.required_plan, written, job.profile, job.dxf_version, job.deployment))
-    if record:
-        beside = sidecar_path(goal)
-        files.append(write_sidecar(job, beside, [written], judged(verified).to_json()))
-    return ExportSet(tuple(files), tuple(verified))
+    request = CutRequest.of(document, with_choices(document.fabrication, given))
+    check_connectors(request.candidate, request.settings.options)
+    return Cuts(request, planned(request))
 
 
 @lru_cache(maxsize=32)
 def _simulated(cuts: Cuts) -> Simulation:
-    design, candidate = cuts.design, cuts.design.candidate
-    kept = None if candidate.trim is None else candidate.trim.kept
-    width, motion = cuts.settings.width_mm, design.sheet.deployment
-    target = design.target.outline
-    found = result_of(simulate(motion, cuts.plan, width, candidate.final_phi, target, kept))
-    made = design.posed if found.made is None else design.posed.laid_over(found.made)
-    return Simulation(found, made, width)
+    request, width = cuts.request, cuts.settings.width_mm
+    found = simulated(request.candidate, cuts.plan, width, request.target, request.deployment)
+    candidate = request.candidate
+    posed = PosedDesign(request.deployment, candidate.final_pose, candidate.final_phi, candidate.trim)
+    return Simulation(found, posed if found.made is None else posed.laid_over(found.made), width)
 
 
 @lru_cache(maxsize=32)

@@ -7,14 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 from shapely.geometry import Polygon
 
+from kirigami_studio.api.choices import (
+    checked_choices,
+    connector_widths,
+    connectors,
+    cut_choices,
+    explicit_signature,
+)
+from kirigami_studio.api.cuts import Cuts, Exported, plan_cuts
 from kirigami_studio.api.pictures import states_picture
 from kirigami_studio.api.sheet import Sheet, SheetLike, decode
+from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.mask_siou import mask_siou
@@ -28,14 +37,11 @@ from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, picture_job
 from kirigami_studio.project.labels import cleaned_name
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import SUFFIX, save
-
-if TYPE_CHECKING:
-    from kirigami_studio.api.cuts import Cuts, Exported
-    from kirigami_studio.api.simulation import Simulation
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import CutChange
+from kirigami_studio.studio.making import CutRequest, chosen_candidate, export_job
 
 #: Files that need no planned cuts.
 PICTURES = (".png", ".gif")
@@ -163,23 +169,9 @@ class Design:
     def plan_cuts(
         self,
         *,
-        material: str | None = None,
-        width_mm: float | None = None,
-        connector_mm: float | None = None,
-        kerf_mm: float | None = None,
-        style: str | None = None,
-        order: str | None = None,
-        tabs: int | None = None,
-        tab_mm: float | None = None,
-        copies: int | None = None,
-        copy_gap_mm: float | None = None,
         hinge_mm: Mapping[int, float] | None = None,
         removed: Sequence[int] | None = None,
-        engrave: bool | None = None,
-        profile: str | None = None,
-        dxf_version: str | None = None,
-        paper: str | None = None,
-        markers: bool | None = None,
+        **choices: Unpack[CutChange],
     ) -> Cuts:
         """Plan the cuts in a material; what is left out is as the project has it.
 
@@ -227,10 +219,14 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        from kirigami_studio.api.cuts import plan_cuts
+        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        if hinge_mm is not None:
+            given["hinge_mm"] = connector_widths(hinge_mm)
+        if removed is not None:
+            given["removed"] = connectors(removed)
+        return plan_cuts(self.document, {name: value for name, value in given.items() if value is not None})
 
-        given = {name: value for name, value in locals().items() if name not in ("self", "plan_cuts")}
-        return plan_cuts(self, {name: value for name, value in given.items() if value is not None})
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -254,13 +250,11 @@ class Design:
         ExportError, FabricationError, UsageError
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
-        from kirigami_studio.api.cuts import Exported
-
         goal = Path(path)
         find_exporter(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
-        return Exported((export(picture_job(self.document), goal),))
+        return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a project (.kiri) of this design alone.

@@ -16,9 +16,8 @@ from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, cut_job
 from kirigami_studio.project.store import load
-from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.studio.making import CutRequest, export_job, planned
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0
@@ -29,10 +28,9 @@ BARE_SHARE = 0.005
 def artwork(arguments: argparse.Namespace) -> int:
     """Write SVG, PDF and PNG of the printed sheet of a project's chosen design, and a picture of it opened."""
     document = load(arguments.project)
-    settings = overridden(document.fabrication, arguments)
-    candidate = chosen_candidate(document)
+    request = CutRequest.of(document, overridden(document.fabrication, arguments))
     printed = _artwork(arguments, document)
-    job = cut_job(document, plan_of(candidate, settings), settings)
+    job = export_job(request, planned(request))
     try:
         work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
         files = write_artwork(work, arguments.out)

@@ -95,6 +95,8 @@ class Part:
     lines : tuple of (P, 2) float, source units, y up
         What is painted with the pen; a closed line repeats its first vertex at the end.
     pen : Pen
+    is_named : bool
+        Whether the name is the source's own.
     """
 
     number: int
@@ -105,6 +107,7 @@ class Part:
     region: BaseGeometry
     lines: tuple[FloatArray, ...] = ()
     pen: Pen = field(default_factory=Pen)
+    is_named: bool = True
 
     def __post_init__(self) -> None:
         for name in ("name", "layer", "colour"):
@@ -371,7 +374,12 @@ def numbered(parts: Sequence[Part], size: float) -> tuple[tuple[Part, ...], tupl
         PartKind.STROKED: tr("line {number}"),
     }
     named = [
-        replace(part, number=number, name=part.name or words[part.kind].format(number=number))
+        replace(
+            part,
+            number=number,
+            name=part.name or words[part.kind].format(number=number),
+            is_named=bool(part.name),
+        )
         for number, part in enumerate(kept, start=1)
     ]
     return tuple(named), notes

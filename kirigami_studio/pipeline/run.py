@@ -12,6 +12,7 @@ from itertools import zip_longest
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled, SheetError
+from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -91,11 +92,6 @@ LOOK = 0.02
 
 #: Seconds after the end of the budget that workers get to hand in their best so far.
 GRACE = 1.0
-
-
-def never() -> bool:
-    """A cancel flag that is never raised."""
-    return False
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:

@@ -149,7 +149,8 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    cut = replace(document.fabrication, **changes)
+    values: dict[str, Any] = {**changes}
+    cut = replace(document.fabrication, **values)
     if "width_mm" in changes and "opened_mm" not in changes:
         cut = replace(cut, opened_mm=None)
     changed = replace(document, fabrication=cut)
@@ -164,7 +165,8 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
     FabricationError
         The number does not fit; see :class:`CutOptions`.
     """
-    options = replace(document.fabrication.options, **changes)
+    values: dict[str, Any] = {**changes}
+    options = replace(document.fabrication.options, **values)
     changed = replace(document, fabrication=replace(document.fabrication, options=options))
     return Edit(_label(CutOptions, changes), changed, merge_key=_merge_key("options", changes))
 
@@ -214,9 +216,10 @@ def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -
 
 
 def _label(kind: type, changes: Mapping[str, object]) -> str:
-    """What the Undo menu says of a change; of several at once it names the first."""
-    name = next(iter(changes))
-    return tr(settings_of(kind)[name].setting.undo or OTHER_CHANGE)
+    """What the Undo menu says of a change; of several at once the first of the settings, which brings the others."""
+    settings = settings_of(kind)
+    name = next(name for name in settings if name in changes)
+    return tr(settings[name].setting.undo or OTHER_CHANGE)
 
 
 def _merge_key(part: str, changes: Mapping[str, object]) -> str:

@@ -190,7 +190,6 @@ def test_that_the_german_guide_names_the_keys_of_the_english_one(guides: tuple[s
         assert sorted(named(own, CODE)) == sorted(keys), own
 
 
-@pytest.mark.long
 def test_that_the_german_guide_calls_things_as_the_german_window_does(guides: tuple[str, str]) -> None:
     texts = {forms(message.id)[0]: forms(message.string) for message in catalogue("de") if message.id}
     english, german = (blocks_of(guide) for guide in guides)

@@ -161,7 +161,6 @@ def test_that_a_list_that_was_cleared_elsewhere_stays_cleared(window: MainWindow
     assert recent.load(kept) == mine.present == Recent((str(tmp_path / "three.kiri"),))
 
 
-@pytest.mark.long
 def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
     kept = tmp_path / "recent.toml"
     script = (

@@ -102,7 +102,6 @@ def test_that_a_killed_studio_loses_nothing(
     assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
 
 
-@pytest.mark.long
 def test_that_work_left_for_later_is_offered_again_from_the_file_menu(
     window: MainWindow, project_file: Path, folder: Path, until: Until
 ) -> None:

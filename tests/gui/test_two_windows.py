@@ -178,7 +178,6 @@ def test_that_recovered_work_does_not_overwrite_what_was_saved_since(
     assert len(questions(window)) == 1 and width_in(project) == 140.0
 
 
-@pytest.mark.long
 def test_that_two_windows_keep_their_work_in_files_of_their_own(
     window: MainWindow, other: MainWindow, project: Path, until: Until, tmp_path: Path
 ) -> None:

@@ -25,7 +25,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
 
-pytestmark = [pytest.mark.qt, pytest.mark.slow]
+pytestmark = pytest.mark.qt
 
 #: Voids each way: at 40 the first step takes 0.85 s of processor time, drawing the sheet 0.05 s.
 VOIDS = (20, 40)
@@ -34,7 +34,6 @@ MOVES, EVERY_MS, LIMIT = 30, 16, 0.3
 DRAGS = 3
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("voids", VOIDS)
 def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
     voids: int, qtbot: QtBot, tmp_path: Path

@@ -84,7 +84,6 @@ def of_python(target: str, material: str, folder: Path) -> Answer:
 
 @pytest.mark.torch
 @pytest.mark.qt
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(("target", "material"), CASES)
 def test_that_three_faces_give_the_same_designs_verdict_and_file(
     qtbot: QtBot, capsys: pytest.CaptureFixture[str], tmp_path: Path, target: str, material: str

@@ -326,12 +326,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.voids_close": mark(
         "Read back from the file: {connectors} connectors of {narrowest_mm:.3f} mm or more, and {voids} voids that "
-        "miss being parallelograms by {miss_um:.1f} um at most."
+        "miss being parallelograms by {miss_um:.1f} \N{MICRO SIGN}m at most."
     ),
     "verify.voids_miss": mark(
-        "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} um at x = {x:.2f}, "
-        "y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred connectors, or a "
-        "larger sheet."
+        "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} \N{MICRO SIGN}m at "
+        "x = {x:.2f}, y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred "
+        "connectors, or a larger sheet."
     ),
     "verify.sheet_closes": mark("With these connectors the sheet closes, by the estimate of the simulator."),
     "verify.sheet_jams": mark(

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QPoint, QRect
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.gallery.compare_page import ComparedDesign
 from kirigami_studio.gui.gallery.gallery_presenter import DesignConnections
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.widgets import theme
@@ -164,9 +165,12 @@ class AllDesignsConnections(QObject):
         model, document = page.table.model_, self._controller.document
         numbers = [model.number_of(candidate) for candidate in page.table.compared]
         entries = [model.all_entries[number - 1] for number in numbers if number]
-        designs = [(entry, model.name_of(entry.candidate)) for entry in entries]
+        width_of = self._controller.session.width_of
+        designs = [
+            ComparedDesign(entry, model.name_of(entry.candidate), width_of(entry.candidate)) for entry in entries
+        ]
         first = not page.compare.shown
-        page.compare.show_designs(designs, document.target, document.fabrication.width_mm)
+        page.compare.show_designs(designs, document.target)
         if first:
             page.compare.bar.set_phi(self._window.stage.view.phi)
             page.compare.fit()

@@ -78,8 +78,7 @@ class DesignConnections(QObject):
         window.gallery.bar.set_ready(False)
         window.stage.set_trimmable(False)
         window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
-        window.stage.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
-        window.stage.allow_sample(False)
+        window.stage.show_run(self._controller.document.target)
         window.fabrication.show_waiting()
         window.stage.cuts.show_plan(None)
         window.messages.dismiss(Tone.HINT, Tone.DONE)
@@ -89,7 +88,7 @@ class DesignConnections(QObject):
         window = self._window
         window.run.show_idle()
         window.stage.set_trimmable(True)
-        window.stage.allow_sample(True)
+        window.stage.show_idle()
         hint = tr("Designs appear here, best first, as they are generated.")
         window.gallery.view.set_hint(tr("No designs yet"), hint)
         self._show_ready(self._controller.document)
@@ -150,14 +149,15 @@ class DesignConnections(QObject):
             self._show_chosen()
         self._ranked_as_cut = jams
 
-    @property
-    def _ranking(self) -> Ranking:
-        """That of the document, with what is estimated of its designs as cut."""
-        return self._estimated(self._controller.session.ranking)
-
     def _estimated(self, ranking: Ranking) -> Ranking:
+        """Return a ranking with what is estimated of the designs as cut."""
         found = {candidate: one.jam_phi for candidate, one in self._controller.estimates.known.items()}
         return replace(ranking, jam_phi={**ranking.jam_phi, **found})
+
+    @property
+    def _ranking(self) -> Ranking:
+        """That of the document."""
+        return self._estimated(self._controller.session.ranking)
 
     def _show_document(self, document: Document) -> None:
         gallery = self._window.gallery

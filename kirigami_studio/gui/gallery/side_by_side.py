@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QSignalBlocker
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.gallery.compare_page import ComparedDesign
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.window.controller import Controller
@@ -26,7 +27,7 @@ class SideBySide(QObject):
         self._controller = controller
         self._compared: Candidate | None = None
         self._chosen: Candidate | None = None
-        self._shown: tuple[tuple[Entry, str], tuple[Entry, str], Outline | None, float] | None = None
+        self._shown: tuple[ComparedDesign, ComparedDesign, Outline | None] | None = None
         stage, gallery = window.stage, window.gallery
         gallery.view.compare_wanted.connect(self.compare_with)
         gallery.bar.compare.clicked.connect(self.show)
@@ -97,9 +98,12 @@ class SideBySide(QObject):
             window.stage.set_comparing(False)
             return
         name_of = window.gallery.view.model_.name_of
-        left, right = (stage, name_of(stage.candidate)), (other, name_of(other.candidate))
-        document = self._controller.document
-        shown = left, right, document.target, document.fabrication.width_mm
+        session = self._controller.session
+        left, right = (
+            ComparedDesign(entry, name_of(entry.candidate), session.width_of(entry.candidate))
+            for entry in (stage, other)
+        )
+        shown = left, right, session.document.target
         if shown != self._shown:
             self._shown = shown
             window.stage.compare.show_pair(*shown)

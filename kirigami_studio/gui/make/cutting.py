@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -20,7 +20,6 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import edits
-from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.settings import stored_material
@@ -32,10 +31,10 @@ from kirigami_studio.studio.making import (
     Exported,
     ManyPages,
     Motion,
+    Output,
     Planned,
     animating,
     exporting,
-    exporting_all,
     exporting_artwork,
     exporting_coupon,
     planning,
@@ -78,15 +77,8 @@ class CutPlanner(QObject):
         stage, document = self._session.stage, self._session.document
         if stage is None:
             return None
-        facts = design_facts(document, stage.candidate)
         return CutRequest(
-            stage.candidate,
-            stage.design.deployment,
-            document.target,
-            document.fabrication,
-            facts,
-            artwork=document.artwork,
-            document=document,
+            stage.candidate, stage.design.deployment, document.target, document.fabrication, document=document
         )
 
     def plan_soon(self) -> None:
@@ -127,7 +119,7 @@ class CutPlanner(QObject):
     def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
         """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting {name} …", name=path.name))
-        steps = partial(exporting, request, path, many_pages)
+        steps = partial(exporting, request, Output(path), many_pages)
         self._write(tr("exporting {name}", name=path.name), steps, partial(self.export, request, path, True))
 
     def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
@@ -139,7 +131,7 @@ class CutPlanner(QObject):
     def export_all(self, request: CutRequest, folder: Path, name: str, many_pages: bool = False) -> None:
         """Write everything that there is of a design into a folder; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting to {name} …", name=folder.name))
-        steps = partial(exporting_all, request, folder, name, many_pages)
+        steps = partial(exporting, request, Output(folder, name, record=True), many_pages)
         again = partial(self.export_all, request, folder, name, True)
         self._write(tr("exporting to {name}", name=folder.name), steps, again)
 
@@ -331,7 +323,7 @@ class MaterialStore(QObject):
             )
             keep = (tr("Add to my materials"), partial(self.keep, material))
             self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
-        elif known != material:
+        elif known != replace(material, name=known.name, note=known.note):  # words do not cut
             sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
             self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
 

@@ -214,10 +214,9 @@ def format_facts(verification: Verification) -> dict[str, str]:
     """Size, pieces, cut length and time by their captions, which are not translated yet."""
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
+    size = tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height)
     return {
-        mark("Size with overcuts"): tr(
-            "{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height
-        ),
+        mark("Size with overcuts"): size,
         mark("Pieces"): pieces,
         mark("Cut length"): readable_length(verification.cut_length_mm),
         mark("Time"): readable_range(verification.seconds_low, verification.seconds_high),

@@ -27,7 +27,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
-from kirigami_studio.project.sheet_size import sized
+from kirigami_studio.project.sheet_size import cut_for, sized
 from kirigami_studio.studio.designing import Decoded, KnownAsCut, decoding, ranking_of
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
@@ -128,11 +128,13 @@ class DesignDisplay(QObject):
     def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False, ranking: Ranking | None = None) -> None:
         """Make room for new designs beside those that are kept, which are ranked as ``ranking`` says.
 
-        ``stays`` leaves the chosen one on the stage.
+        ``stays`` leaves the chosen one on the stage; else a design that is not kept leaves it.
         """
         self.ranking = ranking or Ranking()
         self._session.queue.abandon(self._decoding)  # the document is shown again when the run is over
         self._preview, self._best_of_run = self._session.document.candidate if stays else None, None
+        if not stays and self._stage is not None and self._stage.candidate not in kept:
+            self._put_on_stage(None)  # it may be for another target, of another grid
         self.gallery_reset.emit(tuple(replace(self._session.cache.entry(candidate), kept=True) for candidate in kept))
 
     def look_at(self, candidate: Candidate) -> None:
@@ -245,6 +247,11 @@ class Session(QObject):
     def stage(self) -> Entry | None:
         """The design that is shown large."""
         return self.display.stage
+
+    def width_of(self, candidate: Candidate | None) -> float:
+        """Width of the flat sheet that a design would be cut from, mm: each design opens to the size asked for."""
+        document = self.document
+        return (document.fabrication if candidate is None else cut_for(document, candidate)).width_mm
 
     # changing the document -----------------------------------------------------------------------------------------
 

@@ -85,16 +85,23 @@ class StageConnections(QObject):
         self._window.fabrication.show_settings(document.fabrication)
         follows = document.fabrication.opened_mm is not None
         self._window.target.opened.show_size(size_of(document), follows=follows)
-        self._window.stage.set_sheet_width(document.fabrication.width_mm)
+        self._show_width()
 
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is chosen, or none."""
         view, document = self._window.gallery.view, self._controller.document
         name = "" if entry is None else view.model_.name_of(entry.candidate)
+        self._show_width()
         self._window.stage.show_entry(entry, document.target, name)
         self._controller.curves.show(None if entry is None else entry.design, document.target)
         view.mark(None if entry is None else entry.candidate)
+        if entry is None or entry.candidate.trim is None:
+            self._window.fabrication.show_untrimmed()
         self._window.facts.setText("" if entry is None else "   ·   ".join(_facts(entry)))
+
+    def _show_width(self) -> None:
+        """The flat sheet is as wide as opens the design on the stage to the size asked for."""
+        self._window.stage.set_sheet_width(_stage_width(self._controller))
 
     def _show_plan(self, planned: Planned | None) -> None:
         self._window.fabrication.show_plan(planned)
@@ -130,6 +137,11 @@ def _facts(entry: Entry) -> list[str]:
     if trim is not None:
         facts.append(tr("trimmed match {match:.1f} %", match=100 * trim.iou))
     return [*facts, tr("feasible") if score.feasible else tr("not feasible")]
+
+
+def _stage_width(controller: Controller) -> float:
+    """Width of the flat sheet of the design on the stage, mm."""
+    return controller.session.width_of(None if controller.stage is None else controller.stage.candidate)
 
 
 class VoidConnections(QObject):
@@ -196,7 +208,7 @@ class VoidConnections(QObject):
         self._bar.show_voids(self._gestures.selected, ratio, document.locked)
         mouth, meant = self._gestures.rim.selected, self._gestures.rim.meant
         if sheet is not None and mouth is not None:
-            facts = MouthFacts.of(sheet, mouth, document.fabrication.width_mm)
+            facts = MouthFacts.of(sheet, mouth, _stage_width(self._controller))
             self._bar.show_mouth(facts.name, facts.short_name)
         if self._gestures.void is not None:
             self._describe(self._gestures.void)
@@ -218,7 +230,7 @@ class VoidConnections(QObject):
             self._void_facts = ""
             return
         document = self._controller.document
-        width, locked = document.fabrication.width_mm, void in document.locked
+        width, locked = _stage_width(self._controller), void in document.locked
         facts = VoidFacts.of(design.deployment, void, self._view.phi, width, locked)
         self._gestures.lines = facts.lines()
         self._tell(facts.sentence())
@@ -238,7 +250,7 @@ class VoidConnections(QObject):
         if mouth is None or design is None:
             self._describe(None)
             return
-        width = self._controller.document.fabrication.width_mm
+        width = _stage_width(self._controller)
         facts = MouthFacts.of(design.deployment.sheet, mouth, width)
         self._gestures.lines = facts.lines()
         self._tell(facts.sentence())

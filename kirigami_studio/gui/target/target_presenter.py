@@ -220,7 +220,7 @@ class StartConnections(QObject):
         start, width_mm = document.settings.start, document.fabrication.width_mm
         stage, flat = self._controller.stage, None
         if stage is not None and starts_as(stage.candidate, start):
-            flat = flat_size(stage.design.deployment, width_mm)
+            flat = flat_size(stage.design.deployment, self._controller.session.width_of(stage.candidate))
         self._window.target.start.show_start(start, grid, width_mm, flat)
 
 

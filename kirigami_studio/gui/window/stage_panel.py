@@ -73,6 +73,7 @@ class StagePanel(Card):
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
         self._sample_allowed = True
+        self._posed_for: Outline | None = None  #: the target at whose angle the first design was shown
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
@@ -175,10 +176,21 @@ class StagePanel(Card):
         self.view.set_hint(icon, headline, hint)
         self.empty.say(headline, hint)
 
-    def allow_sample(self, allowed: bool) -> None:
-        """Whether the sample may be shown while there is no design; it must not hide one that is coming."""
-        self._sample_allowed = allowed
+    def show_run(self, target: Outline | None) -> None:
+        """Show the target until the first design of a run comes; the sample must not hide that."""
+        self._sample_allowed, self._target = False, target
+        self.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        self._show_waiting()
+
+    def show_idle(self) -> None:
+        """No design is on its way."""
+        self._sample_allowed = True
+        self._show_waiting()
+
+    def _show_waiting(self) -> None:
         self.place_sample()
+        if self._entry is None:
+            self._show()
 
     def place_sample(self) -> None:
         """Show the sample while there is no design, if it is there and allowed."""
@@ -259,7 +271,7 @@ class StagePanel(Card):
 
     def show_entry(self, entry: Entry | None, target: Outline | None, name: str) -> None:
         """Show another design; the angle stays, or starts at the target angle for the first one."""
-        first = entry is not None and self.view.scene_bounds() is None
+        first = entry is not None and self.view.design is None and target != self._posed_for
         self._entry, self._target, self._name, self._sample = entry, target, name, None
         self.place_sample()
         self.tour.forget()
@@ -269,6 +281,7 @@ class StagePanel(Card):
         if entry is not None and first:
             self.view.fit()
             self.deployment.set_phi(entry.design.phi_target)
+            self._posed_for = target
         if self.before.isChecked():
             self.before_wanted.emit(True)
 
@@ -343,8 +356,8 @@ class StagePanel(Card):
         entry = self._entry
         self.show_title()
         self._show_ends()
-        if entry is None:
-            self.view.show_design(None, None, None)
+        if entry is None:  # while designs are on their way, the target that they are for
+            self.view.show_design(None, None, None if self._sample_allowed else self._target)
             return
         shown = self._sample or entry
         # Contacts and the second target's pose are known of the sheet that was scored; the one that was fitted for

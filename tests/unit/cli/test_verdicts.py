@@ -67,7 +67,6 @@ def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str],
     assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
 
 
-@pytest.mark.long
 def test_that_fixes_are_told_where_they_are_asked_for(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -100,7 +99,6 @@ def test_that_a_file_is_checked_against_its_design(
     assert "problem: In cut.dxf: " in said
 
 
-@pytest.mark.long
 def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
     target = document.target
     assert target is not None

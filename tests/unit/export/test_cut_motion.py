@@ -105,7 +105,6 @@ def test_that_the_last_frame_shows_where_the_sheet_jams_and_says_so(straight: Ex
     assert np.mean(np.abs(last[: -2 * LETTERS] - other[: -2 * LETTERS]).max(axis=2) > 60) > 0.02
 
 
-@pytest.mark.long
 def test_that_connectors_which_stop_the_sheet_are_red(straight: ExportJob) -> None:
     def red(job: ExportJob) -> int:
         pixels = np.asarray(animation_frames(job, 2, 900)[-1].convert("RGB")).reshape(-1, 3).astype(int)

@@ -15,7 +15,6 @@ from kirigami_studio.outlines.read_image import automatic_threshold, outline_of_
 from tests.refusals import refused
 
 
-@pytest.mark.long(but=6)
 @pytest.mark.parametrize("name", ["heart", "star", "gear", "puzzle", "circle", "letter-l"])
 @pytest.mark.parametrize(("size", "least"), [(64, 0.985), (256, 0.997), (1000, 0.998)])
 def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture, iou) -> None:
@@ -29,7 +28,6 @@ def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture
     assert outline.notes == ()
 
 
-@pytest.mark.long
 def test_that_a_very_large_picture_is_read_at_reduced_size(tmp_path, coverage, iou) -> None:
     wanted = silhouettes.load("heart")
     path = tmp_path / "large.png"

@@ -83,6 +83,13 @@ def test_that_one_part_is_taken_with_its_size_and_the_rest_is_told(logo, iou) ->
     assert outline.notes == ("2 parts were left out: disc, swoosh.", "Holes were filled (25 % of the area).")
 
 
+def test_that_one_part_without_a_name_of_its_own_is_called_as_its_drawing(svg) -> None:
+    """Before, the target and all its files were called "shape 1"."""
+    source = read_parts(svg('<rect width="50" height="50"/><rect x="90" id="door" width="20" height="20"/>'))
+    assert [part.name for part in source.parts] == ["shape 1", "door"]
+    assert outlined(source, "shape 1").name == source.name and outlined(source, "door").name == "door"
+
+
 def test_that_parts_that_do_not_touch_are_united_to_the_largest_and_that_is_said(logo) -> None:
     assert any("1 smaller piece was left out" in note for note in outlined(logo, "disc,ring").notes)
 
@@ -263,7 +270,6 @@ def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
     assert [part.name for part in source.parts] == ["word (1)", "word (2)"]
 
 
-@pytest.mark.long
 def test_that_the_smallest_of_too_many_parts_are_left_out_and_said(svg) -> None:
     many = "".join(f'<circle cx="{9 * k}" r="{1 + k / 1000}"/>' for k in range(MOST_PARTS + 20))
     source = read_parts(svg(many))

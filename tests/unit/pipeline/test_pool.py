@@ -27,7 +27,6 @@ from kirigami_studio.pipeline.tasks import Answer, PolishTask, Task, scored
 from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready
 from tests.refusals import refused
 
-pytestmark = pytest.mark.slow
 COUNT = 6
 
 
@@ -265,7 +264,6 @@ def test_that_a_worker_ends_with_its_input_and_loads_neither_torch_nor_qt() -> N
     assert loaded.stdout.strip() == "[]"
 
 
-@pytest.mark.long
 def test_that_workers_choose_the_grid_that_one_process_chooses_and_that_it_is_remembered(pool, monkeypatch) -> None:
     wait_until_ready(pool)
     request = Request(load("star"), None, polish=0)

@@ -63,7 +63,6 @@ def test_that_the_same_request_gives_the_same_candidates(request_for_heart: Requ
     assert first.candidates == second.candidates
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("two_rotations")
 def test_that_every_design_of_a_run_tells_how_it_shows_a_second_target() -> None:
     second = SecondTarget(load("circle"), math.radians(50.0), 1.0)
@@ -157,7 +156,6 @@ def test_that_an_unknown_variant_is_refused_before_any_candidate(request_for_hea
         list(run(replace(request_for_heart, variant="psychic")))
 
 
-@pytest.mark.long
 def test_that_polishing_improves_every_candidate_and_counts_its_decodings(request_for_heart: Request) -> None:
     # One Euler step and no correction: samples that leave the polish as much to do as it always had.
     rough = replace(request_for_heart, steps=1)
@@ -179,7 +177,6 @@ def test_that_improvements_are_reported_under_the_index_of_their_candidate(reque
     assert all(final[index] == candidate for index, candidate in improved.items())
 
 
-@pytest.mark.long
 def test_that_all_candidates_get_their_first_steps_before_any_gets_more(request_for_heart: Request) -> None:
     events = list(run(replace(request_for_heart, polish=12), pool=Pool(0)))
     improved = [event.index for event in events if isinstance(event, CandidateImproved)]
@@ -227,7 +224,6 @@ def test_that_a_budget_that_ends_during_scoring_returns_the_first_batch(request_
     assert sorted(candidate.index for candidate in hasty.candidates) == list(range(32))
 
 
-@pytest.mark.long
 def test_that_some_designs_are_fitted_from_the_uniform_sheet_after_the_samples() -> None:
     wish = Request(load("heart"), grid=(4, 5), k=8, polish=4)
     result = best_of(wish, pool=Pool(0))
@@ -239,7 +235,6 @@ def test_that_some_designs_are_fitted_from_the_uniform_sheet_after_the_samples()
     assert not any(one.origin is Origin.GUIDED for one in best_of(replace(wish, guided=0), pool=Pool(0)).candidates)
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("symmetry", ["auto", "none", "mirror"])
 def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str) -> None:
     wish = Request(load("heart"), grid=(4, 5), k=24, polish=1, symmetry=symmetry)
@@ -248,7 +243,6 @@ def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str
     assert any(candidate.origin is Origin.GUIDED for candidate in candidates)
 
 
-@pytest.mark.long
 def test_that_the_best_designs_are_fitted_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
     wish = Request(load("heart"), grid=(4, 5), k=8, polish=10)
     finished = best_of(wish, pool=Pool(0)).candidates
@@ -265,7 +259,6 @@ def test_that_the_best_designs_are_fitted_once_more(monkeypatch: pytest.MonkeyPa
     assert few == best_of(replace(wish, polish=9), pool=Pool(0)).candidates
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("phi", [0.0, 0.6])
 def test_that_designs_keep_quarter_turns_at_any_angle(phi: float) -> None:
     result = best_of(Request(load("plus"), grid=(6, 6), phi=phi, k=8, polish=6), pool=Pool(0))
@@ -278,7 +271,6 @@ def test_that_designs_keep_quarter_turns_at_any_angle(phi: float) -> None:
         assert cdist(outline, turned).min(axis=1).max() < 1e-6
 
 
-@pytest.mark.long
 def test_that_an_even_rim_and_no_symmetry_are_kept_where_asked_for() -> None:
     wish = Request(load("heart"), grid=(4, 5), k=8, polish=4)
     free = best_of(wish, pool=Pool(0)).candidates

@@ -109,7 +109,6 @@ def test_that_no_step_is_taken_where_all_sizes_are_kept_and_none_without_steps()
     assert np.array_equal(still.field.ratio, plain.field.ratio)
 
 
-@pytest.mark.long
 def test_that_the_size_is_kept_by_every_task_of_a_run() -> None:
     target = load("star")
     request = Request(target, (4, 4), k=4, polish=10, search=1, least_panel=0.4, trim=True)
@@ -155,7 +154,6 @@ def test_that_connectors_ask_for_room_beside_them() -> None:
     assert room_mm(FabricationSettings(material="card-co2", kerf_mm=0.1)) == pytest.approx(2.85)
 
 
-@pytest.mark.long
 def test_that_wide_connectors_keep_their_width_on_a_design_that_was_made_for_them() -> None:
     settings = FabricationSettings(connector_mm=1.4, width_mm=60.0)
     made = {}

@@ -70,7 +70,6 @@ def measured(network: VelocityNetwork, preference: float, even: bool = True) -> 
     return terms, float(early)
 
 
-@pytest.mark.long
 def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
     tmp_path: Path, prior: Model, tiny: AlignSettings
 ) -> None:
@@ -86,7 +85,6 @@ def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
     assert np.mean(losses[-6:]) < 0.9 * np.mean(losses[:6])
 
 
-@pytest.mark.long
 def test_that_asking_for_regularity_gives_smoother_fields(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, tiny: AlignSettings
 ) -> None:
@@ -118,7 +116,6 @@ def test_that_asking_for_regularity_gives_smoother_fields(
     assert variation(1.0, even=True) < untrained
 
 
-@pytest.mark.long
 def test_that_the_anchor_holds_samples_near_the_priors(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
     def moved(weight: float) -> float:
         settings = replace(tiny, steps=10, other_sheets=0.0, average_decay=0.0, anchor_weight=weight, anchored_every=1)
