@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import bezier, silhouettes
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
-from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, figure, placed_figure
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.refining import stretched, turned
 from tests.refusals import refused
 
-SQUARE = Placed.from_ring(figure(Figure.RECTANGLE, Box(0, 0, 40, 40)), "square")
+SQUARE = Placed.from_ring(figure(Figure.RECTANGLE, BoundingBox(0, 0, 40, 40)), "square")
 number = st.floats(-30, 30)
 
 
@@ -190,7 +190,7 @@ def test_that_points_moved_together_keep_the_lines_between_them(chosen, x, y) ->
 
 
 def test_that_several_points_are_taken_away_at_once() -> None:
-    circle = placed_figure(Figure.ELLIPSE, Box(-20, -20, 20, 20))
+    circle = placed_figure(Figure.ELLIPSE, BoundingBox(-20, -20, 20, 20))
     anchors = Anchors.of(circle)
     assert len(anchors.places) == 4 and set(anchors.kinds) == {Kind.SYMMETRIC}
     more, _ = anchors.inserted((14.0, 14.0))

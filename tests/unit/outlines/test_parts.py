@@ -15,7 +15,7 @@ from kirigami_studio.outlines import read_svg
 from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import MOST_PARTS, PartKind, SourceParts
+from kirigami_studio.outlines.parts import MOST_PARTS, DrawnPartKind, SourceParts
 from kirigami_studio.outlines.read import read_parts
 from tests.refusals import refused
 
@@ -37,9 +37,9 @@ def logo(svg) -> SourceParts:
 def test_that_parts_have_names_layers_colours_kinds_and_sizes(logo) -> None:
     told = [(part.name, part.layer, part.colour, part.kind) for part in logo.parts]
     assert told == [
-        ("disc", "Badge", "#c03030", PartKind.FILLED),
-        ("ring", "Badge", "#0000ff", PartKind.FILLED),
-        ("swoosh", "Line", "#108040", PartKind.STROKED),
+        ("disc", "Badge", "#c03030", DrawnPartKind.FILLED),
+        ("ring", "Badge", "#0000ff", DrawnPartKind.FILLED),
+        ("swoosh", "Line", "#108040", DrawnPartKind.STROKED),
     ]
     assert [part.size for part in logo.parts] == [pytest.approx(size) for size in ((40, 40), (40, 40), (100, 0))]
     assert logo.parts[2].pen.width == pytest.approx(5.0) and logo.unit == "mm"
@@ -197,8 +197,8 @@ def test_that_texts_of_an_svg_are_letters_on_a_layer_of_their_own(svg) -> None:
     body = '<text x="50" y="40" font-size="20" text-anchor="middle" font-family="No Such Family">HI</text>'
     source = read_parts(svg(body, MM))
     assert [(part.name, part.layer, part.kind) for part in source.parts] == [
-        ("H", "HI", PartKind.FILLED),
-        ("I", "HI", PartKind.FILLED),
+        ("H", "HI", DrawnPartKind.FILLED),
+        ("I", "HI", DrawnPartKind.FILLED),
     ]
     left, right = source.parts[0].bounds, source.parts[1].bounds
     assert left[1] == pytest.approx(-40) and 12 < left[3] - left[1] < 17  # on the base line, as high as capitals are

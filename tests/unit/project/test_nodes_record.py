@@ -14,7 +14,7 @@ import pytest
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.outlines.anchors import Anchors, with_anchors
-from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, figure
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project import store
@@ -28,7 +28,7 @@ from tests.refusals import refused
 @pytest.fixture
 def drawn() -> Placed:
     """A square beside the origin with a smooth and a symmetric corner."""
-    square = Placed.from_ring(figure(Figure.RECTANGLE, Box(10, 0, 50, 40)), "square")
+    square = Placed.from_ring(figure(Figure.RECTANGLE, BoundingBox(10, 0, 50, 40)), "square")
     anchors = Anchors.of(square).with_kind(1, Kind.SMOOTH).with_kind(3, Kind.SYMMETRIC)
     return with_anchors(square, anchors)
 
