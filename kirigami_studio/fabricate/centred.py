@@ -114,7 +114,7 @@ def least_widths(asked: FloatArray, least_mm: float, chosen: Mapping[int, float]
     least_mm : float
         Narrowest connector that the material bears.
     chosen : mapping of hinge to mm
-        Widths that a person chose one by one, which stay.
+        Widths that the user chose one by one, which stay.
     """
     least = np.minimum(np.maximum(LEAST_SHARE * asked, least_mm), asked)
     least[list(chosen)] = asked[list(chosen)]

@@ -1,6 +1,6 @@
 """The order of cutting: layer after layer, the outline last, so that the sheet stays held while it is cut.
 
-Within a layer the paths go in the order that a person chose.  Edge cuts always run from the mouth inwards, so that the
+Within a layer the paths go in the order that the user chose.  Edge cuts always run from the mouth inwards, so that the
 beam starts away from the connector; every other open path may be turned, and a closed one may begin at any of its
 points.  Where two ways are equally short, a path is cut in the direction in which it was given.
 """

@@ -1,4 +1,4 @@
-"""What a person asked for: everything that decides the result, and what files repeat of it."""
+"""The request of a run: everything that decides its result, and what files repeat of it."""
 
 from __future__ import annotations
 

@@ -39,13 +39,13 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.polish.bounds import RIM_REACH
 from kirigami_studio.polish.flat_sheet import can_have, first_sheet, uniform_sheet
-from kirigami_studio.polish.transport_map import TransportMap
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
+from kirigami_studio.polish.transport_map import TransportMap
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10

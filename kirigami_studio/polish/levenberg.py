@@ -28,7 +28,6 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.even_panels import EvenPanels
-from kirigami_studio.polish.transport_map import TransportMap, TransportTerm
 from kirigami_studio.polish.kept_sizes import with_kept_sizes
 from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
@@ -36,6 +35,7 @@ from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, FitPhase, L
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.transport_map import TransportMap, TransportTerm
 
 #: Even samples of the target boundary.
 SAMPLES = 256

@@ -1,4 +1,4 @@
-"""The named changes a person can make: each takes a document and returns an edit, none alters anything."""
+"""The named edits: each takes a document and returns an edit, none alters anything."""
 
 from __future__ import annotations
 

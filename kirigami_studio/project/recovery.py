@@ -33,7 +33,7 @@ class RecoveryNote:
     Attributes
     ----------
     name : str
-        What a person calls the project: its file's name, or what the target is called.
+        What the user calls the project: its file's name, or what the target is called.
     path : str
         Where the project was saved last, absolute; "" if it never was.
     changed : str

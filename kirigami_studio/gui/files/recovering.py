@@ -271,7 +271,7 @@ class Recovery(QObject):
 
 
 def format_time(note: RecoveryNote) -> str:
-    """When the work was changed, as a person says it: the time alone if that was today."""
+    """When the work was changed, as the user says it: the time alone if that was today."""
     when = QDateTime.fromSecsSinceEpoch(int(note.when.timestamp()))
     locale = QLocale()
     time = locale.toString(when.time(), QLocale.FormatType.ShortFormat)
