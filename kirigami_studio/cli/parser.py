@@ -254,8 +254,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics sheet.json --width-mm 150 --connector-mm 0.5 --hold 0 10 --move 110 120 --json",
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
-    SubCommand("check", "read a DXF cut file and list its problems", "cli.fabrication:check", (
-        option("file", help="a .dxf file, or a folder of layer files"),
+    SubCommand("check", "read a cut file and list its problems", "cli.fabrication:check", (
+        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -21,6 +20,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError, UsageError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
 
@@ -177,13 +177,13 @@ class SourceParts:
     parts: tuple[Part, ...]
     left_out: tuple[str, ...] = ()
     unit: str = ""
-    facts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    facts: Mapping[str, str] = field(default_factory=FrozenMapping)
 
     def __post_init__(self) -> None:
         facts = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in self.facts.items()}
         object.__setattr__(self, "name", plain_line(self.name))
         object.__setattr__(self, "left_out", tuple(plain_line(note, LONGEST_NOTE) for note in self.left_out))
-        object.__setattr__(self, "facts", MappingProxyType(facts))
+        object.__setattr__(self, "facts", FrozenMapping(facts))
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -6,7 +6,6 @@ import io
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 from ezdxf import colors, recover, units
@@ -148,7 +147,7 @@ def dxf_parts(path: str | Path) -> SourceParts:
             raise TargetError("dxf.no_lines_but_text")
         kept, too_many = numbered(parts, max(max(part.size) for part in parts))
         left_out = (*found.notes, *fonts, *gaps, *too_many)
-        return SourceParts(path.stem, kept, left_out, found.unit, MappingProxyType(found.facts))
+        return SourceParts(path.stem, kept, left_out, found.unit, found.facts)
 
 
 def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
