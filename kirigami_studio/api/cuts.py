@@ -15,7 +15,7 @@ from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.verification import Verification
-from kirigami_studio.fabricate.checks import Report
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.project.document import Document
@@ -57,7 +57,7 @@ class Cuts:
         return self.planned.plan
 
     @property
-    def report(self) -> Report:
+    def report(self) -> PlanReport:
         """What the check of the plan found."""
         return self.planned.report
 

@@ -36,7 +36,7 @@ from kirigami_studio.fabricate.copies import alike, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.engraving import nearest_cut
 from kirigami_studio.fabricate.findings import Problem, Severity
-from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.finished_sheet import RepeatedCut, overlap, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
@@ -275,7 +275,7 @@ def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
     ]
 
 
-def _double_problems(paths: Sequence[FilePath], twice: Overlap) -> list[Problem]:
+def _double_problems(paths: Sequence[FilePath], twice: RepeatedCut) -> list[Problem]:
     seen: Counter[tuple[tuple[float, float], ...]] = Counter()
     for path in paths:
         points = np.round(path.points / SAME_POINT_MM).astype(np.int64)

@@ -111,7 +111,7 @@ class Exporter(Protocol):
 
     @property
     def name(self) -> str:
-        """What a person reads in a file dialog."""
+        """Name of the format in a file dialog."""
 
     def write(self, job: ExportJob, path: Path) -> None:
         """Write and verify; raises ExportError and leaves an older file alone when that fails."""

@@ -78,7 +78,7 @@ class CutPlan:
         Identifies the sheet that the plan was made from, and what was trimmed off it.
     options : CutOptions
     notes : tuple of Note
-        What a person should read before cutting.
+        Notes to read before cutting.
     panels : tuple of (P, 2) float, mm
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
     centres : (H, 2) float or None, mm

@@ -22,7 +22,7 @@ Void = tuple[int, int]
 
 
 class Mark(Enum):
-    """What a person thinks of a candidate."""
+    """The user's opinion of a candidate."""
 
     NONE = "none"
     PINNED = "pinned"
@@ -31,7 +31,7 @@ class Mark(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """Everything a person made in one project.
+    """Everything the user made in one project.
 
     Attributes
     ----------
