@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
@@ -122,9 +123,8 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
-
-        return svg_to_png(content, side)
+        drawn: bytes = import_module("kirigami_studio.gui.stage.artwork_jobs").svg_to_png(content, side)
+        return drawn
 
     return read_picture(path, draw)
 

@@ -411,9 +411,8 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 def open_window(arguments: argparse.Namespace) -> int:
     """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
-    from kirigami_studio.gui.window.application import run
-
-    return run(["kirigami-studio", *arguments.shown])
+    code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
+    return code
 
 
 def _refuse_research(arguments: argparse.Namespace) -> int:
