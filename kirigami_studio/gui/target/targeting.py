@@ -26,7 +26,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.studio.parts import (
     DesignRead,
     PartsRead,
