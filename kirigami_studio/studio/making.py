@@ -556,8 +556,7 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.pipeline.coarser import coarser_designs
-    from kirigami_studio.studio.fixes import find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
     from kirigami_studio.studio.verdict import refused
 
     try:
