@@ -92,7 +92,7 @@ class AllDesignsConnections(QObject):
         table = page.table
         table.hint = lambda: window.gallery.view.hint
         table.left.connect(lambda: self.show(False))
-        table.taken.connect(self._take)
+        table.taken.connect(self._choose)
         table.pin_wanted.connect(controller.marks.pin)
         table.reject_wanted.connect(self._designs.reject)
         table.alike_toggled.connect(window.gallery.view.toggle_alike)
@@ -113,7 +113,7 @@ class AllDesignsConnections(QObject):
 
     def _connect_compare(self, compare: CompareFour) -> None:
         self._colour(compare)
-        compare.taken.connect(self._take_compared)
+        compare.taken.connect(self._on_compared)
 
     def _colour(self, part: QWidget) -> None:
         """Give new parts the colours of the theme."""
@@ -137,7 +137,7 @@ class AllDesignsConnections(QObject):
 
     # what is asked for ---------------------------------------------------------------------------------------------
 
-    def _take(self, candidate: Candidate) -> None:
+    def _choose(self, candidate: Candidate) -> None:
         """Put a design on the stage and go back to the window."""
         self._controller.choose(candidate)
         self.show(False)
@@ -175,5 +175,5 @@ class AllDesignsConnections(QObject):
             page.compare.bar.set_phi(self._window.stage.view.phi)
             page.compare.fit()
 
-    def _take_compared(self, place: int) -> None:
-        self._take(self._page.table.compared[place])
+    def _on_compared(self, place: int) -> None:
+        self._choose(self._page.table.compared[place])

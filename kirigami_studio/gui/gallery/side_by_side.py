@@ -34,7 +34,7 @@ class SideBySide(QObject):
         stage.compare.swap_wanted.connect(self.swap)
         stage.compare.leave_wanted.connect(lambda: self.show(False))
         stage.comparing_changed.connect(self._show_switches)
-        controller.session.display.stage_changed.connect(self._take_stage)
+        controller.session.display.stage_changed.connect(self._on_stage)
         controller.session.display.gallery_reset.connect(self._show_pair)
         controller.session.display.candidate_found.connect(self._show_pair)
         controller.session.document_changed.connect(self._show_pair)
@@ -75,7 +75,7 @@ class SideBySide(QObject):
         if self.compared is not None and self._window.stage.comparing:
             self._controller.choose(self.compared)
 
-    def _take_stage(self, entry: Entry | None) -> None:
+    def _on_stage(self, entry: Entry | None) -> None:
         """Another design was chosen; where that is the compared one, the two change sides."""
         candidate = None if entry is None else entry.candidate
         if candidate is not None and candidate == self._compared:

@@ -70,7 +70,7 @@ class TargetConnections(QObject):
     def _connect_board(self) -> None:
         window, controller, reshaping = self._window, self._controller, self.reshaping
         window.target.view.context.changed.connect(reshaping.take)
-        window.target.view.context.guides_changed.connect(self._take_guides)
+        window.target.view.context.guides_changed.connect(self._on_guides)
         window.target.view.hint.connect(self._show_hint)
         window.target.tools.mirror_wanted.connect(reshaping.mirror)
         window.target.refine.previewed.connect(reshaping.preview)
@@ -83,7 +83,7 @@ class TargetConnections(QObject):
         reshaping.restarted.connect(window.target.refine.restart)
         controller.run.started.connect(lambda _: window.target.set_editing(False))
 
-    def _take_guides(self, gesture: str) -> None:
+    def _on_guides(self, gesture: str) -> None:
         session = self._controller.session
         context = self._window.target.view.context
         session.apply(edits.set_guides(session.document, context.guides, gesture))
