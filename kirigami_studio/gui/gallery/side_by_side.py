@@ -49,7 +49,7 @@ class SideBySide(QObject):
         self._button.clicked.connect(self.show)
         page.swap_wanted.connect(self.swap)
         page.leave_wanted.connect(lambda: self.show(False))
-        session.display.stage_changed.connect(self._take_stage)
+        session.display.stage_changed.connect(self._on_stage)
         session.display.gallery_reset.connect(self._show_pair)
         session.display.candidate_found.connect(self._show_pair)
         session.document_changed.connect(self._show_pair)
@@ -95,7 +95,7 @@ class SideBySide(QObject):
         if self.compared is not None and self._comparing:
             self._choose(self.compared)
 
-    def _take_stage(self, entry: Entry | None) -> None:
+    def _on_stage(self, entry: Entry | None) -> None:
         """Another design was chosen; where that is the compared one, the two change sides."""
         candidate = None if entry is None else entry.candidate
         if candidate is not None and candidate == self._compared:

@@ -37,7 +37,7 @@ def _tools(window: MainWindow) -> tuple[Command, ...]:
     """A command for each tool, which opens the board."""
 
     def tool(which: Tool, text: str, key: str, tip: str, icon: str = "", gap: bool = False) -> Command:
-        take = partial(_take_tool, window, which)
+        take = partial(_on_tool, window, which)
         return Command(which.value, tr("D&raw"), text, tip, take, (key,), icon or which.value, gap)
 
     return (
@@ -124,7 +124,7 @@ def _arrangements(window: MainWindow) -> tuple[Command, ...]:
     return tuple(command(one) for one in EVERY.values())
 
 
-def _take_tool(window: MainWindow, tool: Tool) -> None:
+def _on_tool(window: MainWindow, tool: Tool) -> None:
     if window.target.tools.buttons[tool].isEnabled():
         window.target.set_tool(tool)
     else:
