@@ -50,7 +50,7 @@ def documents() -> list[Writer]:
         replace(example, fabrication=replace(example.fabrication, width_mm=100.0 + number))
         for number in range(VERSIONS)
     ]
-    note = recovery.Note("a", "", recovery.now())
+    note = recovery.RecoveryNote("a", "", recovery.now())
     return [
         lambda folder, number: store.save(versions[number], folder / "a.kiri"),
         lambda folder, number: recovery.keep(versions[number], note, folder / "b.kiri"),

@@ -62,7 +62,6 @@ def export(arguments: argparse.Namespace) -> int:
         check_name(arguments.name, document.label.code)
         document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
-    settings = replace(settings, markers=settings.markers or arguments.markers)
     request = CutRequest.of(document, settings)
     check_connectors(request.candidate, settings.options)
     try:

@@ -254,8 +254,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics sheet.json --width-mm 150 --connector-mm 0.5 --hold 0 10 --move 110 120 --json",
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
-    SubCommand("check", "read a DXF cut file and list its problems", "cli.fabrication:check", (
-        option("file", help="a .dxf file, or a folder of layer files"),
+    SubCommand("check", "read a cut file and list its problems", "cli.fabrication:check", (
+        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
@@ -411,9 +411,8 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 def open_window(arguments: argparse.Namespace) -> int:
     """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
-    from kirigami_studio.gui.window.application import run
-
-    return run(["kirigami-studio", *arguments.shown])
+    code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
+    return code
 
 
 def _refuse_research(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""Everything that a person may want of one design, in one folder, each cut file verified."""
+"""Everything that the user may want of one design, in one folder, each cut file verified."""
 
 from __future__ import annotations
 

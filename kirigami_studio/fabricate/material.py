@@ -28,7 +28,7 @@ from kirigami_studio.foundation.words import mark
 DEFAULT_PRESET = "film-uv"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
-#: Names the folder of a person's own materials, if it is set.
+#: Names the folder of the user's own materials, if it is set.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Full power, percent.
 LARGEST_POWER = 100.0
@@ -80,7 +80,7 @@ class Material:
     key : str
         Short name for the command line and for project files (the preset's file name).
     name : str
-        What a person reads.
+        Shown name.
     machine : str
         Kind of machine that the numbers are for.
     thickness_mm : float
@@ -325,7 +325,7 @@ def _bundled() -> Mapping[str, Material]:
 
 
 def own_folder() -> Path:
-    """Where a person's own materials are: what the variable names, or the platform's place for settings."""
+    """Folder of the user's own materials: the one in the variable, or the platform's for settings."""
     named = os.environ.get(FOLDER_VARIABLE)
     if named:
         return Path(named)

@@ -201,7 +201,7 @@ class NamedSetting:
         return value.value if isinstance(value, Enum) else value
 
     def _refusal(self, value: object, told: Mapping[str, object]) -> KirigamiError:
-        setting, values = self.setting, {"name": self.name, "value": value, self.name: value, **told}
+        setting, values = self.setting, {self.name: value, **told, "name": self.name, "value": value}
         words = ", ".join(str(one.value) for one in self.kind) if issubclass(self.kind, Enum) else ""
         values |= {"choices": words, "kind": self.kind.__name__, "least": setting.least, "most": setting.most}
         return setting.error(setting.code, **values)

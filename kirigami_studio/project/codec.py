@@ -1,4 +1,4 @@
-"""Document <-> members of a project file: JSON for what a person may read, one array for the ratios."""
+"""Document <-> members of a project file: JSON for what the user may read, one array for the ratios."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The named changes a person can make: each takes a document and returns an edit, none alters anything."""
+"""The named edits: each takes a document and returns an edit, none alters anything."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import SecondTarget
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, PictureFit, SheetState
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.settings import settings_of
@@ -52,8 +52,8 @@ class SettingsChange(DesignChange, total=False):
 class LaidChange(TypedDict, total=False):
     """Fields of :class:`Laid` that an edit may replace, but the picture."""
 
-    state: State
-    fitting: Fitting
+    state: SheetState
+    fitting: PictureFit
     scale: float
     turn: float
     shift: tuple[float, float]

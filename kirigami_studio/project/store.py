@@ -79,7 +79,7 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
 
 
 def with_stored_material(document: Document) -> Document:
-    """The document as it is saved: with the numbers of its material, if that is a person's own."""
+    """The document as it is saved: with the numbers of its material, if that is the user's own."""
     settings, known = document.fabrication, library()
     numbers = stored_material(settings)
     if settings.material in known.materials:

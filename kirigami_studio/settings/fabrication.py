@@ -47,7 +47,7 @@ class FabricationSettings:
     opened_mm : float or None
         Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
     own : Material or None
-        The numbers of ``material`` where that is a person's own and no preset.  Not a choice, so it takes no part in
+        The numbers of ``material`` where that is the user's own and no preset.  Not a choice, so it takes no part in
         comparisons.
 
     Raises

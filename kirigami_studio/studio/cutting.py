@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import Report
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Severity
@@ -78,7 +78,7 @@ def plan_sheet(
     )
 
 
-def refuse_errors(report: Report) -> None:
+def refuse_errors(report: PlanReport) -> None:
     """Refuse cuts that the sheet would not survive.
 
     Raises

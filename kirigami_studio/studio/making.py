@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
-    from kirigami_studio.fabricate.checks import Report
+    from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
     from kirigami_studio.mechanics.gripping import Gripping
@@ -59,7 +59,7 @@ class Planned:
     Attributes
     ----------
     plan : CutPlan
-    report : Report
+    report : PlanReport
     verdict : Verdict
         What is to be expected as long as nobody has closed the sheet on its connectors.
     removed_share : float, 0..1
@@ -69,7 +69,7 @@ class Planned:
     """
 
     plan: CutPlan
-    report: Report
+    report: PlanReport
     verdict: Verdict
     removed_share: float = 0.0
     work: Work | None = None

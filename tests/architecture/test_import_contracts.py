@@ -54,6 +54,9 @@ FAULTS = (
     Fault("api", "import kirigami_studio.lab.problem", ONE_WAY, "kirigami_studio.lab.problem"),
     Fault("api", "import kirigami_studio.cli", ONE_WAY, "kirigami_studio.cli"),
     Fault("gui", "import kirigami_studio.api", ONE_WAY, "kirigami_studio.api"),
+    Fault("cli", "import kirigami_studio.api", ONE_WAY, "kirigami_studio.api"),
+    Fault("cli", "def run():\n    import kirigami_studio.gui", ONE_WAY, "kirigami_studio.gui"),
+    Fault("gui", "import kirigami_studio.cli", ONE_WAY, "kirigami_studio.cli"),
     Fault("lab/benchmark", "import kirigami_studio.lab.problem", LAB, "kirigami_studio.lab.problem"),
     Fault("lab/problem", "import kirigami_studio.gui", JUDGED, "kirigami_studio.gui"),
     Fault("lab/baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
@@ -62,6 +65,16 @@ FAULTS = (
     Fault("gui/widgets", "import kirigami_studio.gui.stage", WINDOW, "kirigami_studio.gui.stage"),
     Fault("gui/stage", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
     Fault("gui/make", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
+    *(
+        Fault(
+            f"gui/{place}",
+            f"from kirigami_studio.gui.window.{module} import {name}",
+            WINDOW,
+            f"kirigami_studio.gui.window.{module}",
+        )
+        for place in ("stage", "run", "gallery", "make", "target", "files")
+        for module, name in (("main_window", "MainWindow"), ("controller", "Controller"))
+    ),
     *(
         Fault(package, "import torch", "The exact core never reaches torch", "torch")
         for package in ("foundation", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export")

@@ -56,8 +56,8 @@ SHEET = Planted(
     "export",
     "settings/fabrication.py",
     "    own: Material | None = field(",
-    "project/export_job.py",
-    ("markers=settings.markers", "markers=settings.markers or settings.rings > 0"),
+    "studio/making.py",
+    ("markers=request.settings.markers", "markers=request.settings.markers or request.settings.rings > 0"),
 )
 #: Prints what a user of the copy finds of the choice.
 PROGRAM = """
@@ -181,3 +181,9 @@ def test_that_every_setting_has_a_problem_with_a_sentence_and_words_for_undo(kin
 )
 def test_that_changes_name_every_setting_and_no_other(change: type, kind: type, without: set[str]) -> None:
     assert set(get_type_hints(change)) == set(settings_of(kind)) - without
+
+
+@pytest.mark.parametrize("kind", [DesignSettings, FabricationSettings, CutOptions])
+def test_that_the_file_format_tells_of_every_setting(kind: type, repository: Path) -> None:
+    told = (repository / "docs" / "file-format.md").read_text(encoding="utf-8")
+    assert [name for name in settings_of(kind) if f"`{name}`" not in told] == []

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from PySide6.QtGui import QImage
 
-from kirigami_studio.export.artwork import Fitting, State
+from kirigami_studio.export.artwork import PictureFit, SheetState
 from kirigami_studio.export.pdf_pages import page_boxes
 from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -75,9 +75,9 @@ def test_that_a_picture_is_seen_whole_on_the_opened_sheet_and_cut_up_on_the_flat
     middle = opened.shape[1] // 2
     left, right = shares(opened[:, : middle - 20]), shares(opened[:, middle + 20 :])
     assert left[0] > 20 * left[1] and right[1] > 20 * right[0]
-    editor.state.setCurrentIndex(editor.state.findData(State.FLAT))
+    editor.state.setCurrentIndex(editor.state.findData(SheetState.FLAT))
     editor.state.activated.emit(editor.state.currentIndex())
-    assert designed.controller.document.artwork.first.state is State.FLAT
+    assert designed.controller.document.artwork.first.state is SheetState.FLAT
 
 
 def test_that_every_change_is_a_step_that_can_be_undone(
@@ -91,14 +91,14 @@ def test_that_every_change_is_a_step_that_can_be_undone(
     editor.turn.setValue(90.0)
     editor.turn.editingFinished.emit()
     editor.right.setValue(10.0)
-    editor.fitting.setCurrentIndex(editor.fitting.findData(Fitting.FIT))
+    editor.fitting.setCurrentIndex(editor.fitting.findData(PictureFit.FIT))
     editor.fitting.activated.emit(editor.fitting.currentIndex())
     laid = controller.document.artwork.first
     assert (laid.scale, laid.turn, laid.shift, laid.fitting) == (
         1.6,
         pytest.approx(math.pi / 2),
         (0.1, 0.0),
-        Fitting.FIT,
+        PictureFit.FIT,
     )
     steps = 0
     while controller.history.undo_label == "Place the artwork":

@@ -102,5 +102,4 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Cannot write {path}: the link leads back to itself. Delete it or choose another name."
     ),
     "file.folder_not_writable": mark("Cannot write to {folder}. Choose a folder where you have permission to write."),
-    "installation.incomplete": mark("Bundled files are missing beside {package}. Install Kirigami Studio again."),
 }

@@ -129,6 +129,7 @@ class ComparePage(QWidget):
 
     swap_wanted = Signal()
     leave_wanted = Signal()
+    pair_changed = Signal()
     phi_changed = Signal(float)  #: radians
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -192,6 +193,7 @@ class ComparePage(QWidget):
             first = max((contact.phi for contact in contacts if contact is not None), default=None)
             second = chosen.entry.candidate.second
             self.bar.set_marks(chosen.entry.design.phi_target, first, None if second is None else second.target.phi)
+        self.pair_changed.emit()
 
     def _show_side(self, side: Side, one: ComparedDesign | None, target: Outline | None) -> None:
         if one is None:

@@ -23,9 +23,8 @@ from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_star
 from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.form import Form
-from kirigami_studio.gui.widgets.number_field import DecimalField
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
-from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
+from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.settings.design import DesignSettings
 
 ROWS = mark(
@@ -36,13 +35,7 @@ COLUMNS = mark(
 )
 #: Value of the entry for a shape that was loaded.
 LOADED_START = "loaded"
-#: Least weight of a start that can be set here.
-LIGHTEST_START = 0.01
 START = mark("What the sheet looks like while it is flat.")
-START_WEIGHT = mark(
-    "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the target is matched "
-    "more closely and the start less."
-)
 RECTANGLES_ARE_EXACT = mark("A rectangle is matched exactly at any weight.")
 #: Pixels that the rows get at least, where a small window scrolls them.
 LEAST_HEIGHT = 148
@@ -115,12 +108,8 @@ class SettingsPanel(Card):
         self.variant = self.form.choice("variant", (), self._choose_variant)
         self.polish = self.form.choice("polish", show=self._choose_polish)
         self.prefer = self.form.choice("prefer")
-        self.start_weight = DecimalField()
-        self.start_weight.setObjectName("startWeight")
-        self.start_weight.setRange(LIGHTEST_START, HEAVIEST)
-        self.start_weight.setDecimals(2)
-        self.start_weight.setSingleStep(0.1)
-        self.start_weight.setAccessibleName(tr("Weight of the start"))
+        self.start_form = Form(StartShape, 48, parent=self)
+        self.start_weight = self.start_form.decimal("weight")
         self.search = self.form.switch("search")
         self.search.setMinimumHeight(29)
         self.second = SecondTargetRow()
@@ -176,7 +165,7 @@ class SettingsPanel(Card):
         fourth.addLayout(caption("polish"), 1)
         fourth.addLayout(caption("prefer"), 1)
         fifth.addLayout(caption("rim"), 2)
-        fifth.addLayout(captioned(tr("Start weight"), self.start_weight, self.start_weight), 2)
+        fifth.addLayout(self.start_form.captioned("weight"), 2)
         fifth.addLayout(caption("search"), 3)
         for other in self.form.remaining():
             below.addLayout(other)
@@ -197,12 +186,11 @@ class SettingsPanel(Card):
         self.second.changed.connect(lambda second: self.changed.emit({"second": second}))
         self.second.edited.connect(self.edited)
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
-        self.start_weight.valueChanged.connect(
-            lambda weight: self.changed.emit({"start": replace(self._start, weight=weight)})
-        )
-        for box, width in ((self.rows, 42), (self.columns, 42), (self.start_weight, 48)):  # 42: two digits
+        self.start_form.changed.connect(lambda change: self.changed.emit({"start": replace(self._start, **change)}))
+        self.start_form.edited.connect(self.edited)
+        for box in (self.rows, self.columns):
             box.setKeyboardTracking(False)
-            compact(box, width)
+            compact(box, 42)  # two digits
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
@@ -312,13 +300,10 @@ class SettingsPanel(Card):
                 self.start.insert_choice(listed, LOADED_START, start.name, "")
             self.start.setCurrentIndex(listed)
         self.start.setToolTip(f"{tr(START)}\n{self.start.about}")
-        with QSignalBlocker(self.start_weight):
-            self.start_weight.setValue(start.weight)
-        held = start.outline is not None
+        self.start_form.show_settings(start)
+        held, weight = start.outline is not None, self.start_form.settings["weight"]
         self.start_weight.setEnabled(held)
-        self.start_weight.setToolTip(
-            tr(START_WEIGHT, low=LIGHTEST_START, most=HEAVIEST) if held else tr(RECTANGLES_ARE_EXACT)
-        )
+        self.start_weight.setToolTip(tr(weight.setting.about, **weight.numbers) if held else tr(RECTANGLES_ARE_EXACT))
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))

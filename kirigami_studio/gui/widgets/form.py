@@ -118,9 +118,9 @@ class Form(QObject):
         return found
 
     def show(self, values: Mapping[str, Any]) -> None:
-        """Show values, by the names of their settings, without reporting them as edits."""
+        """Show values, by the names of their settings, without an edit; None leaves a field as it is."""
         for name, value in values.items():
-            if name in self.fields:
+            if name in self.fields and value is not None:
                 with QSignalBlocker(self.fields[name]):
                     self._show[name](value)
 

@@ -82,6 +82,7 @@ class StagePanel(Card):
         self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
         self.compare = ComparePage()
+        self.compare.pair_changed.connect(self.show_title)
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)

@@ -18,7 +18,7 @@ from PIL import Image
 from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -94,7 +94,7 @@ def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
     words = ["artwork", project, "--dpi", 50, "--json", "--out", tmp_path / "out"]
     code, said = refusal(capsys, *words)
     assert code == 2 and "--picture" in said
-    laid = Laid(read_picture(photo), State.FLAT, Fitting.FIT, 0.5)
+    laid = Laid(read_picture(photo), SheetState.FLAT, PictureFit.FIT, 0.5)
     save(replace(load_project(project), artwork=Artwork(laid)), project)
     own = answer(capsys, *words)
     assert own["on"] == "flat" and own["covered"] < 0.5

@@ -17,6 +17,7 @@ from distributed import LocalCluster
 from kirigami_studio.foundation import processes
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.processes import Workers, ordered_results_of, results_of
+from tests.refusals import refused
 
 
 def cube(number: int, marker: Path) -> tuple[int, int]:
@@ -70,7 +71,7 @@ def test_that_an_address_where_nobody_answers_is_refused_soon(monkeypatch: pytes
 
 def test_that_the_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(KirigamiError, match="kirigami-studio") as caught:
+    with refused(KirigamiError, "cluster.package_missing") as caught:
         list(results_of(fail, iter([0]), Workers(scheduler="tcp://127.0.0.1:8786")))
     assert caught.value.code == "cluster.package_missing"
 

@@ -24,6 +24,7 @@ from kirigami_studio.pipeline.redesign import refitted, rescored
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
 from kirigami_studio.polish import continuation
+from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
 
@@ -103,7 +104,7 @@ def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for
 
 def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="32 of 40"):
+    with refused(Cancelled, "run.stopped_scoring", done=32, total=40):
         seen.extend(run(replace(request_for_heart, k=40), cancel=lambda: len(seen) >= 4))
     assert not any(isinstance(event, Finished) for event in seen)
 
@@ -188,7 +189,7 @@ def test_that_all_candidates_get_their_first_steps_before_any_gets_more(request_
 
 def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     seen = []
-    with pytest.raises(Cancelled, match="while polishing, with 1 of 4 done") as caught:
+    with refused(Cancelled, "run.stopped_polishing", done=1, total=4) as caught:
         cancel = lambda: any(isinstance(event, CandidateImproved) for event in seen)  # noqa: E731
         seen.extend(run(replace(request_for_heart, polish=5), cancel))
     assert caught.value.code == "run.stopped_polishing"
@@ -297,5 +298,5 @@ def test_that_a_search_can_be_cancelled(request_for_heart: Request) -> None:
     wish = Request(load("heart"), k=1, search=8, polish=0)
     seen = []
     cancel = lambda: any(isinstance(event, Progress) and "Searching" in event.message for event in seen)  # noqa: E731
-    with pytest.raises(Cancelled, match="while searching"):
+    with refused(Cancelled, "run.stopped_searching"):
         seen.extend(run(wish, cancel, Pool(0)))

@@ -33,6 +33,7 @@ from kirigami_studio.project.codec import encode
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.settings import FabricationSettings
+from tests.refusals import refused
 
 PROJECTS = Path(__file__).parents[2] / "data" / "projects"
 Change = Callable[[dict[str, bytes]], None]
@@ -177,9 +178,9 @@ def test_that_a_missing_project_is_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(ProjectError, match=r"Cannot read the project .*gone\.kiri: No such file") as caught:
         store.load(tmp_path / "gone.kiri")
     assert caught.value.code == "project.not_readable"
-    with pytest.raises(ProjectError, match="Cannot read the project"):
+    with refused(ProjectError, "project.not_readable"):
         store.load(tmp_path)
-    with pytest.raises(ProjectError, match="is not a file name"):
+    with refused(ProjectError, "project.not_a_file_name"):
         store.load("a\0b.kiri")
 
 
@@ -195,7 +196,7 @@ def test_that_a_newer_project_asks_for_an_update(document: Document, tmp_path: P
     members = members_of(document)
     members["manifest.json"] = members["manifest.json"].replace(b'"version": 3', b'"version": 4')
     newer = write_members(tmp_path / "newer.kiri", members)
-    with pytest.raises(ProjectError, match=r"newer .*format 4.* up to 3.*Update Kirigami Studio\.$") as caught:
+    with refused(ProjectError, "project.newer_format", current=3, version=4) as caught:
         store.load(newer)
     assert caught.value.code == "project.newer_format"
 
@@ -450,7 +451,7 @@ def test_that_a_file_beyond_any_project_is_refused_unread(tmp_path: Path) -> Non
     path = tmp_path / "huge.kiri"
     with path.open("wb") as stream:
         stream.truncate(store.LARGEST_FILE + 1)
-    with pytest.raises(ProjectError, match="too large for a project"):
+    with refused(ProjectError, "project.file_too_large"):
         store.load(path)
 
 
