@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QSignalBlocker
+from PySide6.QtCore import QObject
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
@@ -40,13 +40,13 @@ class SideBySide(QObject):
         turn: Callable[[bool], None],
     ) -> None:
         super().__init__(page)
-        self._view, self._button, self._page, self._session = panel.view, panel.bar.compare, page, session
+        self._view, self._switch, self._page, self._session = panel.view, panel.bar.compare.switch, page, session
         self._choose, self._turn = choose, turn
         self._comparing = False
         self._compared: Candidate | None = None
         self._chosen: Candidate | None = None
         self._shown: tuple[ComparedDesign, ComparedDesign, Outline | None] | None = None
-        self._button.clicked.connect(self.show)
+        self._switch.triggered.connect(self.show)
         page.swap_wanted.connect(self.swap)
         page.leave_wanted.connect(lambda: self.show(False))
         session.display.stage_changed.connect(self._take_stage)
@@ -128,8 +128,7 @@ class SideBySide(QObject):
         self._view.show_compared(other.candidate)
 
     def _show_switches(self, on: bool) -> None:
-        """The button shows whether two designs are on the stage."""
-        with QSignalBlocker(self._button):
-            self._button.setChecked(on)
+        """The switch says whether two designs are on the stage."""
+        self._switch.setChecked(on)
         if not on:
             self._view.show_compared(None)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QLabel,
@@ -182,7 +181,6 @@ class MainWindow(QMainWindow):
         for busy_signal in (part.busy_changed for part in working):
             busy_signal.connect(refresh)
         self.stage.switches_changed.connect(refresh)
-        self.stage.overlays_changed.connect(refresh)
         self.stage.comparing_changed.connect(refresh)
         self.target.editing_changed.connect(refresh)
         self.target.view.context.selection_changed.connect(refresh)
@@ -203,13 +201,7 @@ class MainWindow(QMainWindow):
             editing_target=self.target.editing,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,
-            before=_switch(stage.before),
-            trim=_switch(stage.trim),
-            hand=_switch(stage.hand),
-            cuts=_switch(stage.cuts_switch),
-            plots=_switch(stage.plots_switch),
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
-            overlays=stage.view.overlays,
             dark=self.palette_.dark,
             follows_system=self.appearance.follows_system,
             still=controller.preferences.present.motion == "still",
@@ -340,7 +332,3 @@ class MainWindow(QMainWindow):
         self.hide()  # the worker may be deep in an import: let it end out of sight
         self.controller.close()
         event.accept()
-
-
-def _switch(button: QAbstractButton) -> Switch:
-    return Switch(button.isEnabled(), button.isChecked())
