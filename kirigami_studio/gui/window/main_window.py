@@ -69,8 +69,14 @@ TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
 
 def all_commands(window: MainWindow) -> tuple[Command, ...]:
     """Return the commands of a window in the order of its menus, one record each."""
-    menus = (file_commands, edit_commands, draw_commands, design_commands, view_commands, help_commands)
-    return tuple(one for menu in menus for one in menu.commands(window))
+    return (
+        *file_commands.commands(window),
+        *edit_commands.commands(window.controller, window.dialogs, window.pasting, window.picturing),
+        *draw_commands.commands(window.target, window.messages.add),
+        *design_commands.commands(window),
+        *view_commands.commands(window),
+        *help_commands.commands(window.dialogs, lambda: window.tour.start(), window.files.open_sample),
+    )
 
 
 class MainWindow(QMainWindow):
@@ -171,7 +177,7 @@ class MainWindow(QMainWindow):
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
-        offer_context_menus(self)
+        offer_context_menus(self.target, self.stage, self.commands)
         controller, refresh = self.controller, self.commands.refresh
         for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
             document_signal.connect(refresh)

@@ -138,7 +138,7 @@ class Connections(QObject):
         self._connect_target()
         self._connect_files()
         self._connect_messages()
-        self.first_start = FirstStart(window, controller)
+        self.first_start = FirstStart(stage, session, controller.preferences, lambda: window.tour.start())
         self._show_idle()
         self._show_document(controller.document)
         window.status_text.setText(tr("Choose or draw a target to begin."))
