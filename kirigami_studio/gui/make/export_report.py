@@ -29,7 +29,7 @@ from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 
 if TYPE_CHECKING:
     from kirigami_studio.export.verification import Finding, Verification
-    from kirigami_studio.project.verdict import Verdict
+    from kirigami_studio.studio.verdict import Verdict
 
 SIZE = QSize(640, 470)
 ICON_EDGE = 30

@@ -119,9 +119,9 @@ class StagePanel(Card):
         self.toggles: dict[Overlay, ToolButton] = {}
         self.overlays: dict[Overlay, QAction] = {}
         for overlay, icon, tip in OVERLAYS:
-            button = SwitchButton(f"show{overlay.value.capitalize()}", icon, tr(tip))
-            self.toggles[overlay], self.overlays[overlay] = button, button.switch
-            self.header.addWidget(button)
+            toggle = SwitchButton(f"show{overlay.value.capitalize()}", icon, tr(tip))
+            self.toggles[overlay], self.overlays[overlay] = toggle, toggle.switch
+            self.header.addWidget(toggle)
         for overlay in Overlay:
             switch = self.overlays.setdefault(overlay, QAction(self))
             switch.setCheckable(True)
@@ -246,8 +246,8 @@ class StagePanel(Card):
             bar.play.setChecked(False)
         self.pages.setCurrentWidget(page)
         cuts = page is self.cuts
-        for button in (self.before, self.hand, self.plots_switch):
-            button.setVisible(page is self._layout_page)
+        for switch in (self.before, self.hand, self.plots_switch):
+            switch.setVisible(page is self._layout_page)
         for button in (self.overlays_button, *self.toggles.values()):
             button.setVisible(not cuts)
         for button in self.cuts.toggles.values():
