@@ -14,10 +14,8 @@ __version__ = "0.1.0"
 
 _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),
-    "api.sheet": ("Sheet", "decode"),
-    "api.design": ("Design", "score", "siou"),
+    "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Exported"),
     "api.designs": ("Designs", "design", "load_project", "material_names"),
-    "api.cuts": ("Cuts", "Exported"),
     "api.simulation": ("Simulation",),
     "api.checked_file": ("CheckedFile", "check"),
     "pipeline.events": ("Progress",),

@@ -10,17 +10,17 @@ CHECKED_FROM_INSIDE: bool
 if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.checked_file import CheckedFile as CheckedFile
     from kirigami_studio.api.checked_file import check as check
-    from kirigami_studio.api.cuts import Cuts as Cuts
-    from kirigami_studio.api.cuts import Exported as Exported
+    from kirigami_studio.api.design import Cuts as Cuts
     from kirigami_studio.api.design import Design as Design
+    from kirigami_studio.api.design import Exported as Exported
+    from kirigami_studio.api.design import Sheet as Sheet
+    from kirigami_studio.api.design import decode as decode
     from kirigami_studio.api.design import score as score
     from kirigami_studio.api.design import siou as siou
     from kirigami_studio.api.designs import Designs as Designs
     from kirigami_studio.api.designs import design as design
     from kirigami_studio.api.designs import load_project as load_project
     from kirigami_studio.api.designs import material_names as material_names
-    from kirigami_studio.api.sheet import Sheet as Sheet
-    from kirigami_studio.api.sheet import decode as decode
     from kirigami_studio.api.simulation import Simulation as Simulation
     from kirigami_studio.api.target import Target as Target
     from kirigami_studio.api.target import load_target as load_target

@@ -27,7 +27,7 @@ from thread_watch import ThreadWatch, in_another_thread, long_number
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.run.settings_panel import POLISH
+from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_application, create_window
@@ -38,13 +38,14 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
+from kirigami_studio.settings.design import DesignSettings
 
 #: Seconds of the clock after which a session gives up: nothing is measured by it.
 PATIENCE = 240.0
 MANY, LARGE = 64, (24, 24)
 MOST, USUAL = 256, (10, 10)
 THEME = "switch the theme"
-FULL_POLISH = max(steps for _, steps, _ in POLISH)
+FULL_POLISH = settings_of(DesignSettings)["polish"].setting.choices[-1].value
 
 
 class Places:

@@ -7,7 +7,7 @@ Its names are those of ``import kirigami_studio as ks``, which loads these modul
   that it is for, its score and its place over it; *designs* are all those of a project.
 - *Cuts* are a design's in a material, width and connector style; a *simulation* is that sheet closed on its connectors.
 
-The values wrap those of the packages below and add pictures for notebooks and short texts; the work is done there.
-Angles are radians, lengths unit cells unless a name ends with ``_mm``.  Nothing here knows window or command line,
-which shares :mod:`~kirigami_studio.api.running` and :mod:`~kirigami_studio.api.target`.
+The values wrap those of the packages below and add pictures for notebooks and short texts; the work is done there, by
+:mod:`kirigami_studio.studio` above all.  Angles are radians, lengths unit cells unless a name ends with ``_mm``.
+Nothing here knows window or command line.
 """

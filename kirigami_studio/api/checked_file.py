@@ -8,13 +8,9 @@ from pathlib import Path
 
 from kirigami_studio.api.design import Design
 from kirigami_studio.export.dxf_check import FileReport, check_file
-from kirigami_studio.export.verification import Verification, verify_export
-from kirigami_studio.fabricate.checks import check_plan
-from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate
-from kirigami_studio.studio.cutting import plan_of
-from kirigami_studio.studio.verdict import Verdict, closed_as_cut, judge
+from kirigami_studio.export.verification import Verification
+from kirigami_studio.studio.making import judged_file
+from kirigami_studio.studio.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -53,7 +49,7 @@ class CheckedFile:
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin: units, duplicates, gaps, pieces, ligaments.
+    """Read a DXF of any origin or a cut SVG of this program: units, duplicates, gaps, pieces, ligaments.
 
     Parameters
     ----------
@@ -71,15 +67,4 @@ def check(path: str | os.PathLike[str], design: Design | None = None) -> Checked
     report = check_file(Path(path))
     if design is None:
         return CheckedFile(report)
-    return CheckedFile(report, *judged_by_design(Path(path), design.document))
-
-
-def judged_by_design(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a file with the chosen design of a project as the project would cut it, and judge the sheet."""
-    candidate, settings = chosen_candidate(document), document.fabrication
-    plan = plan_of(candidate, settings, name=document.name_of(candidate))
-    report = check_plan(plan, phi=candidate.final_phi)
-    motion = deploy(candidate.final_sheet)
-    found = verify_export(plan, path, settings.profile, settings.dxf_version, motion)
-    as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
-    return found, judge(candidate, plan, report, as_cut, [found])
+    return CheckedFile(report, *judged_file(Path(path), design.document))

@@ -1,44 +1,265 @@
-"""Designs: a sheet for a target, with its score and its place, and what can be done with it."""
+"""Sheets, designs and cuts: a sheet becomes a design for a target, a design is planned in a material.
+
+- A *sheet* is one table of ratios, decoded exactly, at every angle.
+- A *design* is a sheet for a target, with its score and its place.
+- *Cuts* are those of a design in a material: planned, checked, simulated, judged and written.
+"""
 
 from __future__ import annotations
 
+import html
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 from shapely.geometry import Polygon
 
-from kirigami_studio.api.pictures import states_picture
-from kirigami_studio.api.sheet import Sheet, SheetLike, decode
+from kirigami_studio.api.choices import (
+    checked_choices,
+    connector_widths,
+    connectors,
+    cut_choices,
+    explicit_signature,
+)
+from kirigami_studio.api.pictures import cuts_picture, states_picture
+from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.feasibility import Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.mask_siou import mask_siou
+from kirigami_studio.evaluate.porosity import Porosity
 from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
 from kirigami_studio.evaluate.score import Score, evaluate
+from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.registry import export, find_exporter
-from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.export.verification import Verification
+from kirigami_studio.fabricate.checks import PlanReport
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError
+from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice import sheet as lattice_sheet
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet_files import read_sheet, sheet_json, sheet_of_json
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, picture_job
 from kirigami_studio.project.labels import cleaned_name
-from kirigami_studio.project.settings import DesignSettings
-from kirigami_studio.project.store import SUFFIX, save
+from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
+from kirigami_studio.studio.as_cut import AsCut, simulated
+from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.making import (
+    CutRequest,
+    Output,
+    Planned,
+    chosen_candidate,
+    export_job,
+    judged,
+    planned,
+    written,
+)
+from kirigami_studio.studio.verdict import Level, Verdict
 
-if TYPE_CHECKING:
-    from kirigami_studio.api.cuts import Cuts, Exported
-    from kirigami_studio.api.simulation import Simulation
-
+#: Files that hold a project, whose chosen design is meant.
+PROJECTS = (SUFFIX, *CUT_FILES)
 #: Files that need no planned cuts.
 PICTURES = (".png", ".gif")
+#: Colours of the levels of a verdict, on white and on black.
+LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sheet:
+    """One sheet at every angle phi, from pi (flat) to 0 (closed again); lengths in unit cells, angles in radians.
+
+    In a notebook it shows itself flat, half open and closed.
+
+    Attributes
+    ----------
+    deployment : Deployment
+        The value of the program that it wraps.
+    """
+
+    deployment: Deployment
+
+    @property
+    def ratios(self) -> FloatArray:
+        """Side ratios of the voids (m, n), the top row first; read-only."""
+        return self.deployment.field.ratio
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """(rows, columns) of voids."""
+        return self.deployment.sheet.grid
+
+    def nodes(self, phi: float = 0.0) -> FloatArray:
+        """Positions of all nodes: (N, 2)."""
+        return self.deployment.nodes(phi)
+
+    def panels(self, phi: float = 0.0) -> FloatArray:
+        """Corners of the panels, counter-clockwise: (m + 1, n + 1, 4, 2)."""
+        return self.deployment.panels(phi)
+
+    def voids(self, phi: float = 0.0) -> FloatArray:
+        """Corners of the voids: (m, n, 4, 2)."""
+        return self.deployment.voids(phi)
+
+    def outline(self, phi: float = 0.0) -> FloatArray:
+        """The boundary (L, 2), counter-clockwise, the first vertex not repeated."""
+        return self.deployment.outline(phi)
+
+    def panel_polygons(self, phi: float = 0.0) -> npt.NDArray[np.object_]:
+        """The panels as Shapely polygons: (m + 1, n + 1)."""
+        return np.asarray(shapely.polygons(self.panels(phi)))
+
+    def void_polygons(self, phi: float = 0.0) -> npt.NDArray[np.object_]:
+        """The voids as Shapely polygons: (m, n)."""
+        return np.asarray(shapely.polygons(self.voids(phi)))
+
+    def polygon(self, phi: float = 0.0) -> Polygon:
+        """The silhouette as a Shapely polygon."""
+        return Polygon(self.outline(phi))
+
+    def mask(self, phi: float = 0.0, size: int = MASK_SIZE) -> BoolArray:
+        """The silhouette's picture (size, size), row 0 on top; the longer side fills it."""
+        return rasterise(self.outline(phi), size)
+
+    def area(self, phi: float = 0.0) -> float:
+        """Area of panels and voids together, unit cells squared."""
+        return self.deployment.area(phi)
+
+    def porosity(self, phi: float = 0.0) -> float:
+        """Share of that area that is voids."""
+        return Porosity.of(self.deployment).at(phi)
+
+    def feasibility(self, phi: float = 0.0) -> Feasibility:
+        """Whether it is ``feasible``: no quad is inverted and nothing touches or overlaps on the way from flat to phi.
+
+        ``n_invalid``, ``overlap_ratio`` and ``contact`` say why not.
+        """
+        (found,) = feasibility_of_many([self.deployment], check_phi(phi))
+        return found
+
+    def for_target(self, target: TargetLike | None = None, *, phi: float = 0.0, name: str = "") -> Design:
+        """This sheet as a design: scored, and laid over a target, so that it can be planned, simulated and exported.
+
+        Parameters
+        ----------
+        target : Target or whatever :func:`load_target` reads, optional
+            The sheet's own silhouette at ``phi`` unless given.
+        phi : float, radians
+            At which the sheet is meant to show it.
+        name : str
+            What the design is called; A1 unless given.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kirigami_studio as ks
+        >>> ks.decode(np.ones((4, 4))).for_target("square").iou > 0.999
+        True
+        """
+        return _design_of_sheet(self.deployment, target, phi, name)
+
+    def to_json(self) -> dict[str, Any]:
+        """A sheet file's content: ``ratio``, ``rim``, ``start`` and ``cell``; :func:`decode` reads such files."""
+        return sheet_json(self.deployment.sheet)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sheet) and self.deployment.sheet == other.deployment.sheet
+
+    def __hash__(self) -> int:
+        return hash(self.deployment.sheet)
+
+    def __repr__(self) -> str:
+        rows, columns = self.grid
+        low, high = float(self.ratios.min()), float(self.ratios.max())
+        return f"<Sheet of {rows} x {columns} voids, ratios {low:.3g} to {high:.3g}>"
+
+    def _repr_svg_(self) -> str:
+        rows, columns = self.grid
+        design = PosedDesign(self.deployment, Similarity(), 0.0)
+        return states_picture(design, None, f"{rows} × {columns} voids")
+
+
+#: What :func:`decode` takes.
+SheetLike: TypeAlias = "Sheet | Design | str | os.PathLike[str] | npt.ArrayLike"
+
+
+def decode(
+    ratios: SheetLike,
+    *,
+    rim: Mapping[str, npt.ArrayLike] | None = None,
+    start: npt.ArrayLike | None = None,
+    cell: tuple[float, float] = (1.0, 1.0),
+) -> Sheet:
+    """Decode ratios into the exact sheet: one linear solve, then any angle in no time.
+
+    Parameters
+    ----------
+    ratios : (m, n) array, path, Sheet or Design
+        Positive numbers, the top row first; or a sheet file (.json, .npy) or a project, whose chosen design is meant.
+    rim : mapping of str to array, optional
+        Positions of the mouths along ``top``, ``right``, ``bottom`` and ``left``, in unit cells, left to right and top
+        to bottom; even for sides that are left out.
+    start : (P, 2) array, optional
+        Outline of the flat sheet from its top left corner on; a rectangle unless given.
+    cell : (width, height)
+        Scales the flat sheet.
+
+    Raises
+    ------
+    RatioError, GridError, SheetError
+        Not such a table, or not a sheet.
+
+    Examples
+    --------
+    >>> import math
+    >>> import numpy as np
+    >>> import kirigami_studio as ks
+    >>> sheet = ks.decode(np.ones((10, 10)))
+    >>> sheet
+    <Sheet of 10 x 10 voids, ratios 1 to 1>
+    >>> sheet.panels(math.pi / 2).shape
+    (11, 11, 4, 2)
+    """
+    if isinstance(ratios, Sheet):
+        return ratios
+    sheet = getattr(ratios, "sheet", None)
+    if isinstance(sheet, Sheet):
+        return sheet
+    if isinstance(ratios, (str, os.PathLike)):
+        return Sheet(deploy(_read(Path(ratios))))
+    field = RatioField(_table(ratios))
+    entries = {"rim": None if rim is None else dict(rim), "start": start, "cell": cell}
+    return Sheet(deploy(sheet_of_json(entries, field)))
+
+
+def _table(ratios: object) -> npt.NDArray[Any]:
+    try:
+        return np.asarray(ratios)
+    except (TypeError, ValueError):  # rows of unequal lengths
+        raise RatioError("ratios.not_numbers") from None
+
+
+def _read(path: Path) -> lattice_sheet.Sheet:
+    if path.suffix.lower() not in PROJECTS:
+        return read_sheet(path)
+    candidate = load(path).candidate
+    if candidate is None:
+        raise ProjectError("project.no_design_chosen", path=path)
+    return candidate.final_sheet
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -163,23 +384,9 @@ class Design:
     def plan_cuts(
         self,
         *,
-        material: str | None = None,
-        width_mm: float | None = None,
-        connector_mm: float | None = None,
-        kerf_mm: float | None = None,
-        style: str | None = None,
-        order: str | None = None,
-        tabs: int | None = None,
-        tab_mm: float | None = None,
-        copies: int | None = None,
-        copy_gap_mm: float | None = None,
         hinge_mm: Mapping[int, float] | None = None,
         removed: Sequence[int] | None = None,
-        engrave: bool | None = None,
-        profile: str | None = None,
-        dxf_version: str | None = None,
-        paper: str | None = None,
-        markers: bool | None = None,
+        **choices: Unpack[CutChange],
     ) -> Cuts:
         """Plan the cuts in a material; what is left out is as the project has it.
 
@@ -227,10 +434,14 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        from kirigami_studio.api.cuts import plan_cuts
+        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        if hinge_mm is not None:
+            given["hinge_mm"] = connector_widths(hinge_mm)
+        if removed is not None:
+            given["removed"] = connectors(removed)
+        return _plan_cuts(self, {name: value for name, value in given.items() if value is not None})
 
-        given = {name: value for name, value in locals().items() if name not in ("self", "plan_cuts")}
-        return plan_cuts(self, {name: value for name, value in given.items() if value is not None})
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -254,13 +465,11 @@ class Design:
         ExportError, FabricationError, UsageError
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
-        from kirigami_studio.api.cuts import Exported
-
         goal = Path(path)
         find_exporter(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
-        return Exported((export(picture_job(self.document), goal),))
+        return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a project (.kiri) of this design alone.
@@ -333,7 +542,7 @@ def siou(mask: npt.ArrayLike, other: npt.ArrayLike) -> float:
     return value
 
 
-def design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: float, name: str) -> Design:
+def _design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: float, name: str) -> Design:
     """A sheet as a design for a target, or for the silhouette that it has itself."""
     phi = check_phi(phi)
     if target is None:
@@ -370,3 +579,214 @@ def _deployed(sheet: lattice_sheet.Sheet) -> Deployment:
 def _posed(candidate: Candidate) -> PosedDesign:
     motion = _deployed(candidate.final_sheet)
     return PosedDesign(motion, candidate.final_pose, candidate.final_phi, candidate.trim)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Cuts:
+    """All cuts of a design in mm, in a material, and what is to be expected of the sheet.
+
+    In a notebook it shows the cuts and the verdict.
+
+    Attributes
+    ----------
+    design : Design
+    """
+
+    design: Design
+    _request: CutRequest
+    _planned: Planned
+
+    @property
+    def settings(self) -> FabricationSettings:
+        """Material, sizes, connectors, machine."""
+        return self._request.settings
+
+    @property
+    def plan(self) -> CutPlan:
+        """The value of the program: paths in cutting order, connectors, notes."""
+        return self._planned.plan
+
+    @property
+    def report(self) -> PlanReport:
+        """What the check of the plan found."""
+        return self._planned.report
+
+    @property
+    def material(self) -> str:
+        """Key of the material."""
+        return self.plan.material.key
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height of the flat sheet."""
+        return self.plan.size_mm
+
+    @property
+    def cut_length_mm(self) -> float:
+        return self.plan.cut_length_mm
+
+    @property
+    def seconds(self) -> float:
+        """Estimated time of cutting one sheet."""
+        return self.plan.seconds_estimate
+
+    @property
+    def pieces(self) -> int:
+        """Pieces that the sheet is in after cutting: 1 unless something is wrong."""
+        return self.report.pieces
+
+    @property
+    def min_connector_mm(self) -> float:
+        """Smallest finished connector."""
+        return self.plan.min_connector_mm
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether it is ready to cut, and why not: ``level``, ``ok``, ``problems``, ``notes``, ``lines``.
+
+        Made of the check of the plan, the simulation and the material; the sheet is closed when first asked for.
+        """
+        return _judged(self)
+
+    def simulate(self) -> Simulation:
+        """Close the sheet on its connectors; done once.
+
+        Raises
+        ------
+        MechanicsError
+            Panels that do not hang together.
+        """
+        return _simulated(self)
+
+    def export(self, path: str | os.PathLike[str], *, record: bool = False) -> Exported:
+        """Write one file, by its extension; a GIF shows the sheet as cut.
+
+        Parameters
+        ----------
+        path : path
+            ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.png`` or ``.gif``.
+        record : bool
+            Whether all settings are written as .json beside it.
+
+        Raises
+        ------
+        FabricationError
+            The sheet would not survive these cuts.
+        ExportError
+            An unknown extension, or a place that cannot be written.
+        """
+        goal = Path(path)
+        moving = goal.suffix.lower() == ".gif"
+        return self._written(Output(goal, record=record), self.simulate().simulated.motion if moving else None)
+
+    def export_all(self, folder: str | os.PathLike[str]) -> Exported:
+        """Write every kind of file and the record of all settings to a folder, cut files verified.
+
+        Raises
+        ------
+        FabricationError, ExportError
+            As :meth:`export`.
+        """
+        return self._written(Output(Path(folder), "cut", record=True))
+
+    def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
+        refuse_errors(self.report)
+        shown = None if motion is None else motion(self.settings.width_mm)
+        found = written(self._request, self._planned, output, self._as_cut, shown)
+        return Exported(found.files, found.verifications, self)
+
+    @property
+    def _as_cut(self) -> AsCut | str:
+        """How the sheet does as cut, or why that cannot be told."""
+        try:
+            return self.simulate().as_cut
+        except KirigamiError as error:
+            return str(error)
+
+    def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
+        return judged(self._request, self._planned, self._as_cut, verifications)
+
+    def __repr__(self) -> str:
+        width, height = self.size_mm
+        told = "" if self.report.ok else ", cannot be cut"
+        return f"<Cuts of {self.design.name} in {self.material}: {width:.1f} x {height:.1f} mm{told}>"
+
+    def _repr_html_(self) -> str:
+        width, height = self.size_mm
+        verdict = self.verdict
+        metres = self.cut_length_mm / 1000.0
+        heading = f"{self.plan.material.name}: {width:.1f} × {height:.1f} mm, {metres:.2f} m of cuts"
+        if len(self.plan.copies) > 1:
+            heading += f", {len(self.plan.copies)} copies"
+        level, *lines = (html.escape(line) for line in verdict.lines)
+        told = "".join(f"<li>{line}</li>" for line in lines)
+        chip = f'<b style="color:{LEVELS[verdict.level]}">{level}</b>'
+        below = f'<ul style="margin:2px 0 0;padding-left:20px">{told}</ul>' if told else ""
+        style = "font-family:system-ui,sans-serif;font-size:13px;line-height:1.5"
+        return f'<div>{cuts_picture(self.plan, heading)}<div style="{style}">{chip}{below}</div></div>'
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Exported:
+    """Files that were written.
+
+    Attributes
+    ----------
+    files : tuple of Path
+    verifications : tuple of Verification
+        What two readers found in each DXF and SVG.
+    cuts : Cuts or None
+        That the files were written of; None for pictures.
+    """
+
+    files: tuple[Path, ...]
+    verifications: tuple[Verification, ...] = ()
+    cuts: Cuts | None = field(default=None)
+
+    @property
+    def path(self) -> Path:
+        """The first file."""
+        return self.files[0]
+
+    @property
+    def ok(self) -> bool:
+        """Whether every file that was read back is as planned."""
+        return all(found.ok for found in self.verifications)
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """On the sheet, with what was found in the files; None for pictures."""
+        return None if self.cuts is None else self.cuts._judge(self.verifications)
+
+    def __repr__(self) -> str:
+        names = ", ".join(path.name for path in self.files)
+        read = "" if not self.verifications else ", verified by two readers" if self.ok else ", NOT as planned"
+        return f"<Exported {names}{read}>"
+
+
+def _plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
+    """Plan and check the cuts of a design, with choices on top of those of its project.
+
+    Raises
+    ------
+    FabricationError, UsageError
+        No such material or choice, or cuts that cannot be planned.
+    """
+    document = design.document
+    request = CutRequest.of(document, with_choices(document.fabrication, given))
+    check_connectors(request.candidate, request.settings.options)
+    return Cuts(design, request, planned(request))
+
+
+@lru_cache(maxsize=32)
+def _simulated(cuts: Cuts) -> Simulation:
+    request, width = cuts._request, cuts.settings.width_mm
+    found = simulated(request.candidate, cuts.plan, width, request.target, request.deployment)
+    candidate = request.candidate
+    posed = PosedDesign(request.deployment, candidate.final_pose, candidate.final_phi, candidate.trim)
+    return Simulation(found, posed if found.made is None else posed.laid_over(found.made), width)
+
+
+@lru_cache(maxsize=32)
+def _judged(cuts: Cuts) -> Verdict:
+    return cuts._judge()

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-import reprlib
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-import numpy as np
 import numpy.typing as npt
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -16,21 +13,11 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.api.pictures import target_picture
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.errors import KirigamiError, TargetError, UsageError
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import ALL, LARGEST
-from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
-from kirigami_studio.outlines.read_image import image_parts, outline_of_mask, read_image
-from kirigami_studio.project.store import CUT_FILES, load
-
-IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp")
-#: Problems of drawings whose lines may be meant as they are painted.
-OPEN_LINES = ("lines.open_at", "lines.not_closed")
+from kirigami_studio.studio.targets import PartChoice, outline_of
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -136,7 +123,7 @@ def load_target(
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
     choice = PartChoice.of(parts, join, bridge, stroke)
-    outline = _outline(source, choice, threshold)
+    outline = outline_of(source.outline if isinstance(source, Target) else source, choice, threshold)
     return Target(outline if name is None else replace(outline, name=str(name)))
 
 
@@ -150,144 +137,3 @@ def target_names() -> tuple[str, ...]:
     True
     """
     return silhouettes.names()
-
-
-def _outline(source: object, choice: PartChoice | None, threshold: float | None) -> Outline:
-    if isinstance(source, (str, os.PathLike)):
-        return _read(source, choice, threshold)
-    if choice is not None:
-        raise UsageError("parts.not_a_drawing", source=type(source).__name__, kinds=", ".join(PART_READERS))
-    if isinstance(source, Target):
-        return source.outline
-    if isinstance(source, Outline):
-        return source
-    if isinstance(source, Polygon) and not source.is_empty and not source.is_valid:
-        return Outline.from_points(source.exterior.coords)  # crossings are undone where it is clear what is meant
-    if isinstance(source, BaseGeometry):
-        ring, notes = largest_piece(source)
-        return Outline.from_points(ring, notes=notes)
-    try:
-        values = np.asarray(source)
-    except (TypeError, ValueError):  # rows of unequal lengths
-        values = np.empty(0, dtype=object)
-    if values.dtype.kind not in "biuf" or values.ndim != 2:
-        raise TargetError("api.not_a_target", value=reprlib.repr(source))
-    # No picture has three rows or columns: these are points with a height, or the wrong way round.
-    is_mask = values.dtype.kind == "b" or min(values.shape) > 3
-    return mask_outline(values, "mask") if is_mask else Outline.from_points(values)
-
-
-def _read(source: str | os.PathLike[str], choice: PartChoice | None, threshold: float | None) -> Outline:
-    """A library silhouette or a file, as the command line reads them."""
-    if str(source) in silhouettes.names() and choice is None:
-        return silhouettes.load(str(source))
-    path = Path(source)
-    if path.suffix.lower() in PART_READERS:
-        return read_drawing(path, choice, threshold)
-    if choice is not None:
-        raise UsageError("parts.not_a_drawing", source=str(source), kinds=", ".join(PART_READERS))
-    return read_target(source if isinstance(source, str) else path)
-
-
-@dataclass(frozen=True, slots=True)
-class PartChoice:
-    """Which parts of a drawing are meant, and how they become one outline.
-
-    Attributes
-    ----------
-    words : str
-        ``all``, ``largest``, or names, numbers and layers.
-    merging : Merging
-    """
-
-    words: str
-    merging: Merging
-
-    @classmethod
-    def of(cls, parts: str | None, join: str | None, bridge: float | None, stroke: float | None) -> PartChoice | None:
-        """What was said about parts; None where nothing was.
-
-        Raises
-        ------
-        UsageError
-            A width of bridges with another way to join, or no such way.
-        """
-        if parts is None and join is None and bridge is None and stroke is None:
-            return None
-        way = Join.UNION if bridge is None else Join.BRIDGE
-        if join is not None:
-            try:
-                way = Join(join)
-            except ValueError:
-                choices = ", ".join(str(one.value) for one in Join)
-                raise UsageError("settings.no_such_choice", name="join", value=join, choices=choices) from None
-        if bridge is not None and way is not Join.BRIDGE:
-            raise UsageError("option.bridge_without_join")
-        several = way is not Join.UNION or stroke is not None
-        words = parts if parts is not None else ALL if several else LARGEST
-        return cls(words, Merging(way, bridge, stroke is not None, stroke or None))
-
-    def outline(self, path: Path, threshold: float | None = None) -> Outline:
-        """The outline of the chosen parts of a file; ``threshold`` is that of a picture."""
-        is_picture = path.suffix.lower() in IMAGE_SUFFIXES
-        source = image_parts(path, threshold) if is_picture else read_parts(path)
-        try:
-            return merged(source, source.chosen(self.words), self.merging).outline
-        except TargetError as error:
-            raise TargetError("source.not_usable", name=path.name, reason=error) from error
-
-
-def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None = None) -> Outline:
-    """The outline of a file: of its parts as chosen, or as it is read by itself.
-
-    A cut file of this program stands for the target of its design.
-    """
-    if threshold is not None and choice is None and path.suffix.lower() in IMAGE_SUFFIXES:
-        return read_image(path, threshold)
-    if choice is not None and path.suffix.lower() in PART_READERS:
-        return choice.outline(path, threshold)
-    if path.suffix.lower() in CUT_FILES and (target := _own_target(path)) is not None:
-        return target
-    try:
-        return read_target(path)
-    except TargetError as error:
-        if isinstance(error.__cause__, TargetError) and error.__cause__.code in OPEN_LINES:
-            raise TargetError("parts.or_as_painted", reason=error) from error
-        raise
-
-
-def _own_target(path: Path) -> Outline | None:
-    """The target of the design that a cut file of this program carries; None for any other file."""
-    try:
-        document = load(path)
-    except KirigamiError:
-        return None  # another program's drawing, or one that cannot be read: its reader says so
-    if document.target is None:
-        return None
-    said = tr("This is a cut file of Kirigami Studio: its design's target was taken.")
-    return replace(document.target, notes=(*document.target.notes, said))
-
-
-def mask_outline(mask: npt.NDArray[np.generic], name: str) -> Outline:
-    """The outline of a mask (H, W) of truth values or levels.
-
-    Raises
-    ------
-    TargetError
-        A level that is not finite, or no shape; the sentence names the input.
-    """
-    try:
-        levels = np.asarray(mask, dtype=np.float64)
-        if not np.all(np.isfinite(levels)):
-            row, column = np.argwhere(~np.isfinite(levels))[0]
-            raise TargetError("input.mask_not_finite", row=int(row), column=int(column))
-        return outline_of_mask(inside_of(levels), name)
-    except KirigamiError as error:
-        raise TargetError("input.not_valid", name=name, reason=error) from error
-
-
-def inside_of(levels: npt.NDArray[Any]) -> BoolArray:
-    """Pixels above half of the highest level; of a bool mask or 0 and 1, those that are set."""
-    highest = max(float(levels.max(initial=0.0)), 0.0)
-    inside: BoolArray = levels > 0.5 * highest
-    return inside

@@ -5,20 +5,20 @@ from __future__ import annotations
 import argparse
 import math
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, cut_job
 from kirigami_studio.project.store import load
-from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.studio.making import CutRequest, export_job, planned
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0
@@ -29,10 +29,9 @@ BARE_SHARE = 0.005
 def artwork(arguments: argparse.Namespace) -> int:
     """Write SVG, PDF and PNG of the printed sheet of a project's chosen design, and a picture of it opened."""
     document = load(arguments.project)
-    settings = overridden(document.fabrication, arguments)
-    candidate = chosen_candidate(document)
+    request = CutRequest.of(document, overridden(document.fabrication, arguments))
     printed = _artwork(arguments, document)
-    job = cut_job(document, plan_of(candidate, settings), settings)
+    job = export_job(request, planned(request))
     try:
         work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
         files = write_artwork(work, arguments.out)
@@ -103,9 +102,9 @@ def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
     stored = None if document.artwork is None else document.artwork.first
     changes: dict[str, Any] = {}
     if arguments.on is not None:
-        changes["state"] = State(arguments.on)
+        changes["state"] = SheetState(arguments.on)
     if arguments.place is not None:
-        changes["fitting"] = Fitting(arguments.place)
+        changes["fitting"] = PictureFit(arguments.place)
     if arguments.scale is not None:
         changes["scale"] = arguments.scale
     if arguments.turn_deg is not None:
@@ -124,9 +123,8 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
-
-        return svg_to_png(content, side)
+        drawn: bytes = import_module("kirigami_studio.gui.stage.artwork_jobs").svg_to_png(content, side)
+        return drawn
 
     return read_picture(path, draw)
 

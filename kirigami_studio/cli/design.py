@@ -13,12 +13,10 @@ from tempfile import TemporaryDirectory
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
-from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto
+from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
-from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_png
-from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
@@ -36,44 +34,30 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.labels import run_labels
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
-from kirigami_studio.project.store import packed_design, save
-from kirigami_studio.settings.design import REGULAR
-from kirigami_studio.studio.cutting import checked_plan
+from kirigami_studio.project.store import save
+from kirigami_studio.settings.design import DesignChoices, chosen_settings
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
-from kirigami_studio.studio.verdict import Verdict, assess, refused
+from kirigami_studio.studio.making import CutRequest, Output, closed, export_job, judged, planned, written
+from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
-    grid = parse_grid_or_auto(arguments.grid)
-    start = replace(start_shape(arguments.start), weight=arguments.start_weight)
     fabrication = material_settings(arguments)
     check_name(arguments.name, run_labels(0, 1)[0].code)
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
         check_folder(Path(arguments.out))
     line = ProgressLine()
     used: set[str] = set()
 
-    wanted = DesignSettings(
-        **({} if grid is None else {"grid": grid}),
-        auto_grid=grid is None,
-        phi=arguments.phi,
-        k=arguments.k,
-        seed=arguments.seed,
-        variant=arguments.variant,
-        steps=arguments.steps,
-        polish=arguments.polish,
-        prefer=arguments.prefer,
-        search=arguments.search,
-        symmetry=arguments.symmetry,
-        rim=arguments.rim,
-        regular=regular,
-        start=start,
+    wanted = chosen_settings(
+        parse_grid_or_auto(arguments.grid),
+        setting_values(arguments, DesignChoices),
+        start=replace(start_shape(arguments.start), weight=arguments.start_weight),
         second=second_target(arguments),
     )
 
@@ -102,7 +86,7 @@ def design(arguments: argparse.Namespace) -> int:
         design = designed(job_for(target), line)
         files: dict[str, str] = {}
         if arguments.out:
-            files = write_files(design.result, fabrication, folder_for(name), arguments.name or "")
+            files = write_files(design, folder_for(name))
         tell(name, design, files)
 
     def one_from_cluster(name: str, design: Design) -> None:
@@ -147,12 +131,15 @@ class Design:
     Attributes
     ----------
     result : Result
+    request : CutRequest
+        The best design in its project, and how it is cut.
     verdict : Verdict or None
     files : mapping of str to (str, bytes)
         Name and content by role, of a design from elsewhere that was asked for with its files.
     """
 
     result: Result
+    request: CutRequest
     verdict: Verdict | None
     files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
 
@@ -174,7 +161,18 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
     run = run_design(job.request, job.fabrication, as_cut=job.as_cut, least_panel_mm=job.least_panel_mm, pool=pool)
     result = completed(run, lambda progress: line.show(progress.message))
     line.clear()
-    return Design(result, _verdict_on(result, job.fabrication) if job.as_cut else None)
+    document = document_of(result, job.fabrication)
+    if job.name:
+        document = set_label(document, 0, job.name, "").document
+    request = CutRequest.of(document)
+    if not job.as_cut:
+        return Design(result, request, None)
+    try:
+        made = planned(request)
+    except FabricationError as error:
+        return Design(result, request, refused(error))
+    request = replace(request, as_cut=closed(request, made))
+    return Design(result, request, judged(request, made, request.as_cut))
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +210,7 @@ def designed_there(asked: Asked) -> Answer:
         if not job.files:
             return Answer(design, None)
         with TemporaryDirectory() as folder:
-            paths = write_files(design.result, job.fabrication, Path(folder), job.name)
+            paths = write_files(design, Path(folder))
             files = {role: (Path(path).name, Path(path).read_bytes()) for role, path in paths.items()}
         return Answer(replace(design, files=files), None)
     except KirigamiError as error:
@@ -255,14 +253,6 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
     weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
     return SecondTarget(read_target(arguments.also), phi, weight)
-
-
-def _verdict_on(result: Result, fabrication: FabricationSettings) -> Verdict:
-    """The verdict on the best design."""
-    try:
-        return assess(result.best, fabrication, result.request.target).verdict
-    except FabricationError as error:
-        return refused(error)
 
 
 def summary(result: Result) -> dict[str, object]:
@@ -336,19 +326,19 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
     return entry
 
 
-def write_files(result: Result, fabrication: FabricationSettings, folder: Path, name: str = "") -> dict[str, str]:
+def write_files(design: Design, folder: Path) -> dict[str, str]:
     """Write the project, the cut file, the layout, a preview and the candidates; returns their paths by role.
 
-    The best design is called ``name``, if it is given one.  The bytes depend on what is given alone: wall time is not
-    written.
+    The bytes depend on what is given alone: wall time is not written.
+
+    Raises
+    ------
+    FabricationError
+        The sheet would not survive its cuts.
     """
-    request, best = result.request, result.best
-    document = document_of(result, fabrication)
-    if name:
-        document = set_label(document, 0, name, "").document
-    plan, _ = checked_plan(best, fabrication, document.name_of(best))
-    facts, record = design_facts(document, best), packed_design(document, best)
-    job = replace(ExportJob.of(best, request.target.points, plan), provenance=facts, record=record)
+    request, document = design.request, design.request.document
+    made = planned(request)
+    refuse_errors(made.report)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",
@@ -356,11 +346,13 @@ def write_files(result: Result, fabrication: FabricationSettings, folder: Path, 
         "preview": folder / "preview.png",
         "candidates": folder / "candidates.json",
     }
+    assert document is not None  # a design that was just made has a project
     save(document, paths["project"])
-    export(job, paths["cut"])
+    written(request, made, Output(paths["cut"]), request.as_cut)
+    job = export_job(request, made)
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])
-    listing = {"candidates": candidates_json(result)}
+    listing = {"candidates": candidates_json(design.result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     return {role: str(path) for role, path in paths.items()}
 

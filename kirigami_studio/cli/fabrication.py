@@ -4,42 +4,46 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from kirigami_studio.api.checked_file import judged_by_design
-from kirigami_studio.api.cuts import write_file
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
-from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.dxf_check import check_file
-from kirigami_studio.export.export_set import ExportSet, export_all
-from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import engraved_json, narrowed_json
 from kirigami_studio.export.registry import find_exporter
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.foundation.errors import FabricationError, UsageError
-from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.pipeline.coarser import coarser_designs
-from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.export_job import chosen_candidate, cut_job, picture_job
-from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import simulated
-from kirigami_studio.studio.cutting import check_connectors, checked_plan, least_feature_mm, room_mm
-from kirigami_studio.studio.fixes import Advice, find_fixes
-from kirigami_studio.studio.verdict import Verdict, closed_as_cut, judge, refused
+from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.designing import request_for
+from kirigami_studio.studio.fixes import Advice
+from kirigami_studio.studio.making import (
+    CutRequest,
+    Output,
+    chosen_candidate,
+    closed,
+    export_job,
+    fixing,
+    judged_file,
+    planned,
+    written,
+)
+from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
@@ -58,45 +62,42 @@ def export(arguments: argparse.Namespace) -> int:
         check_name(arguments.name, document.label.code)
         document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
-    check_connectors(chosen_candidate(document), settings.options)
+    request = CutRequest.of(document, settings)
+    check_connectors(request.candidate, settings.options)
     try:
-        chosen = chosen_candidate(document)
-        plan, report = checked_plan(chosen, settings, document.name_of(chosen))
+        made = planned(request)
+        refuse_errors(made.report)
     except FabricationError as error:
         if not arguments.fixes:
             raise
-        fixes = " ".join(_advice(document, settings, refused(error)).lines)
+        fixes = " ".join(_advice(request, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
-    job = replace(cut_job(document, plan, settings), markers=settings.markers or arguments.markers)
-    candidate = chosen_candidate(document)
-    as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
-
-    def judged(verifications: Sequence[Verification]) -> Verdict:
-        return judge(candidate, plan, report, as_cut, verifications)
-
-    written = _written(job, arguments, judged)
-    verdict = judged(written.verifications)
-    advice = _advice(document, settings, verdict) if arguments.fixes and not verdict.ok else None
-    work = _work(job, arguments)
-    notes = [*plan.notes, *report.problems, *(note for found in written.verifications for note in found.warnings)]
-    if arguments.all or Path(arguments.out).suffix.lower() == ".pdf":
+    plan, report = made.plan, made.report
+    record = arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
+    output = Output(Path(arguments.out), "cut" if arguments.all else None, record)
+    found = written(request, made, output, closed(request, made))
+    verdict = found.verdict
+    assert verdict is not None  # planned sheets are judged
+    advice = _advice(request, verdict) if arguments.fixes and not verdict.ok else None
+    work = _work(plan, settings.profile, output)
+    notes = [*plan.notes, *report.problems, *(note for one in found.verifications for note in one.warnings)]
+    if output.has_pdf:
         notes += page_notes(plan.copies.spread_mm, settings.paper)
     warnings = [note.text for note in notes]
-    if left := [path.name for path in written.older if path not in written.removed]:
-        names = ", ".join(left)
+    if names := ", ".join(name for name in found.older if name not in found.removed):
         warnings.append(
             tr("The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=names)
         )
-    if written.removed:
-        names = ", ".join(path.name for path in written.removed)
+    if found.removed:
+        names = ", ".join(found.removed)
         warnings.append(tr("Removed files of an earlier export that this one does not have: {names}.", names=names))
     warnings = list(dict.fromkeys(warnings))
-    verified = [_summary(found) for found in written.verifications]
-    bad = [finding.text for found in written.verifications for finding in found.findings if not finding.ok]
+    verified = [_summary(one) for one in found.verifications]
+    bad = [finding.text for one in found.verifications for finding in one.findings if not finding.ok]
     if arguments.json:
         print_json(
             {
-                "files": [str(path) for path in written.files],
+                "files": [str(path) for path in found.files],
                 "size_mm": plan.size_mm,
                 "cut_length_mm": work.cut_length_mm,
                 "travel_mm": work.travel_mm,
@@ -116,7 +117,7 @@ def export(arguments: argparse.Namespace) -> int:
                 **({} if advice is None else {"tried": advice.tried.text}),
             }
         )
-        return 0 if written.ok else 1
+        return 0 if found.ok else 1
     say(
         tr_n(
             "{files}: {width:.2f} x {height:.2f} mm, cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s, "
@@ -124,7 +125,7 @@ def export(arguments: argparse.Namespace) -> int:
             "{files}: {width:.2f} x {height:.2f} mm, cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s, "
             "{count} pieces, smallest connector {connector:.3f} mm",
             report.pieces * len(plan.copies),
-            files=", ".join(str(path) for path in written.files),
+            files=", ".join(str(path) for path in found.files),
             width=plan.size_mm[0],
             height=plan.size_mm[1],
             cut=work.cut_length_mm,
@@ -133,11 +134,11 @@ def export(arguments: argparse.Namespace) -> int:
             connector=plan.min_connector_mm,
         )
     )
-    for found in written.verifications:
-        if found.ok:
-            say("  " + tr("{path}: verified by two readers", path=found.path))
+    for one in found.verifications:
+        if one.ok:
+            say("  " + tr("{path}: verified by two readers", path=one.path))
         else:
-            say("  " + tr("{path}: NOT as planned", path=found.path))
+            say("  " + tr("{path}: NOT as planned", path=one.path))
     for text in bad:
         say("  " + tr("fault: {text}", text=text))
     say_verdict(verdict)
@@ -147,30 +148,17 @@ def export(arguments: argparse.Namespace) -> int:
     for warning in warnings:
         if warning not in said:
             say("  " + tr("note: {text}", text=warning))
-    return 0 if written.ok else 1
+    return 0 if found.ok else 1
 
 
-def _advice(document: Document, settings: FabricationSettings, verdict: Verdict) -> Advice:
+def _advice(request: CutRequest, verdict: Verdict) -> Advice:
     """Try changes on the chosen design, all in one go."""
-    candidate, wishes = chosen_candidate(document), document.settings
-    coarser: Iterable[tuple[Candidate, ...]] = ()
-    if document.target is not None:
-        request = Request(
-            document.target,
-            phi=wishes.phi,
-            seed=wishes.seed,
-            variant=wishes.variant,
-            symmetry=wishes.symmetry,
-            rim=wishes.rim,
-            regular=wishes.regular,
-            width_mm=settings.width_mm,
-            least_feature_mm=least_feature_mm(settings),
-            room_mm=room_mm(settings),
-            start=wishes.start,
-            second=wishes.second,
-        )
-        coarser = coarser_designs(candidate, request)
-    return result_of(find_fixes(candidate, settings, verdict, document.named_candidates, coarser))
+    document = request.document
+    assert document is not None and document.target is not None  # a request of a project has them
+    run = request_for(document.target, document.settings, request.settings)
+    *_, found = fixing(request, verdict, document.named_candidates, run, never)
+    assert found is not None  # the last report
+    return found
 
 
 def say_verdict(verdict: Verdict) -> None:
@@ -184,28 +172,14 @@ def say_verdict(verdict: Verdict) -> None:
         say("  " + tr("note: {text}", text=note.text))
 
 
-def _work(job: ExportJob, arguments: argparse.Namespace) -> Work:
+def _work(plan: CutPlan, profile: str, output: Output) -> Work:
     """What cutting the files takes; that of the plan for kinds of file that have no profile."""
-    plan = job.required_plan
-    if len(plan.copies) > 1 and Path(arguments.out).suffix.lower() in (".pdf", ".lbrn2"):
+    suffix = output.path.suffix.lower()
+    if len(plan.copies) > 1 and suffix in (".pdf", ".lbrn2"):
         return work_of(strokes_of(plan, find_profile("any")), plan.material)
-    if arguments.all or Path(arguments.out).suffix.lower() in FORMATS:
-        return work_of(strokes_of(plan, find_profile(job.profile)), plan.material)
+    if output.name is not None or suffix in FORMATS:
+        return work_of(strokes_of(plan, find_profile(profile)), plan.material)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
-
-
-def _written(
-    job: ExportJob, arguments: argparse.Namespace, judged: Callable[[Sequence[Verification]], Verdict]
-) -> ExportSet:
-    """Write what was asked for: the whole set, or one file with its record beside it if that was asked for."""
-    if arguments.all:
-        return export_all(
-            job,
-            arguments.out,
-            sidecar=arguments.sidecar is not False,
-            judged=lambda verifications: judged(verifications).to_json(),
-        )
-    return write_file(job, arguments.out, judged, record=bool(arguments.sidecar))
 
 
 def _summary(found: Verification) -> dict[str, object]:
@@ -225,7 +199,7 @@ def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
-    judged = None if arguments.design is None else judged_by_design(Path(arguments.file), load(arguments.design))
+    judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))
     ok = report.ok and (judged is None or judged[1].ok)
     if arguments.json:
         answer: dict[str, object] = {
@@ -261,7 +235,7 @@ def animate(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    job = picture_job(document)
+    job = export_job(CutRequest.of(document), None)
     if arguments.as_cut:
         job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
     frames, motion = write_animation(job, path, FRAMES), job.motion
@@ -280,9 +254,10 @@ def animate(arguments: argparse.Namespace) -> int:
 
 def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
-    chosen = chosen_candidate(document)
-    check_connectors(chosen, settings.options)
-    return simulated(chosen, settings, document.target).motion(settings.width_mm)
+    request = CutRequest.of(document, settings)
+    check_connectors(request.candidate, settings.options)
+    width = settings.width_mm
+    return simulated(request.candidate, planned(request).plan, width, request.target, request.deployment).motion(width)
 
 
 def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
@@ -296,7 +271,6 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    given.pop("markers", None)  # a flag: without it, the project's choice stays
     return with_choices(saved, given)
 
 

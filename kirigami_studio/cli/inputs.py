@@ -18,7 +18,6 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.api.target import PartChoice, inside_of, mask_outline, read_drawing
 from kirigami_studio.cli.console import print_json
 from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, UsageError
@@ -33,6 +32,7 @@ from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
+from kirigami_studio.studio.targets import PartChoice, inside_of, mask_outline, read_drawing
 
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
 #: What masks may be, as Pillow calls them, how many pixels, and how many megabytes: 64 bits a pixel, uncompressed.

@@ -40,6 +40,11 @@ def setting_options(kind: type, *names: str, over: object = None) -> tuple[Optio
     return tuple(_setting_option(one, over) for one in wanted if one.setting.option)
 
 
+def setting_values(arguments: argparse.Namespace, kind: type) -> dict[str, Any]:
+    """What was chosen for the settings of a dataclass that have an option, by name."""
+    return {name: getattr(arguments, name) for name, one in settings_of(kind).items() if one.setting.option}
+
+
 def _setting_option(one: NamedSetting, over: object) -> Option:
     setting = one.setting
     usual = one.default if over is None else getattr(over, one.name)

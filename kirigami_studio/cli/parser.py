@@ -59,10 +59,8 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
 WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", over=USUAL)
-(PROFILE, DXF_VERSION) = setting_options(FabricationSettings, "profile", "dxf_version", over=USUAL)
-(PAPER, MARKERS) = setting_options(FabricationSettings, "paper", "markers", over=USUAL)
-CUTS = (
-    *setting_options(CutOptions, "style", "order", "tabs", "tab_mm", over=USUAL.options),
+PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
+SINGLE_CONNECTORS = (
     option(
         "--hinge-mm",
         nargs="+",
@@ -79,13 +77,16 @@ CUTS = (
         help="connectors to cut through, by number; added to the project's own",
     ),
 )
-
+CUTS = (*setting_options(CutOptions, "style", "order", "tabs", "tab_mm", over=USUAL.options), *SINGLE_CONNECTORS)
 #: A name on the sheet.
-ENGRAVE = (
-    *setting_options(FabricationSettings, "engrave", over=USUAL),
-    option("--name", type=name, default=None, metavar="TEXT",
-           help="call the design TEXT; for design, the best one (default: the name that it has, such as A1)"),
-)  # fmt: skip
+NAME = option(
+    "--name",
+    type=name,
+    default=None,
+    metavar="TEXT",
+    help="call the design TEXT; for design, the best one (default: the name that it has, such as A1)",
+)
+ENGRAVE = (*setting_options(FabricationSettings, "engrave", over=USUAL), NAME)  # fmt: skip
 
 #: Several sheets in one file.
 COPIES = setting_options(CutOptions, "copies", "copy_gap_mm", over=USUAL.options)
@@ -206,18 +207,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write (.dxf .svg .pdf .lbrn2 .png .gif); with --all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
-        *WIDTHS,
-        *CUTS,
-        *COPIES,
-        *ENGRAVE,
-        PROFILE,
-        DXF_VERSION,
-        PAPER,
+        *setting_options(FabricationSettings, over=USUAL),
+        *setting_options(CutOptions, over=USUAL.options),
+        *SINGLE_CONNECTORS,
+        NAME,
         option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
                help="also write all settings as .json beside the cut file (default: only with --all)"),
         option("--fixes", action="store_true",
                help="if the sheet is not ready to cut, try changes on it and tell which ones work"),
-        MARKERS,
         JSON,
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
@@ -257,8 +254,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics sheet.json --width-mm 150 --connector-mm 0.5 --hold 0 10 --move 110 120 --json",
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
-    SubCommand("check", "read a DXF cut file and list its problems", "cli.fabrication:check", (
-        option("file", help="a .dxf file, or a folder of layer files"),
+    SubCommand("check", "read a cut file and list its problems", "cli.fabrication:check", (
+        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
@@ -414,9 +411,8 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 def open_window(arguments: argparse.Namespace) -> int:
     """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
-    from kirigami_studio.gui.window.application import run
-
-    return run(["kirigami-studio", *arguments.shown])
+    code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
+    return code
 
 
 def _refuse_research(arguments: argparse.Namespace) -> int:

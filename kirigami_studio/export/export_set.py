@@ -1,10 +1,12 @@
-"""Everything that a person may want of one design, in one folder, each cut file verified."""
+"""Everything that the user may want of one design, in one folder, each cut file verified."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,11 +15,11 @@ from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.export.provenance import sidecar_path, write_sidecar
-from kirigami_studio.export.registry import export
+from kirigami_studio.export.registry import export, written_path
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.foundation.files import folder_of_one_writer
+from kirigami_studio.foundation.files import folder_of_one_writer, write_atomically
 
 #: A record larger than this (bytes) is none of ours.
 LARGEST_RECORD = 50_000_000
@@ -50,6 +52,55 @@ class ExportSet:
     def ok(self) -> bool:
         """Every cut file passed."""
         return all(found.ok for found in self.verifications)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Draft:
+    """A cut file that was written aside and read back by two readers.
+
+    Attributes
+    ----------
+    job : ExportJob
+    path : Path
+        Where it is to appear.
+    written : Path
+        Where it is: a file, or the folder of a profile with a file for each layer.
+    verification : Verification
+        What was found in it, under the name that it is to have.
+    """
+
+    job: ExportJob
+    path: Path
+    written: Path
+    verification: Verification
+
+    def place(self) -> Path:
+        """Put it in its place, whole or not at all; returns the path.
+
+        Raises
+        ------
+        ExportError
+            An unwritable place.
+        """
+        if self.written.is_dir():
+            return export(self.job, self.path)  # the same bytes, in a folder that appears whole
+        write_atomically(self.path, self.written.read_bytes())
+        return self.path
+
+
+@contextmanager
+def drafted(job: ExportJob, path: Path) -> Iterator[Draft]:
+    """Write a cut file aside and read it back; what is not placed before the end is gone.
+
+    Raises
+    ------
+    ExportError
+        As :func:`~kirigami_studio.export.registry.export`.
+    """
+    with tempfile.TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
+        written = export(job, Path(folder) / path.name)
+        found = verify_export(job.required_plan, written, job.profile, job.dxf_version, job.deployment)
+        yield Draft(job, path, written, replace(found, path=written_path(path, job.profile)))
 
 
 def export_all(
@@ -115,9 +166,9 @@ def _written(
         (home / f"{name}_r12.dxf", DxfVersion.R12),
         (home / f"{name}.svg", DxfVersion.R2010),
     ):
-        path = export(replace(job, dxf_version=version), goal)
-        verified.append(verify_export(plan, path, job.profile, version, job.deployment))
-        done(path)
+        with drafted(replace(job, dxf_version=version), goal) as draft:
+            verified.append(draft.verification)
+            done(draft.place())
     if not find_profile(job.profile).slots:
         done(export(job, home / f"{name}.lbrn2"))
     for goal in (home / f"{name}.pdf", home / "preview.png"):

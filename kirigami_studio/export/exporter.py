@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -19,6 +18,7 @@ from kirigami_studio.export.profile import DEFAULT_PROFILE, DxfVersion
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
 
@@ -65,7 +65,7 @@ class ExportJob:
     dxf_version: DxfVersion = DxfVersion.R2010
     profile: str = DEFAULT_PROFILE
     paper: Paper = Paper.NONE
-    provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
@@ -111,7 +111,7 @@ class Exporter(Protocol):
 
     @property
     def name(self) -> str:
-        """What a person reads in a file dialog."""
+        """Name of the format in a file dialog."""
 
     def write(self, job: ExportJob, path: Path) -> None:
         """Write and verify; raises ExportError and leaves an older file alone when that fails."""

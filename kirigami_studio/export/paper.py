@@ -41,7 +41,7 @@ FOOTER_MM = 14.0
 OVERLAP_MM = 10.0
 #: More pages than this are a mistake in the size.
 MOST_PAGES = 400
-#: From this many pages on, a person is told.
+#: From this many pages on, a note says how many.
 MANY_PAGES = 20
 
 

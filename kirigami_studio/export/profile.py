@@ -1,7 +1,7 @@
 """How a machine's program wants its cut files: colours (AutoCAD colour index, ACI), arcs, layers, closed contours.
 
 Programs choose the operation by colour: MeerK40t cuts pure red only, engraves blue and rasters white; K40 Whisperer
-engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so a person picks one.
+engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so the user picks one.
 
 A name that is engraved has a layer and a colour of its own, in which no profile cuts.  Files of profiles that stand for
 cuts alone do not have it.
@@ -43,7 +43,7 @@ class Profile:
     Attributes
     ----------
     key, name : str
-        For the command line, and for a person.
+        For the command line, and for the user.
     colour : mapping of Layer to int
         AutoCAD colour index.
     one_layer : bool

@@ -1,4 +1,4 @@
-"""What a person may choose about the cuts beyond their widths: connector style, order, tabs, single hinges."""
+"""Choices about the cuts beyond their widths: connector style, order, tabs, single hinges."""
 
 from __future__ import annotations
 

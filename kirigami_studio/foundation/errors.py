@@ -1,4 +1,4 @@
-"""The errors a person may read: a code, the values that belong to it, and one clear sentence made of both.
+"""Errors for the user: a code, the values that belong to it, and one clear sentence.
 
 ``raise TargetError("outline.too_few_points", count=2)`` says what happened; the sentence stands once, in
 :mod:`kirigami_studio.foundation.sentences`, and is made in the user's language only when somebody reads it.

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 from functools import cache
 from pathlib import Path
-
-from kirigami_studio.foundation.errors import KirigamiError
 
 
 @cache
@@ -16,14 +15,15 @@ def resource_root() -> Path:
 
     Raises
     ------
-    KirigamiError
-        Neither place exists: the installation is incomplete.
+    FileNotFoundError
+        Neither place exists: the installation is incomplete.  Not one of the program's own errors, whose sentences are
+        made of catalogues that stand here.
     """
     package = Path(__file__).resolve().parents[1]
     for root in (package / "resources", package.parent / "resources"):
         if (root / "silhouettes").is_dir():
             return root
-    raise KirigamiError("installation.incomplete", package=package)
+    raise FileNotFoundError(errno.ENOENT, "bundled files are missing; install Kirigami Studio again", str(package))
 
 
 def resource(*parts: str) -> Path:

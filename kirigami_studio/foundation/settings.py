@@ -58,7 +58,7 @@ class Setting:
         Whether a text may have no letters.
     code : str
         Code of the problem with a value that does not fit; its sentence may name the setting's ``name``, ``value``,
-        ``least``, ``most`` and ``choices``, and the value by the setting's own name.
+        ``kind``, ``least``, ``most`` and ``choices``, and the value by the setting's own name.
     error : type of KirigamiError
     always_written : bool
         Whether files hold it even where it is the default, and have to; others are left out then.
@@ -157,11 +157,6 @@ class NamedSetting:
     setting: Setting
 
     @property
-    def spoken(self) -> str:
-        """Its name for screen readers."""
-        return self.setting.spoken or self.setting.label.replace("&", "")
-
-    @property
     def is_plain(self) -> bool:
         """Whether it holds a flag, a number, a text or a choice."""
         return issubclass(self.kind, (bool, int, float, str, Enum))
@@ -174,7 +169,7 @@ class NamedSetting:
         low, high = (given if given is not None else end for given, end in zip((one.low, one.high), shown, strict=True))
         return {"least": one.least, "most": one.most, "low": low, "high": high}
 
-    def fitting(self, value: object) -> object:
+    def fitting(self, value: object, **told: object) -> object:
         """The value, a choice as the member of its enumeration that goes by this value.
 
         Raises
@@ -188,7 +183,7 @@ class NamedSetting:
             try:
                 return self.kind(value)
             except ValueError:
-                raise self._refusal(value) from None
+                raise self._refusal(value, told) from None
         if self.kind is str:
             fits = isinstance(value, str) and (bool(value) or self.setting.may_be_empty)
         elif self.kind is bool:
@@ -197,13 +192,19 @@ class NamedSetting:
             number = isinstance(value, int if self.kind is int else (int, float)) and not isinstance(value, bool)
             fits = number and self.setting.holds(value)  # type: ignore[arg-type]
         if not fits:
-            raise self._refusal(value)
+            raise self._refusal(value, told)
         return value
 
-    def _refusal(self, value: object) -> KirigamiError:
+    @staticmethod
+    def word(value: object) -> object:
+        """A choice as it stands in files and on the command line; other values as they are."""
+        return value.value if isinstance(value, Enum) else value
+
+    def _refusal(self, value: object, told: Mapping[str, object]) -> KirigamiError:
+        setting, values = self.setting, {self.name: value, **told, "name": self.name, "value": value}
         words = ", ".join(str(one.value) for one in self.kind) if issubclass(self.kind, Enum) else ""
-        values = {"name": self.name, "value": value, self.name: value, "choices": words}
-        return self.setting.error(self.setting.code, **values, least=self.setting.least, most=self.setting.most)
+        values |= {"choices": words, "kind": self.kind.__name__, "least": setting.least, "most": setting.most}
+        return setting.error(setting.code, **values)
 
 
 @cache
@@ -227,8 +228,10 @@ def _plain(hint: Any) -> tuple[type, bool]:
     return (hint if isinstance(hint, type) else object), False
 
 
-def check(instance: object) -> None:
+def check(instance: object, **told: object) -> None:
     """Refuse a value that does not fit its setting, and turn words into members of their enumerations.
+
+    The sentences of refusals may also name what is ``told``.
 
     Raises
     ------
@@ -238,6 +241,6 @@ def check(instance: object) -> None:
     kind: type = type(instance)
     for name, one in settings_of(kind).items():
         value = getattr(instance, name)
-        fitting = one.fitting(value)
+        fitting = one.fitting(value, **told)
         if fitting is not value:
             object.__setattr__(instance, name, fitting)

@@ -15,6 +15,11 @@ Cancel = Callable[[], bool]
 Steps = Callable[[Cancel], Iterator[T]]
 
 
+def never() -> bool:
+    """A cancel flag that is never raised."""
+    return False
+
+
 def single(work: Callable[[Cancel], T]) -> Steps[T]:
     """Return steps that report once: the value of ``work``."""
 

@@ -14,6 +14,8 @@ import string
 from collections.abc import Mapping
 from pathlib import Path
 
+from kirigami_studio.foundation.resources import resource
+
 DOMAIN = "kirigami_studio"
 #: A folder of catalogues that is looked into before the bundled one.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_LOCALE"
@@ -158,8 +160,6 @@ def _find(code: str) -> tuple[str, Path | None] | None:
 
 
 def _folders() -> tuple[Path, ...]:
-    from kirigami_studio.foundation.resources import resource  # its errors are sentences too
-
     own = os.environ.get(FOLDER_VARIABLE)
     return (*((Path(own),) if own else ()), resource("locale"))
 

@@ -158,7 +158,7 @@ class SelfAttention(nn.Module):
         return result
 
 
-class Stage(nn.Module):
+class UNetStage(nn.Module):
     """A residual block, followed by self-attention where the level has it."""
 
     def __init__(self, block: Residual, attention: SelfAttention | None) -> None:
@@ -283,15 +283,15 @@ class DownwardHalf(nn.Module):
         for level, width in enumerate(shape.channels):
             for _ in range(shape.residuals):
                 block = Residual(self.skips[-1], width, time, shape.groups)
-                self.stages.append(Stage(block, _attention(shape, level)))
+                self.stages.append(UNetStage(block, _attention(shape, level)))
                 self.skips.append(width)
             if level + 1 < len(shape.channels):
                 halved = Residual(width, width, time, shape.groups, nn.AvgPool2d(2))
-                self.stages.append(Stage(halved, None))
+                self.stages.append(UNetStage(halved, None))
                 self.skips.append(width)
         last = self.skips[-1]
         attention = SelfAttention(last, HEADS, shape.groups, shape.dropout)
-        self.middle_in = Stage(Residual(last, last, time, shape.groups), attention)
+        self.middle_in = UNetStage(Residual(last, last, time, shape.groups), attention)
         self.middle_out = Residual(last, last, time, shape.groups)
 
     def forward(self, image: Tensor, t: Tensor, hint: Tensor | None = None) -> tuple[list[Tensor], Tensor, Tensor]:
@@ -318,12 +318,12 @@ class UpwardHalf(nn.Module):
             width = shape.channels[level]
             for _ in range(shape.residuals + 1):
                 block = Residual(below + left.pop(), width, time, shape.groups)
-                self.stages.append(Stage(block, _attention(shape, level)))
+                self.stages.append(UNetStage(block, _attention(shape, level)))
                 self.takes.append(True)
                 below = width
             if level:
                 doubled = Residual(width, width, time, shape.groups, nn.Upsample(scale_factor=2.0, mode="nearest"))
-                self.stages.append(Stage(doubled, None))
+                self.stages.append(UNetStage(doubled, None))
                 self.takes.append(False)
         last = nn.Conv2d(below, 1, 3, padding=1)
         self.leave = nn.Sequential(nn.GroupNorm(shape.groups, below), nn.SiLU(), zeroed(last))

@@ -33,7 +33,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
-from kirigami_studio.polish.objective import Stage
+from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
 
 #: Fewest rows and columns, and most unless another limit is asked for.
@@ -60,7 +60,7 @@ FINER_BETWEEN, FINER_GAIN = (0.95, 0.975), 0.005
 FINER_LIMIT, FINER_PANELS = 24, 312
 #: Poses of each grid that are tried, and the steps of each fit.
 TRIED_POSES = 2
-TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
+TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -296,7 +296,7 @@ def known_for(request: Request) -> GridChoice:
 
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
-    sheet = (request.width_mm, request.least_feature_mm, request.wishes.free_rim, request.start)
+    sheet = (request.width_mm, request.least_feature_mm, request.fit_options.free_rim, request.start)
     return request.target, request.phi, request.symmetry, *sheet
 
 

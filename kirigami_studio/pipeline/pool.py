@@ -25,7 +25,7 @@ from typing import IO
 import kirigami_studio
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Task
+from kirigami_studio.pipeline.tasks import Task, TaskResult
 from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop
 
 log: logging.Logger = topic("pipeline")
@@ -59,10 +59,10 @@ def worker_count() -> int:
     return min(usable_cores(), LARGEST_POOL)
 
 
-class Worker:
+class PolishingWorker:
     """One process and the thread that listens to it."""
 
-    def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[Worker, Report | None]]) -> None:
+    def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[PolishingWorker, Report | None]]) -> None:
         self.assignment: Assignment | None = None
         self.ready = False
         self.silence = 0.0  #: seconds since it was heard, while it had something to say
@@ -129,8 +129,8 @@ class Pool:
         self._silence = silence
         self.size = worker_count() if size is None else size
         self._command = worker_command() if command is None else command
-        self.workers: list[Worker] = []
-        self._reports: SimpleQueue[tuple[Worker, Report | None]] = SimpleQueue()
+        self.workers: list[PolishingWorker] = []
+        self._reports: SimpleQueue[tuple[PolishingWorker, Report | None]] = SimpleQueue()
         self._broken = self.size < 2
         self._batch = 0
         self._winding_down = False
@@ -157,13 +157,13 @@ class Pool:
         self.workers = [worker for worker in self.workers if worker.alive]
         while not self._broken and len(self.workers) < self.size:
             try:
-                self.workers.append(Worker(self._command, self._reports))
+                self.workers.append(PolishingWorker(self._command, self._reports))
             except OSError as error:
                 self._give_up(f"worker processes cannot be started: {error}")
 
     def answers(
         self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
-    ) -> Generator[tuple[int, Answer] | None]:
+    ) -> Generator[tuple[int, TaskResult] | None]:
         """Hand out tasks (number, task) in order and yield answers as they come: None once the first are given, and
         every ``wait`` seconds without an answer.
 
@@ -195,7 +195,7 @@ class Pool:
 
     def _served(
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
-    ) -> Iterator[tuple[int, Answer] | None]:
+    ) -> Iterator[tuple[int, TaskResult] | None]:
         self.start()
         begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
@@ -248,7 +248,7 @@ class Pool:
             except Empty:
                 return
 
-    def _note(self, worker: Worker, report: Report | None) -> None:
+    def _note(self, worker: PolishingWorker, report: Report | None) -> None:
         if isinstance(report, Ready):
             worker.ready = True
             return

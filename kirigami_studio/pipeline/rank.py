@@ -59,7 +59,7 @@ Key = tuple[bool, bool, bool, bool, float, bool, float, int]
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """What a person wants first.
+    """What the user wants first.
 
     Attributes
     ----------

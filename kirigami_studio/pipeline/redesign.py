@@ -37,7 +37,7 @@ from kirigami_studio.polish.vertex_drag import VertexDrag
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
 
-#: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
+#: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20
 
 

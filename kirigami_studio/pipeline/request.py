@@ -1,4 +1,4 @@
-"""What a person asked for: everything that decides the result, and what files repeat of it."""
+"""The request of a run: everything that decides its result, and what files repeat of it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
-from kirigami_studio.polish.continuation import Wishes
+from kirigami_studio.polish.continuation import FitOptions
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
 from kirigami_studio.polish.panel_size import check_least, least_in_cells
@@ -183,9 +183,9 @@ class Request(DesignChoices):
         return least_in_cells(size_mm, self.width_mm, width_in_cells(self.grid, self.start))
 
     @property
-    def wishes(self) -> Wishes:
+    def fit_options(self) -> FitOptions:
         """What fits ask for beside the match."""
-        return Wishes(
+        return FitOptions(
             PREFERENCES[self.prefer],
             self.kept_size,
             self.rim is RimRule.FREE,

@@ -19,7 +19,7 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Task
+from kirigami_studio.pipeline.tasks import Task, TaskResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Done:
 
     batch: int
     number: int
-    answer: Answer
+    answer: TaskResult
 
 
 @dataclass(frozen=True, slots=True)

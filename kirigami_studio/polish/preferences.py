@@ -61,7 +61,7 @@ PREFERENCES = {
 }
 
 
-class PreferenceTerms:
+class FieldPreferenceTerms:
     """The terms of one fit: value, gradient and curvature at any field.
 
     Parameters

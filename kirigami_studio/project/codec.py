@@ -1,4 +1,4 @@
-"""Document <-> members of a project file: JSON for what a person may read, one array for the ratios."""
+"""Document <-> members of a project file: JSON for what the user may read, one array for the ratios."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.evenness import Evenness, evenness
 from kirigami_studio.evaluate.feasibility import Contact
-from kirigami_studio.evaluate.score import Score
-from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
+from kirigami_studio.evaluate.score import Score, confirmed
+from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, confirmed_match
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
@@ -96,6 +96,14 @@ def decode(members: Members) -> Document:
     seconds = _second_targets_of(design)
     rows, columns = _whole_pair(settings, "grid")
     target = _outline(design.record("target")) if design.holds("target") else None
+    candidates = [
+        replace(
+            _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
+            made_with=_run(record, runs),
+            second=_second(record, seconds),
+        )
+        for record, field in zip(records, fields, strict=True)
+    ]
     return Document(
         target=target,
         drawing=_drawing(design),
@@ -106,14 +114,7 @@ def decode(members: Members) -> Document:
             start=_start(settings),
             second=_second_target(settings, seconds),
         ),
-        candidates=tuple(
-            replace(
-                _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
-                made_with=_run(record, runs),
-                second=_second(record, seconds),
-            )
-            for record, field in zip(records, fields, strict=True)
-        ),
+        candidates=_confirmed(candidates, target),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
         fabrication=_fabrication(design.record("fabrication")),
         provenance=design.texts("provenance"),
@@ -360,6 +361,22 @@ def _candidate(record: Record, field: RatioField, sampled: RatioField | None, ta
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),
+    )
+
+
+def _confirmed(candidates: list[Candidate], target: Outline | None) -> tuple[Candidate, ...]:
+    """The designs with scores that they have, whatever the file says."""
+    if target is None:
+        return tuple(candidates)
+    deployments = [deploy(candidate.sheet) for candidate in candidates]
+    scores = confirmed(deployments, [candidate.score for candidate in candidates], target)
+    seconds = [
+        None if candidate.second is None else confirmed_match(deployment, candidate.second)
+        for candidate, deployment in zip(candidates, deployments, strict=True)
+    ]
+    return tuple(
+        replace(candidate, score=score, second=second)
+        for candidate, score, second in zip(candidates, scores, seconds, strict=True)
     )
 
 

@@ -1,4 +1,4 @@
-"""The named changes a person can make: each takes a document and returns an edit, none alters anything."""
+"""The named edits: each takes a document and returns an edit, none alters anything."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import SecondTarget
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, PictureFit, SheetState
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.settings import settings_of
@@ -52,8 +52,8 @@ class SettingsChange(DesignChange, total=False):
 class LaidChange(TypedDict, total=False):
     """Fields of :class:`Laid` that an edit may replace, but the picture."""
 
-    state: State
-    fitting: Fitting
+    state: SheetState
+    fitting: PictureFit
     scale: float
     turn: float
     shift: tuple[float, float]
@@ -149,7 +149,8 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    cut = replace(document.fabrication, **changes)
+    values: dict[str, Any] = {**changes}
+    cut = replace(document.fabrication, **values)
     if "width_mm" in changes and "opened_mm" not in changes:
         cut = replace(cut, opened_mm=None)
     changed = replace(document, fabrication=cut)
@@ -164,7 +165,8 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
     FabricationError
         The number does not fit; see :class:`CutOptions`.
     """
-    options = replace(document.fabrication.options, **changes)
+    values: dict[str, Any] = {**changes}
+    options = replace(document.fabrication.options, **values)
     changed = replace(document, fabrication=replace(document.fabrication, options=options))
     return Edit(_label(CutOptions, changes), changed, merge_key=_merge_key("options", changes))
 

@@ -158,7 +158,7 @@ def settings_json(instance: object) -> dict[str, object]:
     """The plain settings of a dataclass; those that need not be written are left out where they are the default."""
     kind: type = type(instance)
     return {
-        name: value.value if isinstance(value := getattr(instance, name), Enum) else value
+        name: one.word(getattr(instance, name))
         for name, one in settings_of(kind).items()
         if one.is_plain and (one.setting.always_written or getattr(instance, name) != one.default)
     }

@@ -1,4 +1,4 @@
-"""What a person used last and expects to find in the next new project, as a small TOML file."""
+"""Choices that the next new project begins with, as a small TOML file."""
 
 from __future__ import annotations
 

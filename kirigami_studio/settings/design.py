@@ -248,7 +248,6 @@ class DesignChoices:
     polish: int = field(
         default=POLISH_STEPS,
         metadata=Setting(
-            about=mark("How thoroughly designs are fitted to the target: up to {steps} steps."),
             help="fit every design on the exact geometry (default: yes)",
             least=0,
             most=200,
@@ -386,3 +385,9 @@ def with_balance(given: dict[str, Any]) -> dict[str, Any]:
         **given,
         "regular": REGULAR.get(given.get("prefer", FitPreference.BALANCED), REGULAR[FitPreference.BALANCED]),
     }
+
+
+def chosen_settings(grid: tuple[int, int] | None, choices: dict[str, Any], **more: Any) -> DesignSettings:
+    """The settings of a search with these choices, by name; without a grid every run chooses one."""
+    fixed: dict[str, Any] = {} if grid is None else {"grid": grid}
+    return DesignSettings(**fixed, auto_grid=grid is None, **with_balance(choices), **more)

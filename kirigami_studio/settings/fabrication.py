@@ -47,7 +47,7 @@ class FabricationSettings:
     opened_mm : float or None
         Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
     own : Material or None
-        The numbers of ``material`` where that is a person's own and no preset.  Not a choice, so it takes no part in
+        The numbers of ``material`` where that is the user's own and no preset.  Not a choice, so it takes no part in
         comparisons.
 
     Raises
@@ -229,31 +229,40 @@ class FabricationSettings:
         check(self)
 
 
-class FabricationChange(TypedDict, total=False):
-    """Values for fields of :class:`FabricationSettings`, for those who check types."""
+class SheetChange(TypedDict, total=False):
+    """Values for settings of a sheet and its files, for those who check types; choices also by their words."""
 
     width_mm: float
-    opened_mm: float | None
     material: str
     connector_mm: float | None
     kerf_mm: float | None
-    options: CutOptions
     profile: str
-    dxf_version: DxfVersion
-    paper: Paper
+    dxf_version: DxfVersion | str
+    paper: Paper | str
     markers: bool
     engrave: bool
+
+
+class FabricationChange(SheetChange, total=False):
+    """Values for fields of :class:`FabricationSettings`."""
+
+    opened_mm: float | None
+    options: CutOptions
 
 
 class OptionsChange(TypedDict, total=False):
     """Values for those fields of :class:`CutOptions` that hold for the whole sheet."""
 
-    style: ConnectorStyle
-    order: CutOrder
+    style: ConnectorStyle | str
+    order: CutOrder | str
     tabs: int
     tab_mm: float
     copies: int
     copy_gap_mm: float
+
+
+class CutChange(SheetChange, OptionsChange, total=False):
+    """Values for settings of a sheet, of its files and of all its cuts."""
 
 
 def stored_material(settings: FabricationSettings) -> Material | None:

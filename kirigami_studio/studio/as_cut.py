@@ -43,8 +43,7 @@ from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, f
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings, material_for
-from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 
 MPA_PER_GPA = 1e3
 #: A sheet within this (radians) of being closed has closed.
@@ -352,19 +351,22 @@ def simulate(
     return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, plan.made)
 
 
-def simulated(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> SimulatedSheet:
-    """Plan the cuts of a design and close it on their connectors, all in one go; see :func:`simulate`.
+def simulated(
+    candidate: Candidate,
+    plan: CutPlan,
+    width_mm: float,
+    target: Outline | None = None,
+    deployment: Deployment | None = None,
+) -> SimulatedSheet:
+    """Close a design on the connectors of its planned cuts, all in one go; see :func:`simulate`.
 
     Raises
     ------
-    FabricationError
-        A plan that cannot be made.
     MechanicsError
         Panels that do not hang together.
     """
-    deployment, kept = deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
-    plan = plan_of(candidate, settings, deployment)
-    return result_of(simulate(deployment, plan, settings.width_mm, candidate.final_phi, target, kept))
+    motion, kept = deployment or deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
+    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept))
 
 
 def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import Report, check_plan
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Severity
@@ -15,7 +15,7 @@ from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 
 
 def plan_of(
@@ -78,23 +78,7 @@ def plan_sheet(
     )
 
 
-def checked_plan(candidate: Candidate, settings: FabricationSettings, name: str = "") -> tuple[CutPlan, Report]:
-    """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
-
-    Its name is engraved if the settings say so.
-
-    Raises
-    ------
-    FabricationError
-        The plan cannot be made, or the sheet would not survive it.
-    """
-    plan = plan_of(candidate, settings, name=name)
-    report = check_plan(plan, phi=candidate.final_phi)
-    refuse_errors(report)
-    return plan, report
-
-
-def refuse_errors(report: Report) -> None:
+def refuse_errors(report: PlanReport) -> None:
     """Refuse cuts that the sheet would not survive.
 
     Raises

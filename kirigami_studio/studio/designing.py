@@ -7,7 +7,7 @@ designs are ranked by how they do as cut, and what project they make.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -16,12 +16,13 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
-from kirigami_studio.foundation.steps import Cancel
+from kirigami_studio.foundation.steps import Cancel, never
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
@@ -30,12 +31,11 @@ from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings, material_for
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
-#: What project settings and request both say.
-SHARED = frozenset(one.name for one in fields(DesignSettings)) & {one.name for one in fields(Request)} - {"grid"}
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
 
@@ -119,13 +119,10 @@ class KnownAsCut:
 
 #: What a run reports.
 RunReport = Event | ModelFound | GridChosen | Decoded
+#: What fitting designs again reports.
+RefitReport = Decoded | FittedAgain | Progress | KnownAsCut
 #: Gets how far a run has come.
 Tell = Callable[[Progress], object]
-
-
-def never() -> bool:
-    """A cancel flag that is never raised."""
-    return False
 
 
 def request_for(
@@ -156,11 +153,9 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    shared = {name: getattr(wanted, name) for name in SHARED}
-    return Request(
+    return Request.of(
         target,
-        None if wanted.auto_grid else wanted.grid,
-        **shared,
+        wanted,
         trim=trim,
         budget_seconds=budget_seconds,
         width_mm=cut.width_mm,
@@ -265,7 +260,7 @@ def _ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
 ) -> Generator[Progress, None, Result]:
     """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
-    from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
+
     from kirigami_studio.studio.as_cut import jam_angles
     from kirigami_studio.studio.verdict import looking
 
@@ -336,9 +331,7 @@ def facts_of(request: Request) -> dict[str, str]:
 def document_of(result: Result, cut: FabricationSettings) -> Document:
     """The project that a run makes of its request: its designs, ranked, the best chosen."""
     request, facts = result.request, facts_of(result.request)
-    shared = {name: getattr(request, name) for name in SHARED}
-    wanted = DesignSettings(request.chosen_grid, **shared, auto_grid=request.grid_chosen)
-    empty = Document(request.target, wanted, fabrication=cut)
+    empty = Document(request.target, request.settings, fabrication=cut)
     return renew_candidates(empty, NewDesigns(result.candidates, facts), result.ranking.key).document
 
 
@@ -429,15 +422,27 @@ def refitting(
 
 
 def fitting_again(
-    request: Request, candidates: tuple[Candidate, ...], cancel: Cancel
-) -> Iterator[Decoded | FittedAgain]:
-    """Fit designs again by what the request prefers; a better one comes decoded before its report."""
+    request: Request,
+    candidates: tuple[Candidate, ...],
+    among: tuple[Candidate, ...],
+    cut: FabricationSettings,
+    cancel: Cancel,
+) -> Iterator[RefitReport]:
+    """Fit designs again by what the request prefers; a better one comes decoded before its report.
+
+    Where some became better, what is known of all of them as cut comes last: ``among`` are the designs there were.
+    """
     from kirigami_studio.pipeline.fit_again import fit_again
 
+    better: dict[Candidate, Candidate] = {}
     for report in fit_again(request, candidates, cancel):
-        if report.after is not None:
+        if report.before is not None and report.after is not None:
+            better[report.before] = report.after
             yield decoded(report.after)
         yield FittedAgain(report.done, report.total, report.before, report.after)
+    if better:
+        found = Result(request, tuple(better.get(one, one) for one in among), 0, 0.0)
+        yield KnownAsCut.of((yield from _ranked_as_cut(found, cut, (), cancel)), cut)
 
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:

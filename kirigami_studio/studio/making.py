@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.errors import Cancelled, ExportError, KirigamiError, ProjectError, UsageError
-from kirigami_studio.foundation.steps import Cancel, in_turns
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
-from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.file_kinds import kind_of
 
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
-    from kirigami_studio.fabricate.checks import Report
+    from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
     from kirigami_studio.mechanics.gripping import Gripping
@@ -56,7 +59,9 @@ class Planned:
     Attributes
     ----------
     plan : CutPlan
-    report : Report
+    report : PlanReport
+    verdict : Verdict
+        What is to be expected as long as nobody has closed the sheet on its connectors.
     removed_share : float, 0..1
         Share of the sheet that was trimmed away.
     work : Work or None
@@ -64,9 +69,34 @@ class Planned:
     """
 
     plan: CutPlan
-    report: Report
+    report: PlanReport
+    verdict: Verdict
     removed_share: float = 0.0
     work: Work | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """What is to be written.
+
+    Attributes
+    ----------
+    path : Path
+        A file, whose extension names its kind; or the folder of a whole set.
+    name : str or None
+        Of the cut files of a whole set, without extension; None for one file.
+    record : bool
+        Whether all settings are written beside them as .json.
+    """
+
+    path: Path
+    name: str | None = None
+    record: bool = False
+
+    @property
+    def has_pdf(self) -> bool:
+        """Whether a PDF is among it, whose pages may be many."""
+        return self.name is not None or self.path.suffix.lower() == ".pdf"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,6 +106,7 @@ class Exported:
     Attributes
     ----------
     path : Path
+        The file, or the folder of a whole set.
     planned : Planned or None
         What it holds; pictures hold no plan.
     verifications : tuple of Verification
@@ -88,6 +119,8 @@ class Exported:
         Names of what an earlier export left in the folder and this one does not have: all of it, and what was removed.
     verdict : Verdict or None
         On the sheet that a cut file holds; coupons and pictures have none.
+    files : tuple of Path
+        All of them, in the order of writing.
     """
 
     path: Path
@@ -98,6 +131,12 @@ class Exported:
     older: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
     verdict: Verdict | None = None
+    files: tuple[Path, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether every file that was read back is as planned."""
+        return all(found.ok for found in self.verifications)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,12 +165,8 @@ class CutRequest:
         Of the candidate's final field: that of the trim, if it is trimmed.
     target : Outline or None
     settings : FabricationSettings
-    facts : mapping of str to str
-        Where the design comes from.
-    as_cut : AsCut or None
-        How it does as cut, if that is known already.
-    artwork : Artwork or None
-        What is printed on the sheet.
+    as_cut : AsCut, str or None
+        How it does as cut, or why that cannot be told, if that is known already.
     document : Document or None
         The project of the design, which cut files carry with this design alone.
     """
@@ -140,33 +175,74 @@ class CutRequest:
     deployment: Deployment
     target: Outline | None
     settings: FabricationSettings
-    facts: Mapping[str, str] = field(default_factory=dict)
-    as_cut: AsCut | None = None
-    artwork: Artwork | None = None
+    as_cut: AsCut | str | None = None
     document: Document | None = None
+
+    @classmethod
+    def of(cls, document: Document, settings: FabricationSettings | None = None) -> CutRequest:
+        """The chosen design of a project, cut as the project says or by other settings.
+
+        Raises
+        ------
+        ProjectError
+            None is chosen.
+        """
+        candidate, cut = chosen_candidate(document), document.fabrication if settings is None else settings
+        motion = deploy(candidate.final_sheet)
+        return cls(candidate, motion, document.target, cut, document=replace(document, fabrication=cut))
 
     @property
     def name(self) -> str:
         """What the design is called, "" where nobody knows."""
         return "" if self.document is None else self.document.name_of(self.candidate)
 
+    @property
+    def facts(self) -> Mapping[str, str]:
+        """Where the design comes from."""
+        return {} if self.document is None else design_facts(self.document, self.candidate)
+
+    @property
+    def artwork(self) -> Artwork | None:
+        """What is printed on the sheet."""
+        return None if self.document is None else self.document.artwork
+
+
+def chosen_candidate(document: Document) -> Candidate:
+    """The chosen design of a project.
+
+    Raises
+    ------
+    ProjectError
+        It has none.
+    """
+    candidate = document.candidate
+    if candidate is None or document.target is None:
+        raise ProjectError("export.no_chosen_design")
+    return candidate
+
+
+# from a design to its files -------------------------------------------------------------------------------------------
+
 
 def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
     """Plan the cuts and check them."""
-    importing.import_as_cut()  # the plan is judged in the window's thread, which is not to wait for imports
+    importing.import_as_cut()
     yield planned(request, cancel)
 
 
 _PLANS: OrderedDict[tuple[object, ...], Planned] = OrderedDict()
 
 
-def planned(request: CutRequest, cancel: Cancel) -> Planned:
+def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     """Plan the cuts and check them, in one go; a trimmed design gets its trimmed outline.
 
     What was planned lately is not planned again.
-    """
-    from kirigami_studio.project.settings import material_for
 
+    Raises
+    ------
+    FabricationError
+        A plan that cannot be made.
+    """
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
@@ -181,13 +257,14 @@ def planned(request: CutRequest, cancel: Cancel) -> Planned:
 def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.studio.cutting import plan_of
+    from kirigami_studio.studio.verdict import judge
 
-    trim = request.candidate.trim
-    plan = plan_of(request.candidate, request.settings, request.deployment, cancel, request.name)
-    report = check_plan(plan, phi=request.candidate.final_phi)
+    candidate, trim = request.candidate, request.candidate.trim
+    plan = plan_of(candidate, request.settings, request.deployment, cancel, request.name)
+    report = check_plan(plan, phi=candidate.final_phi)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, removed, _work(plan, request.settings.profile))
+    return Planned(plan, report, judge(candidate, plan, report, None), removed, _work(plan, request.settings.profile))
 
 
 def _work(plan: CutPlan, profile: str) -> Work | None:
@@ -206,81 +283,22 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
         return None
 
 
-def exporting(request: CutRequest, path: Path, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
-    """Write one file of the kind that its extension names; cut files are planned, checked, read back and judged.
+def closed(request: CutRequest, made: Planned) -> AsCut | str:
+    """How the planned sheet does as cut, closed on its connectors in one go unless that is known, or why not."""
+    from kirigami_studio.studio.verdict import closed_as_cut
 
-    A PDF of many pages is written only where ``many_pages`` are wanted.
-    """
-    importing.import_exporters()
-    from kirigami_studio.export.registry import export, find_exporter
-
-    find_exporter(path)  # an unknown kind is refused before anything is planned
-    if not kind_of(path.suffix).cuts:
-        yield Exported(export(export_job(request, None), path), None)
-        return
-    made = planned(request, cancel)
-    size, paper = made.plan.copies.spread_mm, request.settings.paper
-    if path.suffix.lower() == ".pdf" and not many_pages and (many := _many_pages(size, paper)):
-        yield many
-        return
-    job = export_job(request, made)
-    with importing.collecting_between() as collect:
-        written = export(job, path)
-        collect()
-        found = _verified(made.plan, path, request.settings, job.deployment)
-        collect()
-    yield Exported(written, made, found, verdict=_judging(request, made)(found))
+    if request.as_cut is not None:
+        return request.as_cut
+    return closed_as_cut(request.candidate, request.deployment, made.plan, request.settings.width_mm, request.target)
 
 
-def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
-    """What to know before a PDF (width, height; mm) of many pages is written; None for one of few."""
-    from kirigami_studio.export.paper import page_notes, tile
+def judged(
+    request: CutRequest, made: Planned, as_cut: AsCut | str | None, verifications: Sequence[Verification] = ()
+) -> Verdict:
+    """Judge a planned sheet by its check, by how it does as cut, and by what was found in its files."""
+    from kirigami_studio.studio.verdict import judge
 
-    notes = page_notes(size, paper)
-    return ManyPages(len(tile(size, paper).tiles), notes[0].text) if notes else None
-
-
-def exporting_all(
-    request: CutRequest, folder: Path, name: str, many_pages: bool, cancel: Cancel
-) -> Iterator[Exported | ManyPages]:
-    """Write everything that there is of a design into a folder; the cut files are read back.
-
-    Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
-    """
-    importing.import_exporters()
-    from kirigami_studio.export.export_set import export_all
-
-    def stop_if_asked(_: Path) -> None:
-        collect()
-        if cancel():
-            raise Cancelled("export.stopped", folder=folder)
-
-    made = planned(request, cancel)
-    if not many_pages and (many := _many_pages(made.plan.copies.spread_mm, request.settings.paper)):
-        yield many
-        return
-    judge = _judging(request, made)
-    with importing.collecting_between() as collect:
-        found = export_all(
-            export_job(request, made),
-            folder,
-            name,
-            on_written=stop_if_asked,
-            judged=lambda verifications: judge(verifications).to_json(),
-        )
-        collect()
-    left, removed = (tuple(path.name for path in paths) for paths in (found.older, found.removed))
-    verdict = judge(found.verifications)
-    yield Exported(folder, made, found.verifications, older=left, removed=removed, verdict=verdict)
-
-
-def _judging(request: CutRequest, made: Planned) -> Callable[[Sequence[Verification]], Verdict]:
-    """A function that judges a design by its files; it is closed on its connectors here if nobody did that."""
-    from kirigami_studio.studio.verdict import closed_as_cut, judge
-
-    candidate, width = request.candidate, request.settings.width_mm
-    known = request.as_cut or closed_as_cut(candidate, request.deployment, made.plan, width)
-    return lambda verifications: judge(candidate, made.plan, made.report, known, verifications)
+    return judge(request.candidate, made.plan, made.report, as_cut, verifications)
 
 
 def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
@@ -300,6 +318,107 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         artwork=request.artwork,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
+
+
+def written(
+    request: CutRequest,
+    made: Planned,
+    output: Output,
+    as_cut: AsCut | str | None,
+    motion: CutMotion | None = None,
+    on_written: Callable[[Path], None] | None = None,
+) -> Exported:
+    """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
+
+    Parameters
+    ----------
+    request : CutRequest
+    made : Planned
+    output : Output
+    as_cut : AsCut, str or None
+        As :func:`closed` tells; None where nobody has looked, for the verdict.
+    motion : CutMotion, optional
+        What an animation shows.
+    on_written : callable, optional
+        Gets each path of a whole set once it is there, and may raise to stop.
+
+    Raises
+    ------
+    ExportError
+        An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
+    """
+    from kirigami_studio.export.export_set import drafted, export_all
+    from kirigami_studio.export.provenance import sidecar_path, write_sidecar
+    from kirigami_studio.export.registry import export
+    from kirigami_studio.export.verification import FORMATS
+
+    job, path = replace(export_job(request, made), motion=motion), output.path
+    if output.name is not None:
+        found = export_all(
+            job,
+            path,
+            output.name,
+            output.record,
+            on_written,
+            lambda verifications: judged(request, made, as_cut, verifications).to_json(),
+        )
+        left, gone = (tuple(one.name for one in paths) for paths in (found.older, found.removed))
+        verdict = judged(request, made, as_cut, found.verifications)
+        files, verified = found.files, found.verifications
+        return Exported(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
+    if path.suffix.lower() in FORMATS:
+        with drafted(job, path) as draft:
+            verified = (draft.verification,)
+            verdict = judged(request, made, as_cut, verified)
+            place = draft.place()
+    else:
+        verified, verdict = (), judged(request, made, as_cut)
+        place = export(job, path)
+    files = (place,)
+    if output.record:
+        files = (place, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
+    return Exported(place, made, verified, motion=motion, verdict=verdict, files=files)
+
+
+def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
+    """Write one file or a whole set; cut files are planned, checked, read back and judged.
+
+    A PDF of many pages is written only where ``many_pages`` are wanted.
+    """
+    importing.import_exporters()
+    importing.import_as_cut()
+    from kirigami_studio.export.registry import export, find_exporter
+
+    path = output.path
+    if output.name is None:
+        find_exporter(path)  # an unknown kind is refused before anything is planned
+        if not kind_of(path.suffix).cuts:
+            yield Exported(export(export_job(request, None), path), None)
+            return
+    made = planned(request, cancel)
+    size, paper = made.plan.copies.spread_mm, request.settings.paper
+    if output.has_pdf and not many_pages and (many := _many_pages(size, paper)):
+        yield many
+        return
+
+    def stop_if_asked(_: Path) -> None:
+        collect()
+        if cancel():
+            raise Cancelled("export.stopped", folder=path)
+
+    as_cut = closed(request, made)
+    with importing.collecting_between() as collect:
+        found = written(request, made, output, as_cut, on_written=stop_if_asked)
+        collect()
+    yield found
+
+
+def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
+    """What to know before a PDF (width, height; mm) of many pages is written; None for one of few."""
+    from kirigami_studio.export.paper import page_notes, tile
+
+    notes = page_notes(size, paper)
+    return ManyPages(len(tile(size, paper).tiles), notes[0].text) if notes else None
 
 
 def exporting_artwork(
@@ -329,25 +448,30 @@ def exporting_coupon(
     """Write the calibration coupon of a material as a cut file, and read it back."""
     from kirigami_studio.export.dxf import write_dxf
     from kirigami_studio.export.profile import find_profile
+    from kirigami_studio.export.verification import verify_export
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.fabricate.coupon import plan_coupon
+    from kirigami_studio.studio.verdict import Verdict
 
     if path.suffix.lower() != ".dxf":
         raise UsageError("coupon.not_dxf", name=path.name)
     plan = plan_coupon(material)
-    write_dxf(plan, path, settings.dxf_version, find_profile(settings.profile))
-    yield Exported(path, Planned(plan, check_plan(plan)), _verified(plan, path, settings))
+    with TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
+        draft = Path(folder) / path.name
+        write_dxf(plan, draft, settings.dxf_version, find_profile(settings.profile))
+        found = replace(verify_export(plan, draft, settings.profile, settings.dxf_version), path=path)
+        write_atomically(path, draft.read_bytes())
+    yield Exported(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
 
-def _verified(
-    plan: CutPlan, path: Path, settings: FabricationSettings, deployment: Deployment | None = None
-) -> tuple[Verification, ...]:
-    """Read a cut file again with two readers, if its kind is among those that are verified."""
-    from kirigami_studio.export.verification import FORMATS, verify_export
+def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
+    """Compare a cut file with the chosen design of a project as the project would cut it, and judge the sheet."""
+    from kirigami_studio.export.verification import verify_export
 
-    if path.suffix.lower() not in FORMATS:
-        return ()
-    return (verify_export(plan, path, settings.profile, settings.dxf_version, deployment),)
+    request = CutRequest.of(document)
+    made, cut = planned(request), request.settings
+    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment)
+    return found, judged(request, made, closed(request, made), [found])
 
 
 # the sheet as cut -----------------------------------------------------------------------------------------------------
@@ -409,6 +533,21 @@ def animating(
     yield Exported(written, None, motion=shown, not_as_cut=why)
 
 
+def judging(
+    request: CutRequest,
+    made: Planned,
+    as_cut: AsCut | str,
+    others: Mapping[str, Candidate],
+    run: Request | None,
+    cancel: Cancel,
+) -> Iterator[Verdict | Advice | None]:
+    """Judge a sheet, and where it is not ready to cut, try changes on its design, see :func:`fixing`."""
+    verdict = judged(request, made, as_cut)
+    yield verdict
+    if not verdict.ok:
+        yield from fixing(request, verdict, others, run, cancel)
+
+
 def fixing(
     request: CutRequest, verdict: Verdict, others: Mapping[str, Candidate], run: Request | None, cancel: Cancel
 ) -> Iterator[Advice | None]:
@@ -417,13 +556,11 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.pipeline.coarser import coarser_designs
-    from kirigami_studio.studio.cutting import plan_of
-    from kirigami_studio.studio.fixes import find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
     from kirigami_studio.studio.verdict import refused
 
     try:
-        plan_of(request.candidate, request.settings, request.deployment, cancel)
+        planned(request, cancel)
     except Cancelled:
         raise
     except KirigamiError as error:
@@ -449,7 +586,6 @@ def estimating(
     designs: tuple[tuple[Candidate, Deployment, FabricationSettings], ...], cancel: Cancel
 ) -> Iterator[Estimated]:
     """Estimate whether designs close, each as it would be cut, a few at a time; all are of one material."""
-    from kirigami_studio.project.settings import material_for
     from kirigami_studio.studio.as_cut import estimate
 
     material = material_for(designs[0][2])

@@ -18,8 +18,7 @@ from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.store import CUT_FILES
-from kirigami_studio.studio.targets import PICTURES, TargetRead, reading_target
+from kirigami_studio.studio.targets import PICTURES, TargetRead, design_of, reading_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
@@ -59,7 +58,7 @@ class DesignRead:
 
 def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead | DesignRead]:
     """Read a target, the parts of a drawing that has several to choose from, or the design of a cut file."""
-    document = _design_of(source)
+    document = design_of(Path(source))
     if document is not None:
         yield DesignRead(document)
     else:
@@ -68,7 +67,7 @@ def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRe
 
 def reading_second(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
     """Read a second target, or the parts that it may be; of a cut file it is the target of the design there."""
-    document = _design_of(source)
+    document = design_of(Path(source))
     if document is not None and document.target is not None:
         yield TargetRead(document.target)
     else:
@@ -80,7 +79,7 @@ def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRea
 
     One that is too hollow is refused.
     """
-    if _design_of(source) is not None:
+    if design_of(Path(source)) is not None:
         yield outline_start(read_target(source))
         return
     for found in _reading_outline(source, cancel):
@@ -119,18 +118,6 @@ def _has_islands(source: str) -> bool:
         return False
     areas = sorted((part.worth for part in parts), reverse=True)
     return len(areas) > 1 and areas[1] >= ISLAND * areas[0] and areas[0] >= 0.5 * sum(areas[MOST_ISLANDS:])
-
-
-def _design_of(source: str) -> Document | None:
-    """The design that a cut file carries; None for anything else."""
-    from kirigami_studio.project import store
-
-    if Path(source).suffix.lower() not in CUT_FILES:
-        return None
-    try:
-        return store.load(Path(source))
-    except KirigamiError:
-        return None  # another program's drawing, or one that cannot be read: its reader says so
 
 
 def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:

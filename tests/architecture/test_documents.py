@@ -136,9 +136,9 @@ def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, .
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """What the window's modules give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
+    """What the window's modules, and those with settings, give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
     found, sayings = set(), ("tr", "tr_n", "mark")
-    for path in (package / "gui").rglob("*.py"):
+    for path in (one for part in ("gui", "settings", "fabricate") for one in (package / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in sayings:
                 words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
@@ -190,7 +190,6 @@ def test_that_the_german_guide_names_the_keys_of_the_english_one(guides: tuple[s
         assert sorted(named(own, CODE)) == sorted(keys), own
 
 
-@pytest.mark.long
 def test_that_the_german_guide_calls_things_as_the_german_window_does(guides: tuple[str, str]) -> None:
     texts = {forms(message.id)[0]: forms(message.string) for message in catalogue("de") if message.id}
     english, german = (blocks_of(guide) for guide in guides)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = [pytest.mark.slow, pytest.mark.torch]
+pytestmark = pytest.mark.torch
 
 SOURCES = ("kirigami_studio", "resources", "pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
 
@@ -65,7 +65,6 @@ def test_that_the_wheel_states_its_licence_and_its_command(wheel: Path) -> None:
     assert "kirigami-studio = kirigami_studio.cli:main" in text["entry_points.txt"]
 
 
-@pytest.mark.long
 def test_that_the_installed_program_takes_a_silhouette_to_a_checked_cut_file(
     wheel: Path, repository: Path, tmp_path: Path
 ) -> None:

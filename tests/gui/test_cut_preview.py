@@ -107,7 +107,6 @@ def test_that_the_last_step_ends_with_the_plans_own_time_and_length() -> None:
     assert steps.at(0.0) == 1 and steps.at(1e9) == steps.last
 
 
-@pytest.mark.long
 def test_that_a_step_shows_the_cuts_so_far_and_the_one_under_way(cutting: MainWindow, qtbot: QtBot) -> None:
     bar, view = cutting.stage.cuts.bar, cutting.stage.cuts.view
     whole = view.grab().toImage()
@@ -141,7 +140,6 @@ def test_that_travel_is_drawn_when_asked_for(cutting: MainWindow, qtbot: QtBot) 
     assert page.view.grab().toImage() != without
 
 
-@pytest.mark.long
 def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
     cutting: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
@@ -164,7 +162,6 @@ def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
     assert page.problems.currentRow() == 0
 
 
-@pytest.mark.long
 def test_that_a_refused_plan_leaves_the_last_picture_and_says_so(cutting: MainWindow, until: Until) -> None:
     view = cutting.stage.cuts.view
     before = view.grab().toImage()

@@ -51,7 +51,6 @@ def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
     return window.dialogs.report
 
 
-@pytest.mark.long
 def test_that_an_export_opens_a_report_that_blocks_nothing(
     designed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -68,7 +67,6 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     assert not report.isVisible()
 
 
-@pytest.mark.long
 def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     first = export(designed, tmp_path / "a.dxf", until)
     designed.controller.export(tmp_path / "b.svg")
@@ -121,7 +119,6 @@ class Desktop(QObject):
         self.opened.append(url.toLocalFile())
 
 
-@pytest.mark.long
 def test_that_show_in_folder_opens_the_files_folder(
     designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -134,7 +131,6 @@ def test_that_show_in_folder_opens_the_files_folder(
     assert desktop.opened == [str(tmp_path)]
 
 
-@pytest.mark.long
 def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     designed.controller.fabrication.change(profile="lightburn", dxf_version="R12")
     export(designed, tmp_path / "cut.dxf", until)
@@ -143,7 +139,6 @@ def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow
     assert len({entity.dxf.color for entity in drawing.modelspace()}) == 3
 
 
-@pytest.mark.long
 def test_that_one_file_for_each_layer_is_reported_as_its_folder(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
@@ -199,7 +194,6 @@ def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_pat
     assert window.fabrication.options.dxf_version.currentData() == "R12"
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(
     "content",
     [

@@ -89,7 +89,6 @@ def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -
     assert "Generate one first" in heart.messages.messages[-1].sentence
 
 
-@pytest.mark.long
 def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:

@@ -170,7 +170,6 @@ print(json.dumps([application.run(["kirigami-studio", sys.argv[1]]), *told]))
 """
 
 
-@pytest.mark.slow
 def test_that_the_program_goes_on_in_the_other_language(project_file: Path, tmp_path: Path) -> None:
     folders = {name: str(tmp_path / name) for name in ("XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME", "HOME")}
     command = [sys.executable, "-c", PROGRAM, str(project_file)]
@@ -222,7 +221,6 @@ def test_that_what_has_no_room_in_german_ends_with_dots(designed: MainWindow) ->
     without_room(designed)
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("code", ["en", "de"])
 @pytest.mark.parametrize("height", [40, 120, 190, 264, 500])
 def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(qtbot: QtBot, code: str, height: int) -> None:

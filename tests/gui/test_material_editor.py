@@ -127,12 +127,10 @@ def test_that_a_form_that_nobody_touched_changes_nothing(qtbot: QtBot) -> None:
 
 
 def test_that_every_number_says_its_unit(editor: MaterialEditor) -> None:
-    for number in NUMBERS:
-        box = editor.form.numbers[number.field]
-        assert isinstance(box, QDoubleSpinBox)
-        assert (
-            box.suffix() == f" {number.unit}" and number.unit in box.toolTip() and number.unit in box.accessibleName()
-        )
+    for name in NUMBERS:
+        box, unit = editor.form.numbers[name], editor.form.fields.settings[name].setting.unit
+        assert isinstance(box, QDoubleSpinBox) and unit
+        assert box.suffix() == f" {unit}" and unit in box.toolTip() and unit in box.accessibleName()
 
 
 def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtBot) -> None:

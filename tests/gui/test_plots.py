@@ -87,7 +87,6 @@ def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, u
     assert not stage.plots.complete
 
 
-@pytest.mark.long
 def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWindow, until: Until) -> None:
     plots, made = designed.stage.plots, []
     plots._turn.timeout.connect(lambda: made.append(len(plots.charts)))
@@ -99,7 +98,6 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
         assert len(chart.curves[0].getData()[0]) >= ANGLES and chart.nearest is not None
 
 
-@pytest.mark.long
 def test_that_another_design_gets_curves_of_its_own_and_old_ones_are_kept(plotted: MainWindow, until: Until) -> None:
     stage, first = plotted.stage, plotted.stage.plots.charts[0].curves[0].getData()[1].copy()
     plotted.commands["next"].trigger()
@@ -160,7 +158,6 @@ def test_that_a_mouse_drags_the_line_and_a_click_moves_it(plotted: MainWindow, q
     assert read_out is not None and read_out[0] == pytest.approx(150.0, abs=3.0)
 
 
-@pytest.mark.long
 def test_that_numbers_are_those_of_the_angle_they_name_and_in_mm(plotted: MainWindow) -> None:
     stage, entry = plotted.stage, plotted.controller.stage
     assert entry is not None
@@ -174,7 +171,6 @@ def test_that_numbers_are_those_of_the_angle_they_name_and_in_mm(plotted: MainWi
     assert (stage.plots.charts[1].nearest or (0, (0,)))[1][0] == pytest.approx(4 * area)
 
 
-@pytest.mark.long
 def test_that_a_narrow_stage_shows_one_chart_of_choice_below(plotted: MainWindow) -> None:
     stage = plotted.stage
     assert stage.split.orientation() is Qt.Orientation.Horizontal
@@ -186,7 +182,6 @@ def test_that_a_narrow_stage_shows_one_chart_of_choice_below(plotted: MainWindow
     assert [chart.isVisible() for chart in stage.plots.charts] == [False, False, True, False, False]
 
 
-@pytest.mark.long
 def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted: MainWindow, tmp_path: Path) -> None:
     chart = plotted.stage.plots.charts[0]
     corner = QPoint(chart.width() - 2, chart.height() - 2)
@@ -201,7 +196,6 @@ def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted:
     assert plotted.stage.plots.isVisible() and plotted.commands["plots"].isChecked()
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("width", [250, 400])
 def test_that_the_numbers_above_a_curve_are_never_cut_off(plotted: MainWindow, width: int) -> None:
     for chart in plotted.stage.plots.charts:

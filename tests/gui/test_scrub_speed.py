@@ -40,7 +40,6 @@ def printed_sheet(design: PosedDesign, target: Outline) -> ShownArtwork:
     return shown
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize("printed", [False, True], ids=["plain panels", "artwork"])
 @pytest.mark.parametrize("overlays", [USUAL, frozenset(Overlay)], ids=["usual overlays", "all overlays"])
 @pytest.mark.parametrize(("first", "last"), [(math.pi, 0.3), (0.2, 0.0)], ids=["on the way", "near the target"])

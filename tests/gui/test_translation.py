@@ -10,7 +10,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from babel.messages.catalog import Catalog
 
 from kirigami_studio.foundation.words import FOLDER_VARIABLE
@@ -73,7 +72,6 @@ def test_that_translators_get_the_sentences_that_the_tests_compare(repository: P
     assert {name: (int(one), int(many)) if one else None for name, one, many in named} == KEYWORDS
 
 
-@pytest.mark.long
 def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:
     """What is said while a module is imported would stay in the language of that moment: mark it, say it later."""
     said = []
@@ -95,7 +93,6 @@ def said_on_import(module: ast.AST) -> list[int]:
     return found
 
 
-@pytest.mark.slow
 def test_that_nothing_in_the_window_is_said_in_english_only(
     repository: Path, tmp_path: Path, project_file: Path
 ) -> None:

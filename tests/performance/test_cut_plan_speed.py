@@ -20,7 +20,6 @@ from kirigami_studio.lattice.ratio_field import RatioField
 VOIDS = 24
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("style", list(ConnectorStyle))
 def test_that_576_voids_are_planned_checked_and_written_while_one_waits(style: ConnectorStyle) -> None:
     field = RatioField.from_log10(np.random.default_rng(0).uniform(-0.7, 0.7, (VOIDS, VOIDS)))

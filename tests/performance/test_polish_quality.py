@@ -30,7 +30,6 @@ def best(request: Request) -> Candidate:
     return best_of(request).best
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("setting", [as_in_paper, replace], ids=["as in the paper", "as usual"])
 def test_that_four_polished_samples_match_an_outline_that_a_sheet_can_make(
     outlines: list[Outline], setting: Callable[[Request], Request]
@@ -43,7 +42,6 @@ def test_that_four_polished_samples_match_an_outline_that_a_sheet_can_make(
     assert all(candidate.score.feasible for candidate in found)
 
 
-@pytest.mark.long
 def test_that_the_calmest_preference_matches_no_worse_than_the_sample_with_less_variation(
     outlines: list[Outline],
 ) -> None:

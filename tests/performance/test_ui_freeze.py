@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 from watched_session import THEME
 
-pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
+pytestmark = [pytest.mark.qt, pytest.mark.torch]
 
 #: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
 THEME_LIMIT = 0.3
@@ -50,7 +50,6 @@ def too_long(turns: Turns, limit: float) -> Turns:
     return {step: turn for step, turn in turns.items() if sum(turn) >= (THEME_LIMIT if step == THEME else limit)}
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("script", SCRIPTS, ids=" ".join)
 def test_that_no_step_of_a_session_freezes_the_ui(script: tuple[str, ...], tmp_path: Path) -> None:
     best: Turns = {}

@@ -159,6 +159,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The audit of ezdxf found {count} errors in {path}, the first: {first:.120}.",
     ),
     "cut_file.damaged": mark("{path} is a damaged DXF. Export it again from its program."),
+    "cut_file.foreign_svg": mark(
+        "{path} is an SVG, but no cut file of this program. Choose one that it exported, or a DXF of any program."
+    ),
     "dxf.too_large": mark("{path} is larger than {limit} MB and cannot be a cut file."),
     "dxf.cannot_open": mark("Cannot read {path}: {reason}. Choose a DXF file."),
     "dxf.no_dxf": mark("Cannot read {path}: it is not a DXF file. Choose a DXF file."),

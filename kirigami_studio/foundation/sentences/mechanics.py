@@ -104,4 +104,5 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "There is no drive '{text:.40}'. Use morpher, or clamped:AXIS:MM with AXIS x, y, xy or yx, such as "
         "clamped:y:1.05."
     ),
+    "verdict.not_made": mark("The sheet could not be judged: {reason}"),
 }

@@ -20,22 +20,20 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import edits
-from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import stored_material
 from kirigami_studio.project.sheet_size import set_opened_size
-from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_material
 from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
     Exported,
     ManyPages,
     Motion,
+    Output,
     Planned,
     animating,
     exporting,
-    exporting_all,
     exporting_artwork,
     exporting_coupon,
     planning,
@@ -78,15 +76,8 @@ class CutPlanner(QObject):
         stage, document = self._session.stage, self._session.document
         if stage is None:
             return None
-        facts = design_facts(document, stage.candidate)
         return CutRequest(
-            stage.candidate,
-            stage.design.deployment,
-            document.target,
-            document.fabrication,
-            facts,
-            artwork=document.artwork,
-            document=document,
+            stage.candidate, stage.design.deployment, document.target, document.fabrication, document=document
         )
 
     def plan_soon(self) -> None:
@@ -127,7 +118,7 @@ class CutPlanner(QObject):
     def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
         """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting {name} …", name=path.name))
-        steps = partial(exporting, request, path, many_pages)
+        steps = partial(exporting, request, Output(path), many_pages)
         self._write(tr("exporting {name}", name=path.name), steps, partial(self.export, request, path, True))
 
     def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
@@ -139,7 +130,7 @@ class CutPlanner(QObject):
     def export_all(self, request: CutRequest, folder: Path, name: str, many_pages: bool = False) -> None:
         """Write everything that there is of a design into a folder; a PDF of many pages only after asking."""
         self._session.set_status(tr("Exporting to {name} …", name=folder.name))
-        steps = partial(exporting_all, request, folder, name, many_pages)
+        steps = partial(exporting, request, Output(folder, name, record=True), many_pages)
         again = partial(self.export_all, request, folder, name, True)
         self._write(tr("exporting to {name}", name=folder.name), steps, again)
 

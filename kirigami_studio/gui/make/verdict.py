@@ -12,15 +12,17 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
-from kirigami_studio.studio.making import CutRequest, Planned, fixing
+from kirigami_studio.studio.making import CutRequest, Planned, fixing, judging
 
 if TYPE_CHECKING:
+    from kirigami_studio.pipeline.request import Request
     from kirigami_studio.studio.fixes import Advice
     from kirigami_studio.studio.verdict import Verdict
 
@@ -77,7 +79,7 @@ class VerdictKeeper(QObject):
     def __init__(self, session: Session, as_cut: AsCutReader, parent: QObject) -> None:
         super().__init__(parent)
         self._session, self._as_cut = session, as_cut
-        self._job = LatestJob["Advice | None"](session.queue)
+        self._job = LatestJob["Verdict | Advice | None"](session.queue)
         self._known: OrderedDict[tuple[Candidate, FabricationSettings], Advice] = OrderedDict()
         self._planned: tuple[CutRequest, Planned] | None = None
         self.state = UNKNOWN
@@ -122,54 +124,67 @@ class VerdictKeeper(QObject):
         from kirigami_studio.studio.verdict import Verdict
 
         self._planned = None
-        self._look_for_fixes(request, Verdict((Problem.error("plan.refused", reason=sentence),)))
+        verdict = Verdict((Problem.error("plan.refused", reason=sentence),))
+        steps = partial(fixing, request, verdict, *self._alternatives(request))
+        self._start(tr("trying fixes"), request, verdict, steps)
+        self._take(request, verdict)
 
     def _judge(self) -> None:
         if self._planned is None:
             return
-        from kirigami_studio.studio.verdict import judge  # which planning has imported: in the worker
-
         (request, made), state = self._planned, self._as_cut.state
         as_cut = state.problem or (None if state.sheet is None else state.sheet.as_cut)
-        verdict = judge(request.candidate, made.plan, made.report, as_cut)
-        if as_cut is None:
-            self._job.stop()
-            self._say(VerdictState(verdict, pending=True))
-        else:
-            self._look_for_fixes(request, verdict)
-
-    def _look_for_fixes(self, request: CutRequest, verdict: Verdict) -> None:
         self._job.stop()
-        if verdict.ok:
-            self._say(VerdictState(verdict))
-            return
-        # What files are written for does not matter to the sheet.
-        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
-        if key in self._known:
-            self._known.move_to_end(key)
-            self._say(VerdictState(verdict, advice=self._known[key]))
-            return
+        self._say(VerdictState(made.verdict, pending=True))
+        if as_cut is not None:
+            steps = partial(judging, request, made, as_cut, *self._alternatives(request))
+            self._start(tr("judging the sheet"), request, made.verdict, steps)
+
+    def _alternatives(self, request: CutRequest) -> tuple[dict[str, Candidate], Request | None]:
+        """Other designs by their names, and the run that coarser ones are asked for by, if there can be one."""
         document = self._session.document
         try:
             run = None if document.target is None else request_for(document.target, document.settings, request.settings)
         except KirigamiError:  # its material is gone, which the verdict tells
             run = None
-        callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))
-        self._job.start(
-            tr("trying fixes"), partial(fixing, request, verdict, document.named_candidates, run), callbacks
-        )
-        self._say(VerdictState(verdict, searching=True))
+        return document.named_candidates, run
 
-    def _take_advice(self, key: tuple[Candidate, FabricationSettings], verdict: Verdict, advice: Advice | None) -> None:
-        if advice is None:
+    def _start(self, name: str, request: CutRequest, before: Verdict, steps: Steps[Verdict | Advice | None]) -> None:
+        callbacks = JobCallbacks(partial(self._take, request), on_failed=partial(self._fail, before))
+        self._job.start(name, steps, callbacks)
+
+    def _take(self, request: CutRequest, report: Verdict | Advice | None) -> None:
+        """A verdict, or what was tried for the one before."""
+        from kirigami_studio.studio.verdict import Verdict
+
+        if report is None:
             return
-        self._known[key] = advice
-        while len(self._known) > CAPACITY:
-            self._known.popitem(last=False)
-        self._say(VerdictState(verdict, advice=advice))
+        # What files are written for does not matter to the sheet.
+        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
+        if not isinstance(report, Verdict):
+            self._known[key] = report
+            while len(self._known) > CAPACITY:
+                self._known.popitem(last=False)
+            self._say(VerdictState(self.state.verdict, advice=report))
+        elif report.ok:
+            self._say(VerdictState(report))
+        elif key in self._known:
+            self._job.stop()
+            self._known.move_to_end(key)
+            self._say(VerdictState(report, advice=self._known[key]))
+        else:
+            self._say(VerdictState(report, searching=True))
 
-    def _fail(self, verdict: Verdict, sentence: str, trace: str) -> None:
-        self._say(VerdictState(verdict))
+    def _fail(self, before: Verdict, sentence: str, trace: str) -> None:
+        """No fixes could be looked for; or the sheet could not even be judged, which is said."""
+        from kirigami_studio.fabricate.findings import Problem
+
+        if not self.state.pending:
+            self._say(replace(self.state, searching=False))
+            return
+        not_judged = Problem.warning("verdict.not_made", reason=sentence)
+        self._say(VerdictState(replace(before, problems=(*before.problems, not_judged))))
+        self._session.report_failure(sentence, trace)
 
     def _say(self, state: VerdictState) -> None:
         if state is not self.state:

@@ -16,12 +16,13 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
+from kirigami_studio.pipeline.events import Progress
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import candidate_edits, edits
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.studio.designing import Decoded, FittedAgain, fitting_again, request_for
+from kirigami_studio.studio.designing import Decoded, FittedAgain, KnownAsCut, RefitReport, fitting_again, request_for
 
 
 class Regularity(QObject):
@@ -34,7 +35,8 @@ class Regularity(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._job = LatestJob[Decoded | FittedAgain](session.queue)
+        self._job = LatestJob[RefitReport](session.queue)
+        self._known: KnownAsCut | None = None  # of the designs, those that became better among them
         self._better: dict[Candidate, Candidate] = {}
         self._choices = 0
         self._expected: Document | None = None  # what the document was when the fit began
@@ -51,9 +53,8 @@ class Regularity(QObject):
 
     def preview(self, regular: float) -> None:
         """Rank the cards by a balance, 0 (match) to 1 (regular), while it is moved."""
-        request = _request(self._session.document, regular)
-        if request is not None:
-            self.ranked.emit(Ranking.of(request))
+        if self._session.document.candidates:
+            self.ranked.emit(replace(self._session.ranking, regular=regular))
 
     def choose(self, regular: float, shown: tuple[Candidate, ...]) -> None:
         """Take a balance into the document, and fit the designs again that are ``shown``."""
@@ -67,7 +68,8 @@ class Regularity(QObject):
         if request is None:
             session.apply(edits.set_settings(session.document, regular=regular))
             return
-        session.apply(candidate_edits.rank_again(session.document, regular, Ranking.of(request).key, self._merge_key))
+        ranking = replace(session.ranking, regular=regular)
+        session.apply(candidate_edits.rank_again(session.document, regular, ranking.key, self._merge_key))
         self._begin(request, shown)
 
     def _begin(self, request: Request, shown: tuple[Candidate, ...]) -> None:
@@ -83,9 +85,10 @@ class Regularity(QObject):
         )
         if not wanted:
             return
-        self._better, self._expected = {}, document
-        callbacks = JobCallbacks(self._take, partial(self._finish, request), self._end, self._fail)
-        self._job.start(tr("fitting the designs again"), partial(fitting_again, request, wanted), callbacks)
+        self._better, self._expected, self._known = {}, document, None
+        callbacks = JobCallbacks(self._take, self._finish, self._end, self._fail)
+        steps = partial(fitting_again, request, wanted, document.candidates, document.fabrication)
+        self._job.start(tr("fitting the designs again"), steps, callbacks)
         self.busy_changed.emit(True)
 
     def cancel(self) -> None:
@@ -99,7 +102,7 @@ class Regularity(QObject):
             self._job.stop()
             self._end()
 
-    def _take(self, report: Decoded | FittedAgain) -> None:
+    def _take(self, report: RefitReport) -> None:
         match report:
             case Decoded(candidate, deployment):
                 self._session.cache.put(candidate, deployment)
@@ -108,9 +111,13 @@ class Regularity(QObject):
                     self._better[before] = after
                 sentence = tr("Fitting again: {done} of {total} designs", done=done, total=total)
                 self.progressed.emit(done, total, sentence)
+            case Progress(done, total, sentence):
+                self.progressed.emit(done, total, sentence)
+            case KnownAsCut():
+                self._known = report
 
-    def _finish(self, request: Request) -> None:
-        session, better, expected = self._session, self._better, self._expected
+    def _finish(self) -> None:
+        session, better, expected, known = self._session, self._better, self._expected, self._known
         self._end()
         if session.document.candidates is not (None if expected is None else expected.candidates):
             session.set_status(tr("The designs changed while they were fitted; the fits are not used."))
@@ -118,7 +125,9 @@ class Regularity(QObject):
         if not better:
             session.set_status(tr("Ranked again. Fitting again made no design better."))
             return
-        key = Ranking.of(request).key
+        if known is not None:
+            session.as_cut = known
+        key = session.ranking.key
         session.apply(candidate_edits.replace_candidates(session.document, better, key, self._merge_key))
         session.set_status(
             tr_n("Ranked again; {count} design improved.", "Ranked again; {count} designs improved.", len(better))
@@ -129,7 +138,7 @@ class Regularity(QObject):
         self._session.report_failure(sentence, trace)
 
     def _end(self) -> None:
-        self._better, self._expected = {}, None
+        self._better, self._expected, self._known = {}, None, None
         self.busy_changed.emit(False)
 
 

@@ -15,8 +15,8 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.sheet_size import cut_for
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import one_sheet
 from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
 

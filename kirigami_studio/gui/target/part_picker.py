@@ -30,7 +30,7 @@ from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, Merged, Merging
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import Part, PartKind
+from kirigami_studio.outlines.parts import DrawnPartKind, Part
 from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts
 
 SIZE, LIST_WIDTH, PICTURE = QSize(980, 620), 310, QSize(40, 40)
@@ -57,9 +57,9 @@ TAKE = {
 }
 HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
-    PartKind.FILLED: mark("filled"),
-    PartKind.CLOSED: mark("closed line"),
-    PartKind.STROKED: mark("open line"),
+    DrawnPartKind.FILLED: mark("filled"),
+    DrawnPartKind.CLOSED: mark("closed line"),
+    DrawnPartKind.STROKED: mark("open line"),
 }
 
 

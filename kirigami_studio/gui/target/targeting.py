@@ -26,7 +26,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.studio.parts import (
     DesignRead,
     PartsRead,
@@ -121,8 +121,8 @@ class PictureTracer(QObject):
             self.settled.emit()
 
 
-class Occasion(Enum):
-    """Why a target is read: the program starts with it, a person wants it, or other parts of the present one."""
+class ReadReason(Enum):
+    """Why a target is read: the program starts with it, the user wants it, or other parts of the present one."""
 
     START = "start"
     WANTED = "wanted"
@@ -135,7 +135,7 @@ class TargetReader(QObject):
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
     """
 
-    read = Signal(Outline, Occasion)
+    read = Signal(Outline, ReadReason)
     choice_wanted = Signal(PartsRead)
     design_read = Signal(Document, str)  #: that a cut file came from, and the file
     failed = Signal(str, str)  #: sentence, trace
@@ -145,18 +145,18 @@ class TargetReader(QObject):
         self._tracer = tracer
         self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
         self.drawings: OrderedDict[Outline, str] = OrderedDict()
-        self._asked = ("", Occasion.WANTED)
+        self._asked = ("", ReadReason.WANTED)
         self.source = ""  #: of the target that was read last
 
-    def start(self, source: str, occasion: Occasion) -> None:
+    def start(self, source: str, reason: ReadReason) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._start(source, occasion, partial(reading_source, source))
+        self._start(source, reason, partial(reading_source, source))
 
     def choose_again(self, outline: Outline) -> None:
         """Read the drawing again that an outline came from, and ask for its parts."""
         source = self.drawing_of(outline)
         if source:
-            self._start(source, Occasion.AGAIN, partial(reading_parts, source))
+            self._start(source, ReadReason.AGAIN, partial(reading_parts, source))
 
     def drawing_of(self, outline: Outline | None) -> str:
         """The drawing that an outline was read from, "" for none."""
@@ -164,30 +164,30 @@ class TargetReader(QObject):
 
     def take_chosen(self, outline: Outline, usual: bool) -> None:
         """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
-        source, occasion = self._asked
+        source, reason = self._asked
         if usual and Path(source).suffix.lower() in PICTURES:
-            self._start(source, occasion, partial(reading_target, source))
+            self._start(source, reason, partial(reading_target, source))
             return
         self._finish(*self._asked, TargetRead(outline))
 
-    def _start(self, source: str, occasion: Occasion, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
-        callbacks = JobCallbacks(partial(self._take, source, occasion), on_failed=self.failed.emit)
+    def _start(self, source: str, reason: ReadReason, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
+        callbacks = JobCallbacks(partial(self._take, source, reason), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, occasion: Occasion, found: TargetRead | PartsRead | DesignRead) -> None:
+    def _take(self, source: str, reason: ReadReason, found: TargetRead | PartsRead | DesignRead) -> None:
         if isinstance(found, PartsRead):
-            self._asked = (source, occasion)
+            self._asked = (source, reason)
             self.choice_wanted.emit(found)
         elif isinstance(found, DesignRead):
             self.design_read.emit(found.document, source)
         else:
-            self._finish(source, occasion, found)
+            self._finish(source, reason, found)
 
-    def _finish(self, source: str, occasion: Occasion, found: TargetRead) -> None:
+    def _finish(self, source: str, reason: ReadReason, found: TargetRead) -> None:
         if Path(source).suffix.lower() in PART_READERS:
             self.drawings[found.outline] = source
             while len(self.drawings) > CAPACITY:
@@ -195,10 +195,10 @@ class TargetReader(QObject):
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
-        self.read.emit(found.outline, occasion)
+        self.read.emit(found.outline, reason)
 
 
-class Wish(Generic[T]):
+class LatestRead(Generic[T]):
     """Reads one thing at a time that is chosen by a name, a file or a drawing; the newest wins.
 
     Why one was refused is said until another one is read, or chosen elsewhere.
@@ -235,12 +235,12 @@ class StartReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._wish = Wish[StartShape | PartsRead](session, self._take)
+        self._read = LatestRead[StartShape | PartsRead](session, self._take)
         self._check = LatestJob[str](session.queue)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
 
     def check(self, outline: Outline) -> None:
         """Find out whether the next run would refuse a shape that is being drawn."""
@@ -255,11 +255,11 @@ class StartReader(QObject):
 
     def draw(self, outline: Outline) -> None:
         """Take a shape that was drawn."""
-        self._wish.start(tr("reading the start"), partial(making_start, outline))
+        self._read.start(tr("reading the start"), partial(making_start, outline))
 
     def stop(self) -> None:
         """Forget what is still being read: another start was chosen."""
-        self._wish.stop()
+        self._read.stop()
 
     def _take(self, found: StartShape | PartsRead) -> None:
         if isinstance(found, PartsRead):
@@ -278,11 +278,11 @@ class SecondReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._wish = Wish[TargetRead | PartsRead](session, self._take_read)
+        self._read = LatestRead[TargetRead | PartsRead](session, self._take_read)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
+        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
 
     def _take_read(self, found: TargetRead | PartsRead) -> None:
         if isinstance(found, PartsRead):
@@ -304,7 +304,7 @@ class SecondReader(QObject):
 
     def stop(self) -> None:
         """Forget what is still being read: another second target was chosen, or none."""
-        self._wish.stop()
+        self._read.stop()
 
 
 def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
@@ -347,10 +347,10 @@ class Targeting(QObject):
         self.reader.stop()
         self.tracer.stop()
 
-    def open(self, source: str, occasion: Occasion = Occasion.WANTED) -> None:
+    def open(self, source: str, reason: ReadReason = ReadReason.WANTED) -> None:
         """Read a file, or a silhouette of the library by name."""
         self._session.set_status(tr("Reading {name} …", name=Path(source).name))
-        self.reader.start(source, occasion)
+        self.reader.start(source, reason)
 
     def choose_parts(self) -> None:
         """Ask again for the parts of the drawing that the target was read from."""
@@ -360,7 +360,7 @@ class Targeting(QObject):
 
     def start_with(self, source: str) -> None:
         """Read the first target; in an untouched project it is where the history starts, no change to be undone."""
-        self.open(source, Occasion.START)
+        self.open(source, ReadReason.START)
 
     def change_threshold(self, threshold: float | None) -> None:
         """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
@@ -384,15 +384,15 @@ class Targeting(QObject):
         self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
-    def _take_read(self, outline: Outline, occasion: Occasion) -> None:
+    def _take_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
-        if occasion is Occasion.START and untouched:
+        if reason is ReadReason.START and untouched:
             self.begun.emit(replace(document, target=outline))
             self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
             self._session.set_status(said)
-        elif document.drawing or (document.drawn_by_hand and occasion is not Occasion.AGAIN):
+        elif document.drawing or (document.drawn_by_hand and reason is not ReadReason.AGAIN):
             self._session.set_status(tr("Read {name}. Nothing has changed yet.", name=tr(outline.name)))
             self.question_wanted.emit(outline)
         else:

@@ -1,4 +1,4 @@
-"""What a person can ask of the studio: the parts, and what concerns several of them.
+"""The requests of the user: the parts, and those that concern several of them.
 
 A request of one part goes to that part (``controller.generation.generate``, ``controller.fabrication.change``); here is
 what has to stop, save or replace the work of several.

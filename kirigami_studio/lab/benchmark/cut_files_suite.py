@@ -65,7 +65,7 @@ class CutFileFigures:
         return self.passed == self.files
 
     def sentences(self) -> list[str]:
-        """The figures for a person."""
+        """The figures for the user."""
         low, middle, high = self.slots_length_ratio
         return [
             f"{self.passed} of {self.files} files of {self.designs} designs passed with two readers; {self.refused} "

@@ -136,7 +136,7 @@ class LatticeTiming:
     batch: BatchTiming
 
     def sentences(self) -> Iterator[str]:
-        """The figures for a person, one a line."""
+        """The figures for the user, one a line."""
         slider, growth, batch = self.slider, self.growth, self.batch
         yield (
             f"slider   {slider.grid[0]} x {slider.grid[1]}: decode once {slider.decode_ms:.1f} ms, "

@@ -26,7 +26,7 @@ from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import USUAL_WEIGHT
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.settings.design import POLISH_STEPS
 
@@ -204,7 +204,9 @@ def _step_seconds(candidate: Candidate, target: Outline) -> float:
     """One step without corrections: derivative, normal equations, solution and the decoding of the trial."""
     rows, columns = candidate.sheet.grid
     model, z = OutlineModel(rows, columns, 0.0), candidate.sheet.field.log10.ravel()
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), PreferenceTerms(Preference(), z, rows, columns))
+    objective = Objective(
+        model, BoundaryTarget.of(target, SAMPLES), FieldPreferenceTerms(Preference(), z, rows, columns)
+    )
     pose = candidate.score.transform
     look = objective.look(np.concatenate([z, [math.log(pose.scale), pose.angle, *pose.shift]]))
 

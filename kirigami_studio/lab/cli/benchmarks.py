@@ -536,7 +536,7 @@ def _print_figures(
     figures: dict[str, object],
     sentences: Iterable[str] | None = None,
 ) -> int:
-    """Print a suite's figures, for a person as sentences where it has them, and write them where asked."""
+    """Print a suite's figures, for the user as sentences where it has them, and write them where asked."""
     line.clear()
     indented = json.dumps(plain(figures), indent=2)
     if arguments.out is not None:

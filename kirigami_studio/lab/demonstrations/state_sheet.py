@@ -30,7 +30,7 @@ from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, Bo
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Mark
-from kirigami_studio.project.recovery import Note
+from kirigami_studio.project.recovery import RecoveryNote
 
 #: ``STATE-WIDTHxHEIGHT-THEME.png``, as the state sheet names its pictures.
 NAME = re.compile(r"(?P<state>.+)-(?P<group>\d+x\d+-(?:light|dark))")
@@ -436,7 +436,7 @@ class StateSheet(BoardStates):
         window, dialogs = self.window, self.window.dialogs
         filing, folder = window.controller.filing, self.out / "recovery"
         left = folder / "left.kiri"
-        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
+        note = RecoveryNote("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
         recovery.keep(window.controller.document, note, left)
         filing.recovery.use(folder)
         self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")

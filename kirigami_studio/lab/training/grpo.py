@@ -32,7 +32,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from kirigami_studio.evaluate.paper_evaluator import Verdict, judge
+from kirigami_studio.evaluate.paper_evaluator import PaperScore, judge
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
@@ -346,7 +346,7 @@ class GrpoRun:
 
     def _measure_scales(self) -> None:
         """Scales of the balanced reward from the prior's own samples."""
-        groups: list[list[Verdict]] = []
+        groups: list[list[PaperScore]] = []
         for number in range(SCALING_STEPS):
             seen, outlines = self._targets(number, self.settings.batch)
             groups += self._judged(self._rollout(self.network, seen, self._noise(len(seen))), outlines)
@@ -369,7 +369,7 @@ class GrpoRun:
             z = integrate(network, noise, code, self.settings.rollout_steps)
         return z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT).view(len(seen), self.settings.group, -1)
 
-    def _judged(self, designs: Tensor, outlines: list[Outline]) -> list[list[Verdict]]:
+    def _judged(self, designs: Tensor, outlines: list[Outline]) -> list[list[PaperScore]]:
         """The evaluator's word on every design; each counts as one environment call."""
         self.calls += designs.shape[0] * designs.shape[1]
         return [judge(group, outline) for group, outline in zip(self._fields(designs), outlines, strict=True)]
@@ -380,7 +380,7 @@ class GrpoRun:
         return fields
 
     def _rewards(
-        self, seen: Tensor, noise: Tensor, designs: Tensor, outlines: list[Outline], verdicts: list[list[Verdict]]
+        self, seen: Tensor, noise: Tensor, designs: Tensor, outlines: list[Outline], verdicts: list[list[PaperScore]]
     ) -> list[list[float]]:
         """R of every design; where the start is asked, it draws its own designs from the same noise."""
         usual = [math.nan] * len(outlines)
@@ -416,7 +416,9 @@ class GrpoRun:
         with torch.no_grad():
             return self.prior(x_t, t, code)
 
-    def _note(self, rewards: Tensor, verdicts: list[list[Verdict]], designs: Tensor, used: Tensor, loss: float) -> None:
+    def _note(
+        self, rewards: Tensor, verdicts: list[list[PaperScore]], designs: Tensor, used: Tensor, loss: float
+    ) -> None:
         """Add a step to the sums that ``taken_means`` divides."""
         said = [verdict for group in verdicts for verdict in group]
         step = {

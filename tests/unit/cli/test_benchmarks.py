@@ -22,7 +22,6 @@ def figures(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
     return json.loads(capsys.readouterr().out)
 
 
-@pytest.mark.long
 def test_that_variants_are_measured_on_both_families_of_either_split(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -111,7 +110,6 @@ def test_that_each_suite_takes_its_own_options_only(
     assert said in capsys.readouterr().err.splitlines()[-1]
 
 
-@pytest.mark.long
 def test_that_cut_files_are_counted_for_a_person_and_as_json(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

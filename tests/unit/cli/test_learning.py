@@ -44,7 +44,6 @@ def test_that_fits_of_drawn_shapes_are_written(
     assert written.iou.min() >= 0.85
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("small_runs")
 def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, fits: Path
@@ -62,7 +61,6 @@ def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     assert second["record"]["drawn_iou"] == pytest.approx(first["record"]["drawn_iou"], abs=1e-3)
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("small_runs")
 def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     words = ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--coupling", "ot", "--batch", "16"]

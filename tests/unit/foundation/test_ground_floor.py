@@ -63,5 +63,5 @@ def test_that_a_wheel_prefers_the_files_it_carries(elsewhere: Path) -> None:
 
 
 def test_that_an_incomplete_installation_says_so(elsewhere: Path) -> None:
-    with pytest.raises(KirigamiError, match="Install Kirigami Studio again"):
+    with pytest.raises(FileNotFoundError, match="install Kirigami Studio again"):
         resource_root()

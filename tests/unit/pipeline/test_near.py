@@ -19,6 +19,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import best_of, rotation_of_target
 from kirigami_studio.pipeline.variety import distances
+from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
 NEARNESS = (0.1, 0.5, 0.9)
@@ -111,5 +112,5 @@ def test_that_a_request_that_makes_no_sense_is_refused(near: Sheet | None, nearn
 
 
 def test_that_a_design_of_another_grid_is_refused_with_both_grids() -> None:
-    with pytest.raises(UsageError, match="grid of 4 x 5 voids, not 6 x 6"):
+    with refused(UsageError, "request.near_other_grid", near_columns=5, near_rows=4, rows=6):
         Request(load("heart"), (6, 6), near=Sheet.uniform(4, 5), nearness=0.5, polish=0)

@@ -23,10 +23,10 @@ from kirigami_studio.pipeline import auto_grid, worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
-from kirigami_studio.pipeline.tasks import Answer, PolishTask, Task, scored
+from kirigami_studio.pipeline.tasks import PolishTask, Task, TaskResult, scored
 from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready
+from tests.refusals import refused
 
-pytestmark = pytest.mark.slow
 COUNT = 6
 
 
@@ -80,7 +80,7 @@ class WorkWatch(Watch):
         return self.worked() >= self.budget
 
 
-def answered(pool: Pool | None, request: Request, tasks: list[Task]) -> dict[int, Answer]:
+def answered(pool: Pool | None, request: Request, tasks: list[Task]) -> dict[int, TaskResult]:
     reports = list(answers(pool, request, tasks, watch()))
     numbers = [report[0] for report in reports if report is not None]
     assert sorted(numbers) == list(range(len(tasks)))
@@ -88,7 +88,7 @@ def answered(pool: Pool | None, request: Request, tasks: list[Task]) -> dict[int
 
 
 @pytest.fixture(scope="module")
-def expected(request_for_heart: Request, tasks: list[Task]) -> dict[int, Answer]:
+def expected(request_for_heart: Request, tasks: list[Task]) -> dict[int, TaskResult]:
     """What one process answers."""
     return answered(None, request_for_heart, tasks)
 
@@ -102,7 +102,7 @@ def wait_until_ready(pool: Pool) -> None:
 
 
 def test_that_workers_give_bit_by_bit_the_answers_of_one_process(
-    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
 ) -> None:
     assert answered(pool, request_for_heart, tasks) == expected
     assert len(pool.workers) == 2
@@ -111,11 +111,11 @@ def test_that_workers_give_bit_by_bit_the_answers_of_one_process(
 
 @pytest.mark.parametrize("survivors", [1, 0])
 def test_that_the_work_of_killed_workers_is_done_again(
-    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer], survivors: int
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult], survivors: int
 ) -> None:
     pool.start()
     wait_until_ready(pool)
-    found: dict[int, Answer] = {}
+    found: dict[int, TaskResult] = {}
     for report in answers(pool, request_for_heart, tasks, watch()):
         if report is not None:
             found[report[0]] = report[1]
@@ -127,7 +127,7 @@ def test_that_the_work_of_killed_workers_is_done_again(
 
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="processes cannot be stopped here")
 def test_that_a_stopped_worker_is_given_up_and_its_work_done_again(
-    request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+    request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
 ) -> None:
     pool = Pool(2, silence=3.0)
     pool.start()
@@ -161,7 +161,7 @@ def test_that_workers_which_cannot_start_are_told_once_and_done_without(
     command: list[str],
     request_for_heart: Request,
     tasks: list[Task],
-    expected: dict[int, Answer],
+    expected: dict[int, TaskResult],
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     broken = Pool(2, command)
@@ -179,7 +179,7 @@ def test_that_one_core_is_left_to_one_process(request_for_heart: Request) -> Non
 
 
 def test_that_leaving_a_batch_stops_its_workers_within_a_step_and_keeps_the_pool(
-    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
 ) -> None:
     pool.start()
     wait_until_ready(pool)
@@ -222,7 +222,7 @@ def test_that_an_error_in_a_worker_reaches_the_run(pool: Pool, request_for_heart
 
 
 def test_that_a_second_run_at_the_same_time_works_by_itself(
-    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, Answer]
+    pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
 ) -> None:
     first = answers(pool, request_for_heart, tasks, watch())
     found = [next(first)]
@@ -233,7 +233,7 @@ def test_that_a_second_run_at_the_same_time_works_by_itself(
 
 
 def test_that_a_cancelled_watch_says_how_far_it_came() -> None:
-    with pytest.raises(Cancelled, match="Stopped after 3 of 8 candidates; nothing changed") as caught:
+    with refused(Cancelled, "run.stopped_scoring", done=3, total=8) as caught:
         Watch(lambda: True, time.perf_counter()).check("run.stopped_scoring", 3, 8)
     assert (caught.value.code, caught.value.fields) == ("run.stopped_scoring", {"done": 3, "total": 8})
 
@@ -264,7 +264,6 @@ def test_that_a_worker_ends_with_its_input_and_loads_neither_torch_nor_qt() -> N
     assert loaded.stdout.strip() == "[]"
 
 
-@pytest.mark.long
 def test_that_workers_choose_the_grid_that_one_process_chooses_and_that_it_is_remembered(pool, monkeypatch) -> None:
     wait_until_ready(pool)
     request = Request(load("star"), None, polish=0)

@@ -52,7 +52,6 @@ def figures(targets: dict[str, list[Outline]], store: RunStore) -> SolverFigures
     return measure_solvers(targets, METHODS, (0, 1), SMALL, store)
 
 
-@pytest.mark.long
 def test_that_every_method_has_a_row_beside_the_papers(figures: SolverFigures) -> None:
     table = figures.families["reachable"]
     assert tuple(table.rows) == METHODS
@@ -81,7 +80,6 @@ def test_that_the_papers_row_is_table_1() -> None:
     assert set(paper_tables.SOLVERS) == {*SOLVERS, "sample"}
 
 
-@pytest.mark.long
 def test_that_the_same_seed_gives_the_same_table_and_finished_runs_are_not_done_again(
     targets: dict[str, list[Outline]], store: RunStore, figures: SolverFigures, monkeypatch: pytest.MonkeyPatch
 ) -> None:

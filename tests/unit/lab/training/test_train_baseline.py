@@ -30,7 +30,6 @@ def train(settings: BaselineSettings, folder: Path, **options: float) -> list[di
     return list(train_baseline(settings, folder, CPU, lambda network: {}, validate_every=3, **options))
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, kind: str) -> None:
     settings = tiny(kind)
@@ -59,7 +58,6 @@ def test_that_validation_scores_every_family(kind: str, tmp_path: Path) -> None:
     assert all(0.0 < figure <= 1.0 for figure in figures.values())
 
 
-@pytest.mark.long
 def test_that_the_command_writes_weights_that_can_be_loaded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -132,7 +132,6 @@ def test_that_the_weights_of_a_warm_start_are_not_written_to(tmp_path: Path, sta
     assert all(torch.equal(value, before[name]) for name, value in start.network.state_dict().items())
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("coupling", ["independent", "conditional-ot"])
 def test_that_a_resumed_run_with_fits_equals_an_uninterrupted_one(
     tmp_path: Path, start: Model, fits: FittedFields, coupling: str
