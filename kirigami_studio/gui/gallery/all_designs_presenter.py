@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class AllDesignsPresenter(QObject):
-    """Builds the table when it is first wanted; until then it costs the start of the window nothing.
+    """Builds the table when it is first wanted, so that the window starts without it.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ class AllDesignsPresenter(QObject):
             self._designs.more_like(candidate)
 
     def rename_current(self) -> None:
-        """Ask for the name and the note of the design that is marked in the table, else of the chosen one."""
+        """Ask for name and note of the design marked in the table, else of the chosen one."""
         page = self.page
         if page is None or not self.shown:
             self._designs.rename(self._designs.chosen)

@@ -28,7 +28,7 @@ from kirigami_studio.studio.as_cut import AsCut
 
 
 class GalleryPresenter(QObject):
-    """Shows the designs of the document, or of a run, as cards, and passes on what is asked for at one.
+    """Shows the designs of the document, or of a run, as cards, and passes requests on.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ class GalleryPresenter(QObject):
         compare: tuple[str, str, Callable[[], None]],
         rename: Callable[[], None],
     ) -> None:
-        """Open the menu of a design at a place where comparing and renaming mean something of their own."""
+        """Open the menu of a design, with comparing and renaming as the place has them."""
         menu = QMenu(self._panel)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)

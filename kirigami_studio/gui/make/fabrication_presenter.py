@@ -1,4 +1,4 @@
-"""How the chosen design is made: the numbers it is cut with, its plan, and what is to be expected of the sheet."""
+"""How the chosen design is made: its numbers, its plan, and the verdict on the sheet."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class FabricationPresenter(QObject):
-    """Shows plan and verdict in the panel, on the page of cuts and in the bar, and takes changes over.
+    """Shows plan and verdict in the panel, on the page of cuts and in the bar; takes changes.
 
     Parameters
     ----------

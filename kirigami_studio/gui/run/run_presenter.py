@@ -56,7 +56,7 @@ class RunPresenter(QObject):
         self.show_document(session.document)
 
     def show_document(self, document: Document) -> None:
-        """The document has changed: the settings of the next run, and whether there is a target for it."""
+        """Show the settings of the next run, and whether there is a target for it."""
         self._panel.show_settings(document.settings)
         self._bar.show_ready(document.target is not None)
 

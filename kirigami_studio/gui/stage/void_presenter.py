@@ -1,4 +1,4 @@
-"""Voids changed by hand: gestures on the layout, the bar below it, and what is said of the void that is pointed at."""
+"""Voids changed by hand: gestures on the layout, the bar below it, words on the void there."""
 
 from __future__ import annotations
 

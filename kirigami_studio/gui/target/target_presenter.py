@@ -31,7 +31,7 @@ from kirigami_studio.studio.two_states import flat_size, starts_as
 
 
 class TargetPresenter(QObject):
-    """Shows the target, takes over what is drawn, and withdraws error messages that no longer apply.
+    """Shows the target, takes drawings over, and withdraws errors that no longer apply.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class TargetPresenter(QObject):
             self._session.set_status(text)
 
     def show_document(self, document: Document) -> None:
-        """The document has changed: target, objects and guides of the board, and what is still asked."""
+        """Show target, objects and guides of the document, and drop questions that are settled."""
         before, self._shown = self._shown, document
         if self._question is not None and self._asked_in != self._session.project:
             self._drop_question()

@@ -122,7 +122,7 @@ class PictureTracer(QObject):
 
 
 class ReadReason(Enum):
-    """Why a target is read: the program starts with it, the user wants it, or other parts of the present one."""
+    """Why a target is read: at the start, at a wish, or for other parts of the present one."""
 
     START = "start"
     WANTED = "wanted"

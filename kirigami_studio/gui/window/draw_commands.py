@@ -15,7 +15,7 @@ from kirigami_studio.outlines.combining import Combine
 
 
 def commands(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Command, ...]:
-    """Return the commands of the Draw menu for a drawing board; ``post`` shows what hinders one."""
+    """Return the commands of the Draw menu for a drawing board; ``post`` shows refusals."""
     return (_board(panel), *_tools(panel, post), *_modes(panel), *_aids(panel), *_arrangements(panel))
 
 

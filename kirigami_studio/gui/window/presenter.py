@@ -1,4 +1,4 @@
-"""The window as a whole: its title, messages and status line, and what one place of it has to tell another."""
+"""The window as a whole: title, messages, status line, and calls from place to place."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class Connections(QObject):
-    """Gives the presenter of each place its panel and its parts, and passes on what concerns another place."""
+    """Gives each place's presenter its panel and parts, and passes on calls between places."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
@@ -144,7 +144,7 @@ class Connections(QObject):
         window.status_text.setText(tr("Choose or draw a target to begin."))
 
     def _connect_session(self) -> None:
-        """What the document, the stage and the run tell: passed down to each place, in this order."""
+        """Signals of document, stage and run, passed down to each place in this order."""
         window, controller, run = self._window, self._controller, self._controller.run
         session = controller.session
         run.started.connect(self._show_run)
@@ -175,7 +175,7 @@ class Connections(QObject):
         stage.switches_changed.connect(self.voids.refresh)
 
     def _connect_pages(self) -> None:
-        """What is shown in the place of something else."""
+        """A view in the place of another."""
         window, stage = self._window, self._window.stage
         self.designs.compare_wanted.connect(self.side_by_side.compare_with)
         stage.comparing_changed.connect(self.side_by_side.follow)

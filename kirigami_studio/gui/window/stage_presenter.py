@@ -1,4 +1,4 @@
-"""The stage of the window: the chosen design, how it was sampled, trimmed and does as cut, and its facts in words."""
+"""The stage of the window: the chosen design as sampled, trimmed and cut, and its facts."""
 
 from __future__ import annotations
 
