@@ -27,7 +27,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import preferences, recent, recovery, store
 from kirigami_studio.project.preferences import Preferences
 from kirigami_studio.project.recent import Recent
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import plan_sheet
 
 RESOURCES = Path(__file__).parents[1] / "resources"

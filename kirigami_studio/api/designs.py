@@ -25,9 +25,9 @@ from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChange, chosen_settings
+from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.

@@ -26,8 +26,8 @@ from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import simulated
 from kirigami_studio.studio.cutting import check_connectors, refuse_errors
 from kirigami_studio.studio.designing import request_for

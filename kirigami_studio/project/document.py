@@ -13,7 +13,8 @@ from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.outlines.drawing import NO_GUIDES, Guides
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.labels import Label, run_labels
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 #: Guides lie within this distance of the middle of the board, mm, and there are no more of them along one axis.
 FARTHEST_GUIDE, MOST_GUIDES = 1e6, 1000

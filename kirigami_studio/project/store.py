@@ -23,7 +23,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
-from kirigami_studio.project.settings import stored_material
+from kirigami_studio.settings.fabrication import stored_material
 
 SUFFIX = ".kiri"
 #: Kinds of cut file that carry the design they came from.

@@ -31,7 +31,8 @@ from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings, material_for
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 

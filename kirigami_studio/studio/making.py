@@ -19,7 +19,7 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.file_kinds import kind_of
 
@@ -556,8 +556,7 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.pipeline.coarser import coarser_designs
-    from kirigami_studio.studio.fixes import find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
     from kirigami_studio.studio.verdict import refused
 
     try:

@@ -27,8 +27,8 @@ from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import CUT_FILES, load
+from kirigami_studio.settings.design import DesignSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced

@@ -21,7 +21,7 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
 from kirigami_studio.studio.cutting import plan_of
 

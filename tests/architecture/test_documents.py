@@ -136,9 +136,9 @@ def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, .
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """What the window's modules give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
+    """Sentences of the window and of settings, as ``tr``, ``tr_n`` and ``mark`` get them, without mnemonics."""
     found, sayings = set(), ("tr", "tr_n", "mark")
-    for path in (package / "gui").rglob("*.py"):
+    for path in (one for part in ("gui", "settings", "fabricate") for one in (package / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in sayings:
                 words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]

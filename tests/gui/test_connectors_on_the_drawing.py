@@ -20,7 +20,7 @@ from kirigami_studio.gui.stage.connector_items import Connectors, paint_connecto
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from tests.gui.test_cut_preview import plan_of
 
 Until = Callable[[Callable[[], bool]], None]

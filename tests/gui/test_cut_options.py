@@ -15,7 +15,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrd
 from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

@@ -15,7 +15,8 @@ from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]

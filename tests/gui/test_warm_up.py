@@ -90,7 +90,7 @@ import sys
 from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
 assert request.fitted_starts
 importing.import_generator()

@@ -19,7 +19,8 @@ from kirigami_studio.cli import main
 from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.making import Exported
 
 #: Voids, designs and seed of every case: panels are small enough for some designs to jam or to be refused as cut.

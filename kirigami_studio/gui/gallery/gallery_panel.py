@@ -12,7 +12,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_texts
 from kirigami_studio.gui.gallery.gallery_view import GalleryView
-from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.lattice.sheet import Sheet
 
 #: Nearness at the two ends of the slider, and where it starts.
@@ -81,7 +81,7 @@ class GalleryBar(QWidget):
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
         tip = tr("Compare two designs side by side (K). Ctrl+click a card to compare with it.")
-        self.compare = ToolButton("compare", "compare", tip, checkable=True)
+        self.compare = SwitchButton("compare", "compare", tip)
         row = QHBoxLayout()
         row.setSpacing(4)
         row.addWidget(self.order, 1)

@@ -22,9 +22,8 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import stored_material
 from kirigami_studio.project.sheet_size import set_opened_size
-from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_material
 from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,

@@ -17,7 +17,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.making import CutRequest, Planned, fixing, judging
 

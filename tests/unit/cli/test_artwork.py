@@ -25,9 +25,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load as load_project
 from kirigami_studio.project.store import save
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 @pytest.fixture

@@ -22,8 +22,9 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import ranked_as_cut
 
 

@@ -22,7 +22,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import sheet_of_json
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.verdict import Level, assess
 

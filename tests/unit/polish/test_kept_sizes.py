@@ -26,8 +26,8 @@ from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.symmetry import shared_symmetries
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import plan_of, room_mm
 
 

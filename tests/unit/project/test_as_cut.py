@@ -20,7 +20,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import (
     Outcome,
     SimulatedSheet,

@@ -19,7 +19,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import fixes
 from kirigami_studio.studio.fixes import Advice, find_fixes
 from kirigami_studio.studio.verdict import Level, Verdict, assess, refused

@@ -18,8 +18,8 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.sheet_size import cut_for, flat_width, set_opened_size, size_of, sized
+from kirigami_studio.settings.design import DesignSettings
 from tests.refusals import refused
 
 

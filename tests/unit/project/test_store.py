@@ -32,7 +32,7 @@ from kirigami_studio.project import migrations, store
 from kirigami_studio.project.codec import encode
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.migrations import Members, migrate
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from tests.refusals import refused
 
 PROJECTS = Path(__file__).parents[2] / "data" / "projects"
