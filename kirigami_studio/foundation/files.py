@@ -119,7 +119,8 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
     ------
     ExportError
         The folder is missing or cannot be written, the disk is full, ``path`` is a device, a pipe or a socket or a link
-        that leads to no file, or ``verify`` refused the file; an older file at ``path`` is untouched and nothing else is left behind.
+        that leads to no file, or ``verify`` refused the file; an older file at ``path`` is untouched and nothing else
+        is left behind.
     """
     temporary: Path | None = None
     try:

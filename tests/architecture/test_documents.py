@@ -136,7 +136,7 @@ def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, .
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """What the window's modules, and those with settings, give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
+    """Sentences of the window and of settings, as ``tr``, ``tr_n`` and ``mark`` get them, without mnemonics."""
     found, sayings = set(), ("tr", "tr_n", "mark")
     for path in (one for part in ("gui", "settings", "fabricate") for one in (package / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

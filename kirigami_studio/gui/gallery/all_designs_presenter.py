@@ -119,7 +119,7 @@ class AllDesignsPresenter(QObject):
         table = page.table
         table.hint = lambda: view.hint
         table.left.connect(lambda: self.show(False))
-        table.taken.connect(self._take)
+        table.taken.connect(self._put_on_stage)
         table.pin_wanted.connect(self._marks.pin)
         table.reject_wanted.connect(self._designs.reject)
         table.alike_toggled.connect(view.toggle_alike)
@@ -134,7 +134,7 @@ class AllDesignsPresenter(QObject):
 
     def _connect_compare(self, compare: CompareFour) -> None:
         self._colour(compare)
-        compare.taken.connect(self._take_compared)
+        compare.taken.connect(self._on_compared)
 
     def _colour(self, part: QWidget) -> None:
         """Give new parts the colours of the theme."""
@@ -162,7 +162,7 @@ class AllDesignsPresenter(QObject):
 
     # what is asked for ---------------------------------------------------------------------------------------------
 
-    def _take(self, candidate: Candidate) -> None:
+    def _put_on_stage(self, candidate: Candidate) -> None:
         """Put a design on the stage and go back to the window."""
         self._choose(candidate)
         self.show(False)
@@ -212,5 +212,5 @@ class AllDesignsPresenter(QObject):
             page.compare.bar.set_phi(self._phi())
             page.compare.fit()
 
-    def _take_compared(self, place: int) -> None:
-        self._take(self._page.table.compared[place])
+    def _on_compared(self, place: int) -> None:
+        self._put_on_stage(self._page.table.compared[place])

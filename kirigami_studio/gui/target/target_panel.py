@@ -271,13 +271,13 @@ class RefineBar(QWidget):
         )
         self.proportions.setChecked(True)
         row.addWidget(self.proportions)
-        self.width_.valueChanged.connect(self._take_width)
-        self.height_.valueChanged.connect(self._take_height)
+        self.width_.valueChanged.connect(self._on_width)
+        self.height_.valueChanged.connect(self._on_height)
 
-    def _take_width(self, width: float) -> None:
+    def _on_width(self, width: float) -> None:
         self.size_wanted.emit(width, width / self._ratio if self.proportions.isChecked() else self._size[1])
 
-    def _take_height(self, height: float) -> None:
+    def _on_height(self, height: float) -> None:
         self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
 
     def show_placed(self, placed: Placed | None) -> None:
@@ -387,7 +387,7 @@ class ThresholdBar(QWidget):
         row.addWidget(self.slider, 1)
         row.addWidget(self.number)
         row.addWidget(self.automatic)
-        self.slider.valueChanged.connect(self._take_level)
+        self.slider.valueChanged.connect(self._on_level)
         self.slider.sliderReleased.connect(self.edited)
 
     def show_levels(self, threshold: float, automatic: float) -> None:
@@ -398,7 +398,7 @@ class ThresholdBar(QWidget):
             self.number.setText(tr("{percent:.1f} %", percent=100 * threshold))
         self.automatic.setEnabled(threshold != automatic)
 
-    def _take_level(self, value: int) -> None:
+    def _on_level(self, value: int) -> None:
         self.number.setText(tr("{percent:.1f} %", percent=100 * value / GREY_LEVELS))
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():

@@ -35,7 +35,7 @@ def _tools(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Command
     """A command for each tool, which opens the board."""
 
     def tool(which: Tool, text: str, key: str, tip: str, icon: str = "", gap: bool = False) -> Command:
-        take = partial(_take_tool, panel, post, which)
+        take = partial(_on_tool, panel, post, which)
         return Command(which.value, tr("D&raw"), text, tip, take, (key,), icon or which.value, gap)
 
     return (
@@ -122,7 +122,7 @@ def _arrangements(panel: TargetPanel) -> tuple[Command, ...]:
     return tuple(command(one) for one in EVERY.values())
 
 
-def _take_tool(panel: TargetPanel, post: Callable[[Message], None], tool: Tool) -> None:
+def _on_tool(panel: TargetPanel, post: Callable[[Message], None], tool: Tool) -> None:
     if panel.tools.buttons[tool].isEnabled():
         panel.set_tool(tool)
     else:

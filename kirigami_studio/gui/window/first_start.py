@@ -49,14 +49,14 @@ class FirstStart(QObject):
 
     def begin(self) -> None:
         """Read the sample and ask the question, if it was not asked before."""
-        callbacks: JobCallbacks[Pair] = JobCallbacks(self._take_sample)
+        callbacks: JobCallbacks[Pair] = JobCallbacks(self._on_sample)
         self._session.queue.start(tr("reading the sample"), reading_sample, callbacks)
         if not self._preferences.present.machine_asked:
             question = self._stage.empty.question
             question.offer(library().materials)
             question.show()
 
-    def _take_sample(self, sample: Pair) -> None:
+    def _on_sample(self, sample: Pair) -> None:
         stage = self._stage
         stage.empty.show_sample(sample.design, sample.target)
         stage.place_sample()
