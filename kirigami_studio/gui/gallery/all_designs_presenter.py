@@ -59,7 +59,7 @@ class AllDesignsPresenter(QObject):
         self._pages, self._panel, self._designs, self._session = pages, panel, designs, session
         self._generation, self._marks, self._choose, self._phi = generation, marks, choose, phi
         self.page: AllDesigns | None = None
-        panel.bar.all_wanted.connect(lambda: self.show(True))
+        panel.bar.all.clicked.connect(lambda: self.show(True))
 
     @property
     def shown(self) -> bool:
@@ -108,10 +108,10 @@ class AllDesignsPresenter(QObject):
         page.closed.connect(lambda: self.show(False))
         page.selection_changed.connect(bar.take)
         page.order_wanted.connect(bar.sort_by)
-        page.show_all_wanted.connect(bar.show_all)
+        page.show_all.clicked.connect(bar.show_all)
         bar.selection_changed.connect(page.show_selection)
-        page.again_wanted.connect(self._generation.again)
-        page.alike_wanted.connect(lambda: self._more_like(page.table.current))
+        page.again.clicked.connect(self._generation.again)
+        page.alike.clicked.connect(lambda: self._more_like(page.table.current))
         page.nearness_changed.connect(bar.nearness.setValue)
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())

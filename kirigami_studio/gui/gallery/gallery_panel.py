@@ -62,9 +62,6 @@ class GalleryBar(QWidget):
     """Reports the selection that is wanted, and wishes for more designs."""
 
     selection_changed = Signal(Selection)
-    again_wanted = Signal()
-    alike_wanted = Signal(float)  #: nearness
-    all_wanted = Signal()  #: all designs in one window
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,7 +73,6 @@ class GalleryBar(QWidget):
         self.filters = FilterControls(self)
         self.filters.changed.connect(self._emit_selection)
         self.all = ToolButton("allDesigns", "table", tr("All designs in one window: flat, half open and open (A)."))
-        self.all.clicked.connect(self.all_wanted)
         self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
@@ -98,7 +94,6 @@ class GalleryBar(QWidget):
             pane.hide()
         self.filter.toggled.connect(self._fold)
         self.alike.toggled.connect(self._fold)
-        self.again.clicked.connect(self.again_wanted)
         self.set_ready(False)
 
     def _alike_pane(self) -> QWidget:
@@ -113,7 +108,6 @@ class GalleryBar(QWidget):
         self.draw.setObjectName("small")
         self.draw.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.draw.setToolTip(tr("Generate designs like the chosen one and add them (Ctrl+Shift+R)."))
-        self.draw.clicked.connect(lambda: self.alike_wanted.emit(self.nearness_value))
         pane = QWidget()
         row = QHBoxLayout(pane)
         row.setContentsMargins(0, 0, 0, 2)

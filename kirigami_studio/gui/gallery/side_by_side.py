@@ -47,8 +47,8 @@ class SideBySide(QObject):
         self._chosen: Candidate | None = None
         self._shown: tuple[ComparedDesign, ComparedDesign, Outline | None] | None = None
         self._switch.triggered.connect(self.show)
-        page.swap_wanted.connect(self.swap)
-        page.leave_wanted.connect(lambda: self.show(False))
+        page.swap.clicked.connect(self.swap)
+        page.leave.clicked.connect(lambda: self.show(False))
         self._show_switches(False)
 
     @property

@@ -68,10 +68,10 @@ class TargetPresenter(QObject):
 
     def _connect_sources(self, pasting: PasteReader) -> None:
         panel, targeting = self._panel, self._targeting
-        panel.clear_wanted.connect(targeting.clear)
+        panel.buttons["clearTarget"].clicked.connect(targeting.clear)
         panel.view.content_dropped.connect(pasting.take)
         panel.threshold.changed.connect(targeting.change_threshold)
-        panel.threshold.automatic_wanted.connect(lambda: targeting.change_threshold(None))
+        panel.threshold.automatic.clicked.connect(lambda: targeting.change_threshold(None))
         panel.threshold.edited.connect(targeting.tracer.end_drag)
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)

@@ -45,7 +45,7 @@ class FirstStart(QObject):
         empty = stage.empty
         empty.chosen.connect(self.choose)
         empty.declined.connect(self.decline)
-        empty.tour_wanted.connect(start_tour)
+        empty.tour.clicked.connect(start_tour)
 
     def begin(self) -> None:
         """Read the sample and ask the question, if it was not asked before."""

@@ -164,8 +164,8 @@ class Connections(QObject):
         self.voids.editable.connect(stage.set_editable)
         self.voids.refresh()
         stage.before_wanted.connect(controller.show_before)
-        stage.trim_wanted.connect(controller.trim)
-        stage.voids.refit_wanted.connect(self.refit)
+        stage.trim.switch.triggered.connect(controller.trim)
+        stage.voids.refit.clicked.connect(self.refit)
         controller.sampled.known.connect(stage.show_sample)
         controller.trimming.busy_changed.connect(stage.show_trimming)
         controller.refitting.busy_changed.connect(stage.voids.show_fitting)
@@ -185,8 +185,8 @@ class Connections(QObject):
 
     def _connect_target(self) -> None:
         window, panel, controller = self._window, self._window.target, self._controller
-        panel.open_wanted.connect(window.files.ask_target)
-        panel.wants_silhouette.connect(window.dialogs.show_library)
+        panel.buttons["openTarget"].clicked.connect(window.files.ask_target)
+        panel.buttons["library"].clicked.connect(window.dialogs.show_library)
         panel.view.file_dropped.connect(window.files.open)
         controller.targeting.reader.design_read.connect(window.files.open_design)
         panel.opened.size_wanted.connect(controller.fabrication.set_opened_size)

@@ -57,8 +57,6 @@ class StagePanel(Card):
 
     overlays_changed = Signal(frozenset)  #: of Overlay
     before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
-    trim_wanted = Signal(bool)
-    plots_wanted = Signal(bool)
     status = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
     comparing_changed = Signal(bool)  #: whether two designs are shown side by side
@@ -91,7 +89,6 @@ class StagePanel(Card):
         self.before = SwitchButton("before", "before", tr(BEFORE))
         self.before.switch.toggled.connect(self._toggle_before)
         self.trim = SwitchButton("trim", "trim", tr(TRIM))
-        self.trim.switch.triggered.connect(self.trim_wanted)
         tip = tr(
             "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
             "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
@@ -427,7 +424,6 @@ class StagePanel(Card):
     def _toggle_plots(self, on: bool) -> None:
         self.plots.setVisible(on)
         self._place_plots()
-        self.plots_wanted.emit(on)
         self.switches_changed.emit()
 
     def _place_plots(self) -> None:

@@ -44,7 +44,7 @@ class StagePresenter(QObject):
         super().__init__(panel)
         self._panel, self._session, self._curves, self._name_of = panel, session, curves, name_of
         self._running = False
-        panel.plots_wanted.connect(curves.want)
+        panel.plots_switch.switch.toggled.connect(curves.want)
         panel.status.connect(session.set_status)
         panel.overlays_changed.connect(lambda shown: grips.want(Overlay.GRIPS in shown))
         curves.grown.connect(panel.plots.show_curves)
