@@ -1,7 +1,7 @@
-"""What a frozen program starts with: the command line, a polishing worker, or one module of the package.
+"""Start of a frozen program: the command line, a polishing worker, or a script.
 
-``kirigami-studio -m kirigami_studio.demonstrations.offscreen_session --out out`` does what the interpreter does with
-these words; ``packaging/smoke.py`` plays a session with it where no Python is installed.
+``kirigami-studio -m session.py --out out`` runs a script as the interpreter does; ``packaging/smoke.py`` plays a
+session of the window so where no Python is installed.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ def main() -> int:
             os.environ["LD_LIBRARY_PATH"] = own
     # A bundle has no sources, and torch would say so of each of its functions for TorchScript, which nobody uses here.
     warnings.filterwarnings("ignore", message="Unable to retrieve source for @torch.jit._overload")
-    multiprocessing.freeze_support()  # processes that share work, such as those of `benchmark --processes`
-    if sys.argv[1:2] == ["-m"] and sys.argv[2:] and sys.argv[2].partition(".")[0] == "kirigami_studio":
+    multiprocessing.freeze_support()  # processes that share work
+    if sys.argv[1:2] == ["-m"] and sys.argv[2:] and sys.argv[2].endswith(".py"):
         del sys.argv[:2]
-        runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
+        runpy.run_path(sys.argv[0], run_name="__main__")
         return 0
     from kirigami_studio.cli import main as command_line
 

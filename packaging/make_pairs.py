@@ -12,18 +12,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
-from kirigami_studio.pipeline.request import Request, provenance
-from kirigami_studio.pipeline.run import best_of
-from kirigami_studio.project.cutting import least_feature_mm, room_mm
-from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
-from kirigami_studio.project.verdict import assess
+from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
+from kirigami_studio.studio.verdict import assess
 
 FOLDER = Path(__file__).resolve().parents[1] / "resources" / "pairs"
 #: Even panels count more than the last percent of match: these are to be looked at.
@@ -71,33 +67,21 @@ PAIRS = (
 def made(pair: Pair) -> Document:
     """Design a pair and keep the first design, without how it was sampled."""
     cut = FabricationSettings()
-    request = Request(
-        read_target(pair.target),
-        None,
+    wanted = DesignSettings(
         k=DESIGNS,
         seed=SEED,
         polish=POLISH,
         regular=REGULAR,
         symmetry=pair.symmetry,
         start=start_shape(pair.start),
-        width_mm=cut.width_mm,
-        least_feature_mm=least_feature_mm(cut),
-        room_mm=room_mm(cut),
     )
-    result = best_of(request)
-    chosen = next(one for one in result.candidates if not pair.upright or abs(turn_of(one)) < UPRIGHT)
-    source = provenance(result.request, digest_of(request.variant))
-    settings = DesignSettings(
-        result.request.chosen_grid,
-        k=DESIGNS,
-        seed=SEED,
-        polish=POLISH,
-        symmetry=pair.symmetry,
-        regular=REGULAR,
-        start=request.start,
-    )
-    candidates = tuple(with_run((replace(chosen, sampled_sheet=None),), source))
-    return Document(request.target, settings, candidates, 0, cut, source)
+    request = request_for(read_target(pair.target), wanted, cut)
+    result = completed(run_design(request, cut, as_cut=False), lambda _: None)
+    document = document_of(result, cut)
+    number = next(k for k, one in enumerate(document.candidates) if not pair.upright or abs(turn_of(one)) < UPRIGHT)
+    # As it was, without how it was sampled.
+    chosen = replace(document.candidates[number], sampled_sheet=None)
+    return replace(document, candidates=(chosen,), chosen=0, marks=(), labels=())
 
 
 def turn_of(candidate: Candidate) -> float:

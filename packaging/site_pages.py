@@ -22,7 +22,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from pymdownx.slugs import slugify
 
-from kirigami_studio.cli.parser import GROUPS, SUB_COMMANDS, build_parser
+from kirigami_studio.cli.parser import about_group, all_commands, build_parser
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 #: Place on the site -> file of the repository; ``docs`` itself is there as it is.
@@ -161,10 +161,10 @@ def commands_page() -> str:
     ]
     parsers = dict(_parsers(build_parser()))
     group = ""
-    for command in SUB_COMMANDS:
+    for command in all_commands():
         first, _, second = command.name.partition(" ")
         if second and first != group:
-            lines += [f"## {first}", "", f"{GROUPS[first][0].upper()}{GROUPS[first][1:]}.", ""]
+            lines += [f"## {first}", "", f"{about_group(first)[0].upper()}{about_group(first)[1:]}.", ""]
         group = first if second else ""
         lines += [
             f"{'###' if second else '##'} {command.name}",

@@ -16,6 +16,7 @@ import importlib.util
 import json
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,7 +24,7 @@ from pathlib import Path
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 DESIGN_FILES = ("design.kiri", "cut.dxf", "layout.svg", "preview.png", "candidates.json")
-SESSION = "kirigami_studio.demonstrations.offscreen_session"
+SESSION = CHECKOUT / "kirigami_studio" / "lab" / "demonstrations" / "offscreen_session.py"
 #: What the program says when its polishing workers do not start; it then does their work itself.
 NO_WORKERS = ("polishing goes on in one process", "a polishing worker died")
 
@@ -47,7 +48,7 @@ class Program:
 
     def __init__(self, words: list[str], root: Path, folder: Path) -> None:
         self.words = words or [sys.executable, "-m", "kirigami_studio"]
-        self.modules = [*words, "-m"] if words else [sys.executable, "-m"]
+        self.interpreter = [*words, "-m"] if words else [sys.executable]
         self.root = root
         self.folder = folder
 
@@ -59,9 +60,10 @@ class Program:
         """Run a command and return what it printed; any other exit code than 0 is a failure."""
         return self._run([*self.words, *arguments])
 
-    def call_module(self, module: str, *arguments: str) -> str:
-        """Run a module of the package without a display."""
-        return self._run([*self.modules, module, *arguments], QT_QPA_PLATFORM="offscreen")
+    def play(self, script: Path, *arguments: str) -> str:
+        """Run a copy of a script without a display."""
+        copy = Path(shutil.copy(script, self.folder))
+        return self._run([*self.interpreter, self.seen(copy), *arguments], QT_QPA_PLATFORM="offscreen")
 
     def _run(self, command: list[str], **environment: str) -> str:
         inside = {} if self.root == Path("/") else {"HOME": self.seen(self.folder)}
@@ -154,7 +156,7 @@ def try_design(program: Program, k: int) -> None:
 def try_window(program: Program) -> None:
     """A session in the window, without a display: choose, generate, export, save; the files are read back."""
     out = program.folder / "session"
-    program.call_module(SESSION, "--out", program.seen(out))
+    program.play(SESSION, "--out", program.seen(out))
     check(program, out / "cut.dxf")
     score = json.loads(program.call("score", program.seen(out / "session.kiri"), "heart", "--json"))
     if not score:

@@ -93,14 +93,14 @@ def network(path: Path) -> None:
 
 
 def artwork(path: Path) -> None:
-    from kirigami_studio.gui.jobs.artwork_jobs import svg_to_png
+    from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
 
     read_picture(path, svg_to_png)
 
 
 def opened(path: Path) -> None:
     """A file that is dropped on the window or opened there."""
-    from kirigami_studio.gui.jobs.part_jobs import reading_source
+    from kirigami_studio.studio.parts import reading_source
 
     for _ in reading_source(str(path), lambda: False):
         pass
@@ -108,7 +108,7 @@ def opened(path: Path) -> None:
 
 def pasted(path: Path) -> None:
     """Text from the clipboard."""
-    from kirigami_studio.gui.files.pasting import recognised
+    from kirigami_studio.gui.target.pasting import recognised
 
     found = recognised(path.read_bytes().decode("utf-8", "replace"))
     if found is not None:
@@ -163,28 +163,28 @@ def manifest(path: Path) -> None:
 
 
 def baseline(path: Path) -> None:
-    from kirigami_studio.baselines.stored import load_generator
+    from kirigami_studio.lab.baselines.stored import load_generator
 
     load_generator(path)
 
 
 def training(path: Path) -> None:
     """Archives that training reads."""
-    from kirigami_studio.training.dataset import Split
-    from kirigami_studio.training.fitted_fields import FittedFields
+    from kirigami_studio.lab.training.dataset import Split
+    from kirigami_studio.lab.training.fitted_fields import FittedFields
 
     attempted(path, Split.load, FittedFields.load)
 
 
 def checkpoint(path: Path) -> None:
-    from kirigami_studio.training.learner import Checkpoint
+    from kirigami_studio.lab.training.learner import Checkpoint
 
     Checkpoint.load(path)
 
 
 def runs(path: Path) -> None:
     """What a suite has finished."""
-    from kirigami_studio.benchmark.run_store import RunStore
+    from kirigami_studio.lab.benchmark.run_store import RunStore
 
     with RunStore.opened({"a": 1}, path):
         pass

@@ -118,8 +118,8 @@ def _drawings(reader: str) -> list[bytes]:
     from kirigami_studio.lattice.deployment import deploy
     from kirigami_studio.lattice.ratio_field import RatioField
     from kirigami_studio.project import store
-    from kirigami_studio.project.cutting import plan_sheet
     from kirigami_studio.project.settings import FabricationSettings
+    from kirigami_studio.studio.cutting import plan_sheet
 
     design = deploy(RatioField.uniform(3, 3))
     plan = plan_sheet(design, FabricationSettings(60.0, connector_mm=0.8))
@@ -185,13 +185,13 @@ def _learned(reader: str) -> list[bytes]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "a")
         if reader == "baseline":
-            from kirigami_studio.baselines.conditional import FieldPixels
-            from kirigami_studio.baselines.cvae import Cvae
-            from kirigami_studio.baselines.stored import store_generator
+            from kirigami_studio.lab.baselines.conditional import FieldPixels
+            from kirigami_studio.lab.baselines.cvae import Cvae
+            from kirigami_studio.lab.baselines.stored import store_generator
 
             store_generator("cvae", Cvae(FieldPixels(3, 3)), path, {})
         else:
-            from kirigami_studio.training.learner import Checkpoint
+            from kirigami_studio.lab.training.learner import Checkpoint
 
             tensors = {"a": torch.ones(2, 2)}
             Checkpoint(1, tensors, tensors, {"state": {}}, {"rate": 0.1}, torch.get_rng_state()).save(path)

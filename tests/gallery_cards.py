@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.session import Entry
+from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.lattice.deployment import deploy
 
 

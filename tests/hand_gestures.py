@@ -11,9 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.void_items import VoidShapes
-from kirigami_studio.gui.views.layout_view import LayoutView
+from kirigami_studio.gui.stage.layout_view import LayoutView
+from kirigami_studio.gui.stage.void_items import VoidShapes
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project.document import Void
 
 Until = Callable[[Callable[[], bool]], None]

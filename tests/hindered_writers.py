@@ -25,10 +25,10 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import preferences, recent, recovery, store
-from kirigami_studio.project.cutting import plan_sheet
 from kirigami_studio.project.preferences import Preferences
 from kirigami_studio.project.recent import Recent
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.cutting import plan_sheet
 
 RESOURCES = Path(__file__).parents[1] / "resources"
 #: Different contents that a file goes through.
@@ -81,10 +81,10 @@ def learned() -> list[Writer]:
     import torch
     from small_networks import random_network
 
-    from kirigami_studio.benchmark.run_store import RunStore
     from kirigami_studio.generator.weights import store_model
-    from kirigami_studio.training.dataset import Split
-    from kirigami_studio.training.learner import Checkpoint
+    from kirigami_studio.lab.benchmark.run_store import RunStore
+    from kirigami_studio.lab.training.dataset import Split
+    from kirigami_studio.lab.training.learner import Checkpoint
 
     network = random_network()
 

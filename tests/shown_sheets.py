@@ -8,7 +8,7 @@ from PySide6.QtCore import QCoreApplication, QEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.demonstrations.state_sheet import StateSheet
+from kirigami_studio.lab.demonstrations.state_sheet import StateSheet
 
 
 def shown(made: StateSheet, qtbot: QtBot) -> Iterator[StateSheet]:

@@ -9,8 +9,8 @@ import torch
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
+from kirigami_studio.lab.training.corpus import deployed_outline
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import deployed_outline
 
 SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 96, direction=True)
 

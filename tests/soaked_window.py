@@ -22,9 +22,9 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QEvent, QEventLoop, QObject, QTimer
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.application import create_application, create_window
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_application, create_window
+from kirigami_studio.gui.window.main_window import MainWindow
 
 EXAMPLE = Path(__file__).parents[1] / "resources" / "examples" / "heart.kiri"
 #: Seconds that a cycle may take before it counts as a hang.

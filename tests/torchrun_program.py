@@ -13,15 +13,15 @@ import torch
 from torch import Tensor
 
 from kirigami_studio import cli
-from kirigami_studio.cli import learning
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import network_of
-from kirigami_studio.training import train_baseline, train_flow
-from kirigami_studio.training.learner import Learner
-from kirigami_studio.training.ranks import Process, process_group
-from kirigami_studio.training.train_baseline import BaselineSettings
-from kirigami_studio.training.train_flow import FlowSettings
-from kirigami_studio.training.validation import validator
+from kirigami_studio.lab.cli import learning
+from kirigami_studio.lab.training import train_baseline, train_flow
+from kirigami_studio.lab.training.learner import Learner
+from kirigami_studio.lab.training.ranks import Process, process_group
+from kirigami_studio.lab.training.train_baseline import BaselineSettings
+from kirigami_studio.lab.training.train_flow import FlowSettings
+from kirigami_studio.lab.training.validation import validator
 
 CPU = torch.device("cpu")
 SETTINGS = FlowSettings(

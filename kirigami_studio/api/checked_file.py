@@ -11,10 +11,10 @@ from kirigami_studio.export.dxf_check import FileReport, check_file
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.export_job import chosen_candidate
-from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge
+from kirigami_studio.studio.cutting import plan_of
+from kirigami_studio.studio.verdict import Verdict, closed_as_cut, judge
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import html
-import math
 import os
-import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from kirigami_studio.api.design import Design
 from kirigami_studio.api.pictures import cuts_picture
@@ -24,16 +20,14 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import FORMATS, Verification, verify_export
 from kirigami_studio.fabricate.checks import Report, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.project.as_cut import simulate
-from kirigami_studio.project.cutting import check_connectors, plan_of, refuse_errors
 from kirigami_studio.project.export_job import cut_job
 from kirigami_studio.project.settings import FabricationSettings, with_choices
-from kirigami_studio.project.verdict import Level, Verdict, judge
+from kirigami_studio.studio.as_cut import simulate
+from kirigami_studio.studio.cutting import check_connectors, plan_of, refuse_errors
+from kirigami_studio.studio.verdict import Level, Verdict, judge
 
-#: Choices that are numbers, and those of them that are whole ones.
-LENGTHS, COUNTS = ("width_mm", "connector_mm", "kerf_mm", "tab_mm", "copy_gap_mm"), ("tabs", "copies")
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
@@ -213,7 +207,7 @@ class Exported:
 
 
 def plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
-    """Plan and check the cuts of a design, with choices on top of those of its project.
+    """Plan and check the cuts of a design, with choices, by name, on top of those of its project.
 
     Raises
     ------
@@ -221,51 +215,10 @@ def plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
         No such material or choice, or cuts that cannot be planned.
     """
     candidate = design.candidate
-    settings = with_choices(design.document.fabrication, checked_choices(given))
+    settings = with_choices(design.document.fabrication, given)
     check_connectors(candidate, settings.options)
     plan = plan_of(candidate, settings, name=design.name)
     return Cuts(design, settings, plan, check_plan(plan, phi=candidate.final_phi))
-
-
-def checked_choices(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Choices with Python's own numbers in the place of NumPy's, connectors as pairs of number and width.
-
-    Raises
-    ------
-    UsageError
-        Something else where numbers belong.
-    """
-    found = dict(given)
-    for name in (*LENGTHS, *COUNTS):
-        if name in found:
-            found[name] = number(name, found[name], whole=name in COUNTS)
-    if "hinge_mm" in found:
-        widths = found["hinge_mm"]
-        if not isinstance(widths, Mapping):
-            raise UsageError("api.not_connector_widths", value=reprlib.repr(widths))
-        found["hinge_mm"] = [
-            (number("hinge_mm", one, whole=True), number("hinge_mm", width)) for one, width in widths.items()
-        ]
-    if "removed" in found:
-        removed = found["removed"]
-        if isinstance(removed, str) or not isinstance(removed, (Sequence, np.ndarray)):
-            raise UsageError("api.not_connectors", value=reprlib.repr(removed))
-        found["removed"] = [number("removed", one, whole=True) for one in removed]
-    return found
-
-
-def number(name: str, value: object, *, whole: bool = False) -> Any:
-    """A finite number as Python's own.
-
-    Raises
-    ------
-    UsageError
-        No number, or not a whole one where that is asked for; the sentence has the name.
-    """
-    plain = value.item() if isinstance(value, np.generic) else value
-    if isinstance(plain, bool) or not isinstance(plain, int if whole else (int, float)) or not math.isfinite(plain):
-        raise UsageError("api.not_whole" if whole else "api.not_a_number", name=name, value=reprlib.repr(value))
-    return plain
 
 
 def write_file(

@@ -7,12 +7,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 from shapely.geometry import Polygon
 
+from kirigami_studio.api.choices import (
+    checked_choices,
+    connector_widths,
+    connectors,
+    cut_choices,
+    explicit_signature,
+)
 from kirigami_studio.api.pictures import states_picture
 from kirigami_studio.api.sheet import Sheet, SheetLike, decode
 from kirigami_studio.api.target import Target, TargetLike, load_target
@@ -30,8 +37,9 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.export_job import chosen_candidate, picture_job
 from kirigami_studio.project.labels import cleaned_name
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import SUFFIX, save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import CutChange
 
 if TYPE_CHECKING:
     from kirigami_studio.api.cuts import Cuts, Exported
@@ -163,23 +171,9 @@ class Design:
     def plan_cuts(
         self,
         *,
-        material: str | None = None,
-        width_mm: float | None = None,
-        connector_mm: float | None = None,
-        kerf_mm: float | None = None,
-        style: str | None = None,
-        order: str | None = None,
-        tabs: int | None = None,
-        tab_mm: float | None = None,
-        copies: int | None = None,
-        copy_gap_mm: float | None = None,
         hinge_mm: Mapping[int, float] | None = None,
         removed: Sequence[int] | None = None,
-        engrave: bool | None = None,
-        profile: str | None = None,
-        dxf_version: str | None = None,
-        paper: str | None = None,
-        markers: bool | None = None,
+        **choices: Unpack[CutChange],
     ) -> Cuts:
         """Plan the cuts in a material; what is left out is as the project has it.
 
@@ -229,8 +223,14 @@ class Design:
         """
         from kirigami_studio.api.cuts import plan_cuts
 
-        given = {name: value for name, value in locals().items() if name not in ("self", "plan_cuts")}
+        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        if hinge_mm is not None:
+            given["hinge_mm"] = connector_widths(hinge_mm)
+        if removed is not None:
+            given["removed"] = connectors(removed)
         return plan_cuts(self, {name: value for name, value in given.items() if value is not None})
+
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -340,7 +340,7 @@ def design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: floa
         outline = Outline.from_points(deployment.outline(phi), "own silhouette")
     else:
         outline = load_target(target).outline
-    settings = DesignSettings(deployment.sheet.grid, phi, auto_grid=False)
+    settings = DesignSettings(deployment.sheet.grid, auto_grid=False, phi=phi)
     found = Candidate(deployment.sheet, evaluate(deployment, outline, phi), 0, 0, origin=Origin.EDITED)
     document = Document(outline, settings, (found,), 0)
     return Design(set_label(document, 0, cleaned_name(name), "").document if name else document)

@@ -9,7 +9,7 @@ from kirigami_studio.api.pictures import Curve, curves_picture
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
-from kirigami_studio.project.as_cut import AsCut, SimulatedSheet
+from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -220,7 +220,7 @@ class PartChoice:
                 way = Join(join)
             except ValueError:
                 choices = ", ".join(str(one.value) for one in Join)
-                raise UsageError("settings.no_such_choice", name="join", value=repr(join), choices=choices) from None
+                raise UsageError("settings.no_such_choice", name="join", value=join, choices=choices) from None
         if bridge is not None and way is not Join.BRIDGE:
             raise UsageError("option.bridge_without_join")
         several = way is not Join.UNION or stroke is not None

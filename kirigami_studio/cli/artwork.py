@@ -15,10 +15,10 @@ from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.project.cutting import plan_of
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.export_job import chosen_candidate, cut_job
 from kirigami_studio.project.store import load
+from kirigami_studio.studio.cutting import plan_of
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0
@@ -124,7 +124,7 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        from kirigami_studio.gui.jobs.artwork_jobs import svg_to_png
+        from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
 
         return svg_to_png(content, side)
 

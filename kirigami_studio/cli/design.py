@@ -10,11 +10,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from kirigami_studio.api.running import document_of, result_of_run
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
-from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto
+from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.export.exporter import ExportJob
@@ -34,57 +33,41 @@ from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.cutting import checked_plan, least_feature_mm, room_mm
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import packed_design, save
-from kirigami_studio.project.verdict import Verdict, assess, refused
+from kirigami_studio.settings.design import DesignChoices, chosen_settings
+from kirigami_studio.studio.cutting import checked_plan
+from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
+from kirigami_studio.studio.verdict import Verdict, assess, refused
 
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
-    grid = parse_grid_or_auto(arguments.grid)
-    start = replace(start_shape(arguments.start), weight=arguments.start_weight)
-    second = second_target(arguments)
     fabrication = material_settings(arguments)
     check_name(arguments.name, run_labels(0, 1)[0].code)
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
         check_folder(Path(arguments.out))
     line = ProgressLine()
     used: set[str] = set()
 
+    wanted = chosen_settings(
+        parse_grid_or_auto(arguments.grid),
+        setting_values(arguments, DesignChoices),
+        start=replace(start_shape(arguments.start), weight=arguments.start_weight),
+        second=second_target(arguments),
+    )
+
     def job_for(target: Outline) -> Job:
-        request = Request(
-            target=target,
-            grid=grid,
-            phi=arguments.phi,
-            k=arguments.k,
-            seed=arguments.seed,
-            variant=arguments.variant,
-            steps=arguments.steps,
-            polish=POLISH_STEPS if arguments.polish else 0,
-            prefer=arguments.prefer,
-            trim=arguments.trim,
-            search=arguments.search,
-            budget_seconds=arguments.budget,
-            symmetry=arguments.symmetry,
-            rim=arguments.rim,
-            regular=regular,
-            width_mm=fabrication.width_mm,
-            least_feature_mm=max(least_feature_mm(fabrication), arguments.least_panel_mm),
-            room_mm=room_mm(fabrication),
-            start=start,
-            second=second,
-        )
-        material_named = arguments.material is not None
-        as_cut, files = material_named, arguments.out is not None
-        return Job(request, fabrication, arguments.least_panel_mm, as_cut, files, arguments.name or "")
+        least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
+        request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
+        as_cut, files = arguments.material is not None, arguments.out is not None
+        return Job(request, fabrication, least, as_cut, files, arguments.name or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
@@ -174,14 +157,8 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
     FabricationError
         Designs were to be trimmed and none could be.
     """
-    result = result_of_run(
-        job.request,
-        job.fabrication,
-        lambda progress: line.show(progress.message),
-        least_panel_mm=job.least_panel_mm,
-        as_cut=job.as_cut,
-        pool=pool,
-    )
+    run = run_design(job.request, job.fabrication, as_cut=job.as_cut, least_panel_mm=job.least_panel_mm, pool=pool)
+    result = completed(run, lambda progress: line.show(progress.message))
     line.clear()
     return Design(result, _verdict_on(result, job.fabrication) if job.as_cut else None)
 

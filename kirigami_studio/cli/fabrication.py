@@ -31,15 +31,15 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.pipeline.coarser import coarser_designs
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.as_cut import simulated
 from kirigami_studio.project.candidate_edits import set_label
-from kirigami_studio.project.cutting import check_connectors, checked_plan, least_feature_mm, room_mm
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.export_job import chosen_candidate, cut_job, picture_job
-from kirigami_studio.project.fixes import Advice, find_fixes
 from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
-from kirigami_studio.project.verdict import Verdict, closed_as_cut, judge, refused
+from kirigami_studio.studio.as_cut import simulated
+from kirigami_studio.studio.cutting import check_connectors, checked_plan, least_feature_mm, room_mm
+from kirigami_studio.studio.fixes import Advice, find_fixes
+from kirigami_studio.studio.verdict import Verdict, closed_as_cut, judge, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
@@ -67,7 +67,7 @@ def export(arguments: argparse.Namespace) -> int:
             raise
         fixes = " ".join(_advice(document, settings, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
-    job = replace(cut_job(document, plan, settings), markers=settings.markers or arguments.markers)
+    job = cut_job(document, plan, settings)
     candidate = chosen_candidate(document)
     as_cut = closed_as_cut(candidate, job.deployment, plan, settings.width_mm, document.target)
 
@@ -296,7 +296,6 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    given.pop("markers", None)  # a flag: without it, the project's choice stays
     return with_choices(saved, given)
 
 

@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
+from kirigami_studio.evaluate.siou import ShapeMatch, matches_in_poses, siou_of_many
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.outlines.outline import Outline
@@ -98,3 +98,12 @@ def second_matches(deployments: Sequence[Deployment], target: SecondTarget | Non
         return [None] * len(deployments)
     outlines = [deployment.outline(target.phi) for deployment in deployments]
     return [SecondMatch(target, match) for match in siou_of_many(outlines, target.outline)]
+
+
+def confirmed_match(deployment: Deployment, read: SecondMatch) -> SecondMatch:
+    """Keep a match from a file that is the design's in the pose that it names; else match the design again."""
+    target, match = read.target, read.match
+    (own,) = matches_in_poses([deployment.outline(target.phi)], target.outline, [match.transform])
+    if own is not None and own.is_near(match):
+        return read
+    return SecondMatch(target, siou_of_many([deployment.outline(target.phi)], target.outline)[0])

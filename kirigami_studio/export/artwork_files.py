@@ -20,9 +20,6 @@ from xml.etree import ElementTree
 import numpy as np
 import shapely
 from PIL import Image, ImageDraw
-from reportlab.lib.units import mm
-from reportlab.lib.utils import ImageReader
-from reportlab.pdfgen.canvas import Canvas
 
 from kirigami_studio import __version__
 from kirigami_studio.export.artwork import ArtPicture, Artwork
@@ -30,6 +27,7 @@ from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_p
 from kirigami_studio.export.artwork_raster import Page, most_dpi, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import Tile, Tiling, find_paper, tile
+from kirigami_studio.export.pdf_library import Canvas, ImageReader, mm
 from kirigami_studio.export.pdf_pages import LINE_MM, check_pages, draw_pages, page_boxes, to_page
 from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, write_image
 from kirigami_studio.export.profile import find_profile

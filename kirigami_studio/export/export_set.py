@@ -11,7 +11,7 @@ from pathlib import Path
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
@@ -23,8 +23,6 @@ from kirigami_studio.foundation.files import folder_of_one_writer
 LARGEST_RECORD = 50_000_000
 #: Judges files by what was read back from them.
 Judged = Callable[[Sequence[Verification]], Mapping[str, object]]
-R12 = "R12"
-R2010 = "R2010"
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +110,11 @@ def _written(
         if on_written is not None:
             on_written(path)
 
-    for goal, version in ((cut, R2010), (home / f"{name}_r12.dxf", R12), (home / f"{name}.svg", R2010)):
+    for goal, version in (
+        (cut, DxfVersion.R2010),
+        (home / f"{name}_r12.dxf", DxfVersion.R12),
+        (home / f"{name}.svg", DxfVersion.R2010),
+    ):
         path = export(replace(job, dxf_version=version), goal)
         verified.append(verify_export(plan, path, job.profile, version, job.deployment))
         done(path)
@@ -128,7 +130,7 @@ def _written(
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
         done(write_sidecar(job, sidecar_path(cut), written, None if judged is None else judged(verified)))
-    known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", f"_{R12.lower()}", f"_{R12.lower()}.dxf"))
+    known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", "_r12", "_r12.dxf"))
     older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
     return ExportSet(tuple(written), tuple(verified), older, _remove(home, before, written))
 

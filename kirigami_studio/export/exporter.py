@@ -14,8 +14,8 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.paper import NO_PAPER
-from kirigami_studio.export.profile import DEFAULT_PROFILE
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.profile import DEFAULT_PROFILE, DxfVersion
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -40,8 +40,8 @@ class ExportJob:
     dxf_version : str
     profile : str
         Key of the machine profile.
-    paper : str
-        Key of the paper that a PDF is spread over; "none" for one page as large as the sheet.
+    paper : Paper
+        That a PDF is spread over.
     provenance : mapping of str to str
         Where the design comes from: version of the program, name and hash of the model, seed, settings; every file
         repeats it.
@@ -62,9 +62,9 @@ class ExportJob:
     plan: CutPlan | None = None
     target: FloatArray | None = None
     transform: Similarity = field(default_factory=Similarity)
-    dxf_version: str = "R2010"
+    dxf_version: DxfVersion = DxfVersion.R2010
     profile: str = DEFAULT_PROFILE
-    paper: str = NO_PAPER
+    paper: Paper = Paper.NONE
     provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     trim: Trim | None = None
     markers: bool = False

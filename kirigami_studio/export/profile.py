@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from types import MappingProxyType
 
 from kirigami_studio.fabricate.cut_plan import Layer
@@ -18,6 +19,15 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 
 RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
+
+
+class DxfVersion(StrEnum):
+    """Dialects of cut files; the values are the names on the command line and in files."""
+
+    R2010 = "R2010"
+    R12 = "R12"  #: for old programs; such files have no unit
+
+
 #: Layer of a file that keeps everything together.
 ONE_LAYER = "SHEET"
 #: Layer of closed contours that stand for slits.

@@ -23,6 +23,7 @@ from kirigami_studio.fabricate.joints import joint_count
 from kirigami_studio.fabricate.lettering import Engraving
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.lattice.sheet_files import rim_json
 
 #: What some kind of file cannot have in a name.
@@ -83,7 +84,7 @@ def origin_facts(origin: Mapping[str, str]) -> dict[str, str]:
 
 def _one_line(text: str) -> str:
     """The text as every kind of file can hold it; names of files may have characters that XML or UTF-8 cannot."""
-    return "".join(letter if letter.isprintable() else REPLACEMENT for letter in " ".join(text.split()))
+    return printable(" ".join(text.split()), REPLACEMENT)
 
 
 def sidecar_path(cut_file: Path) -> Path:

@@ -39,6 +39,14 @@ def _remade(kind: type[KirigamiError], code: str, fields: Mapping[str, object]) 
     return kind(code, **fields)
 
 
+def text_of(error: BaseException) -> str:
+    """Return the text of any error, the name of its class where it has none or its text cannot be made."""
+    try:
+        return str(error) or type(error).__name__
+    except Exception:
+        return type(error).__name__
+
+
 class UsageError(KirigamiError):
     """The request itself makes no sense (wrong option, impossible number): exit code 2."""
 

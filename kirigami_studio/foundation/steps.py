@@ -1,11 +1,27 @@
-"""Long computations as generators: they yield after every step, so that others have their turn, and return a result."""
+"""Long work as a generator: it reports values as it goes, looks at a *cancel* flag, and may return a result."""
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterator
 from typing import TypeVar
 
+from kirigami_studio.foundation.errors import Cancelled
+
+T = TypeVar("T")
 Result = TypeVar("Result")
+#: Whether the work has been asked to stop.
+Cancel = Callable[[], bool]
+#: The steps of a use case: a generator that reports values of type T.
+Steps = Callable[[Cancel], Iterator[T]]
+
+
+def single(work: Callable[[Cancel], T]) -> Steps[T]:
+    """Return steps that report once: the value of ``work``."""
+
+    def steps(cancel: Cancel) -> Iterator[T]:
+        yield work(cancel)
+
+    return steps
 
 
 def result_of(steps: Generator[object, None, Result]) -> Result:
@@ -27,3 +43,22 @@ def result_of(steps: Generator[object, None, Result]) -> Result:
         except StopIteration as end:
             result: Result = end.value
             return result
+
+
+def in_turns(steps: Generator[None, None, Result], cancel: Cancel) -> Iterator[Result | None]:
+    """None after every step, so that other jobs have their turn; at last the result.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true between two steps.
+    """
+    while True:
+        if cancel():
+            raise Cancelled("run.no_result")
+        try:
+            next(steps)
+        except StopIteration as end:
+            yield end.value
+            return
+        yield None

@@ -12,12 +12,15 @@ from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.outlines.contour import area_and_centroid, as_contour, tidy, unit_frame
 from kirigami_studio.outlines.crossings import untangled
 from kirigami_studio.outlines.nodes import Nodes
 
 #: Deviation of area and centroid that construction tolerates: float64 rounding over 10^5 vertices stays below it.
 NORMALISATION_TOLERANCE = 1e-9
+#: Notes of one outline: sources give a few.
+MOST_NOTES = 100
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,9 +35,9 @@ class Outline:
         Vertices of a simple polygon, counter-clockwise, y up, first vertex not repeated, area
         centroid at the origin, area 1 (dimensionless); read-only.
     name : str
-        Name shown to the user.
+        Name shown to the user, one plain line whatever the source has.
     notes : tuple of str
-        What was changed on the way from the source, one sentence each.
+        What was changed on the way from the source, one sentence each; at most :data:`MOST_NOTES`.
     size : (float, float) or None
         Width and height in ``unit`` before normalising.
     unit : str
@@ -70,7 +73,8 @@ class Outline:
             raise TargetError("outline.no_such_vertex", vertices=len(points), index=int(self.nodes.at.max()))
         points.setflags(write=False)
         object.__setattr__(self, "points", points)
-        object.__setattr__(self, "notes", tuple(self.notes))
+        object.__setattr__(self, "name", plain_line(self.name))
+        object.__setattr__(self, "notes", tuple(plain_line(note, LONGEST_NOTE) for note in self.notes[:MOST_NOTES]))
 
     @classmethod
     def from_points(

@@ -21,6 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError, UsageError
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ SPECK = 0.01
 RECTANGLE = 0.99
 #: A part inside a frame is one to be asked about from this share of the frame's area on.
 WORTH_ASKING = 0.02
+#: Digits of the areas by which it is told which part lies around which; a fill and a stroke of one outline differ by
+#: rounding, and then the first counts.
+SAME_AREA = 9
 Cap = Literal["round", "flat", "square"]
 Corner = Literal["round", "mitre", "bevel"]
 ALL, LARGEST = "all", "largest"
@@ -91,6 +95,8 @@ class Part:
     lines : tuple of (P, 2) float, source units, y up
         What is painted with the pen; a closed line repeats its first vertex at the end.
     pen : Pen
+    is_named : bool
+        Whether the name is the source's own.
     """
 
     number: int
@@ -101,6 +107,11 @@ class Part:
     region: BaseGeometry
     lines: tuple[FloatArray, ...] = ()
     pen: Pen = field(default_factory=Pen)
+    is_named: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("name", "layer", "colour"):
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -158,6 +169,8 @@ class SourceParts:
         "mm", "px", or "" when the source has none.
     facts : mapping of str to str
         What the file says about how it was made, if this program made it.
+
+    Names of all kinds, facts and sentences are plain lines, whatever the source has.
     """
 
     name: str
@@ -165,6 +178,12 @@ class SourceParts:
     left_out: tuple[str, ...] = ()
     unit: str = ""
     facts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        facts = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in self.facts.items()}
+        object.__setattr__(self, "name", plain_line(self.name))
+        object.__setattr__(self, "left_out", tuple(plain_line(note, LONGEST_NOTE) for note in self.left_out))
+        object.__setattr__(self, "facts", MappingProxyType(facts))
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -214,18 +233,15 @@ class SourceParts:
         """Closed parts that do not lie inside another one."""
         closed = [part for part in self.parts if part.is_closed]
         shells = [Polygon(shell(part.region)) for part in closed]
-        # Of two parts in the same place the first counts; hundreds of copies are not compared with each other.
+        # Hundreds of copies are not compared with each other.
         first = {each.wkb: index for index, each in reversed([*enumerate(shells)])}
-        several = sorted(first.values())
-        tree = shapely.STRtree([shells[index] for index in several])
-        inner, around = (
-            [several[index] for index in found.tolist()]
-            for found in tree.query([shells[index] for index in several], predicate="covered_by")
-        )
-        hidden = {i for i, o in zip(inner, around, strict=True) if shells[o].area > shells[i].area}
-        hidden |= {i for i, o in zip(inner, around, strict=True) if o < i}
-        hidden |= set(range(len(shells))) - set(several)
-        return [part for index, part in enumerate(closed) if index not in hidden]
+        several = sorted(first.values(), key=lambda index: (-float(f"{shells[index].area:.{SAME_AREA}g}"), index))
+        ranked = np.array([shells[index] for index in several], dtype=object)
+        inner, around = shapely.STRtree(ranked).query(ranked, predicate="covered_by")
+        # One rank for all: of parts that cover each other, the first of the largest is never hidden.
+        hidden = set(inner[around < inner].tolist())
+        outer = {index for rank, index in enumerate(several) if rank not in hidden}
+        return [part for index, part in enumerate(closed) if index in outer]
 
     def chosen(self, words: str) -> tuple[Part, ...]:
         """The parts that words name: ``all``, ``largest``, or names, numbers and layers, joined by commas.
@@ -358,7 +374,12 @@ def numbered(parts: Sequence[Part], size: float) -> tuple[tuple[Part, ...], tupl
         PartKind.STROKED: tr("line {number}"),
     }
     named = [
-        replace(part, number=number, name=part.name or words[part.kind].format(number=number))
+        replace(
+            part,
+            number=number,
+            name=part.name or words[part.kind].format(number=number),
+            is_named=bool(part.name),
+        )
         for number, part in enumerate(kept, start=1)
     ]
     return tuple(named), notes

@@ -40,6 +40,11 @@ class Proportions:
         return 0.5 * math.log(float(up @ self.moments @ up) / float(across @ self.moments @ across))
 
     @property
+    def longest(self) -> float:
+        """Logarithm of the largest extent over that across it."""
+        return self.along(self.direction)
+
+    @property
     def direction(self) -> float:
         """Direction in which the target is longest, radians in [0, pi); any for a shape without one."""
         (xx, xy), (_, yy) = self.moments

@@ -12,6 +12,7 @@ import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import SheetError, UsageError
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.read import read_target
@@ -19,8 +20,10 @@ from kirigami_studio.outlines.symmetry import TOLERANCE, symmetry_of, turned
 
 #: Vertices of circles and ellipses: their areas are within 0.002 % of the true ones.
 ROUND_VERTICES = 720
+#: Shapes that are longer by this share are as long.
+ROUNDING = 1e-3
 FEWEST_SIDES, MOST_SIDES = 3, 64
-#: Longest start over its width, for shapes that are named by their proportions.
+#: Longest start over its width.
 LONGEST = 5.0
 #: Proportions of an ellipse without any.
 USUAL_ELLIPSE = 1.5
@@ -67,6 +70,7 @@ class StartShape:
     weight: float = USUAL_WEIGHT
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "name", plain_line(self.name))
         if not 0.0 < self.weight <= HEAVIEST:
             raise UsageError("start.weight_out_of_range", weight=self.weight, most=HEAVIEST)
 
@@ -104,7 +108,7 @@ def start_shape(text: str) -> StartShape:
     UsageError
         Numbers that no such shape has.
     SheetError
-        A shape with hollows that are too large.
+        A shape that is too long, or whose hollows are too large.
     TargetError
         Neither such a name nor a file or silhouette that can be read.
     """
@@ -140,8 +144,11 @@ def outline_start(outline: Outline) -> StartShape:
     Raises
     ------
     SheetError
-        Too much of its hull is missing; the sentence says where the deepest hollow is.
+        It is too long, or too much of its hull is missing; the sentence says where the deepest hollow is.
     """
+    length = math.exp(Proportions.of(outline).longest)
+    if length > LONGEST * (1.0 + ROUNDING):
+        raise SheetError("start.too_long", name=outline.name, length=length, longest=LONGEST)
     check_hollows(outline)
     hull = outline.polygon.convex_hull
     shape = hull if hull.area <= 1.0 + FILLED else outline.polygon

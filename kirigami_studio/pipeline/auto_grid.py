@@ -34,7 +34,7 @@ from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Stage
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
 
 #: Fewest rows and columns, and most unless another limit is asked for.
 COARSEST, FINEST = 6, 16
@@ -199,7 +199,7 @@ def predicted_match(
 @lru_cache(maxsize=64)
 def choose_grid(
     target: Outline,
-    symmetry: str = "auto",
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO,
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
     limit: int = FINEST,
@@ -210,7 +210,7 @@ def choose_grid(
     Parameters
     ----------
     target : Outline
-    symmetry : {"auto", "none", "mirror", "turn"}
+    symmetry : KeptSymmetry
         As for :func:`kirigami_studio.polish.symmetry.symmetric_poses`.
     width_mm : float
         Width of the flat sheet.
@@ -227,12 +227,12 @@ def choose_grid(
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
-    found = list(_candidates(target, figures, poses, limit, start))
+    found = list(_candidates(target, figures, poses, limit, start)) or _nearest(target, figures, poses, limit, start)
     found = [one for one in found if one.start_error <= MOST_START_ERROR] or [
         min(found, key=lambda one: one.start_error)
     ]
@@ -417,6 +417,7 @@ def _candidates(
     limit: int,
     start: StartShape,
     room: float = PROPORTION_ROOM,
+    start_room: float = START_ROOM,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries.
 
@@ -433,7 +434,7 @@ def _candidates(
         proportion = proportions.along(along)
         low, high = min(0.0, proportion) - room, max(0.0, proportion) + room
         if not start.is_plain:
-            low, high = start.proportion(1, 1) - START_ROOM, start.proportion(1, 1) + START_ROOM
+            low, high = start.proportion(1, 1) - start_room, start.proportion(1, 1) + start_room
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns
@@ -447,7 +448,16 @@ def _candidates(
                     yield _Candidate(grid, pose, match, width_in_cells(grid, start), error)
 
 
-def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[SymmetricPose, ...]:
+def _nearest(
+    target: Outline, figures: ShapeFigures, poses: tuple[SymmetricPose, ...], limit: int, start: StartShape
+) -> list[_Candidate]:
+    """Grids for a start that is longer than any: those whose proportions come nearest to it."""
+    found = list(_candidates(target, figures, poses, limit, start, start_room=math.inf))
+    off = [abs(one.proportion - start.proportion(1, 1)) for one in found]
+    return [one for one, far in zip(found, off, strict=True) if far <= min(off) + PROPORTION_ROOM]
+
+
+def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:
     """The symmetric set-ups of a target that sheets of a start can have on some grid.
 
     Raises
@@ -455,13 +465,13 @@ def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[Symmetric
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = symmetric_poses(target, symmetry)
     if start.is_plain:
         return poses
     kept = tuple(pose for pose in poses if any(pose.fits(grid, start) for grid in SYMMETRIC_GRIDS))
-    if poses and not kept and symmetry in ("mirror", "turn"):
+    if poses and not kept and symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         rows, columns = SYMMETRIC_GRIDS[0]
         raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=symmetry)
     return kept

@@ -49,8 +49,8 @@ class Looking:
 
 
 def best_as_cut(
-    result: Result, jams: Mapping[Candidate, float], look: Callable[[Candidate], CloseLook]
-) -> Generator[Looking, None, Result]:
+    result: Result, jams: Mapping[Candidate, float], look: Callable[[Candidate], Generator[None, None, CloseLook]]
+) -> Generator[Looking | None, None, Result]:
     """Rank designs by how they do as cut, the best that can be cut first.
 
     Those that are estimated to jam are left out at once.  The others are looked at closely, best first, until none that
@@ -63,12 +63,13 @@ def best_as_cut(
     jams : mapping of Candidate to float, radians
         Where designs are estimated to jam, 0 for those that close.
     look : callable
-        Plans and checks the cuts of a design, and closes the sheet on its connectors.
+        Returns the steps in which the cuts of a design are planned and checked, and the sheet is closed on its
+        connectors.
 
     Yields
     ------
-    Looking
-        Before each design that is looked at.
+    Looking or None
+        Before each design that is looked at, and between the steps of a look.
 
     Returns
     -------
@@ -86,7 +87,7 @@ def best_as_cut(
         if first is None or first in losses:
             break
         yield Looking(number + 1, len(hopeful))
-        found = look(first)
+        found = yield from look(first)
         if found.refusal is not None:
             refusals[first] = found.refusal
         else:

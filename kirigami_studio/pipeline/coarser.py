@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import fits_from_uniform, never
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: Fewer voids each way, one grid after the other: by two, so that a grid keeps the symmetries that its parities allow.
 FEWER = (2, 4)

@@ -14,6 +14,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
 from functools import cache
@@ -25,7 +26,7 @@ import kirigami_studio
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Answer, Task
-from kirigami_studio.pipeline.worker import WORKER_FLAG, Assignment, Done, Failed, Ready, Report, Stop
+from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop
 
 log: logging.Logger = topic("pipeline")
 
@@ -37,6 +38,10 @@ THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
+
+#: Seconds after which a worker that has work and says nothing is given up: it says that it lives twice a second, and
+#: its imports take a few seconds.
+SILENCE = 60.0
 
 #: Code for the interpreter of a worker; the package's folder follows, for checkouts that are not installed.
 ENTRY = "import sys; sys.path.append(sys.argv[1]); from kirigami_studio.pipeline.worker import serve; sys.exit(serve())"
@@ -60,6 +65,7 @@ class Worker:
     def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[Worker, Report | None]]) -> None:
         self.assignment: Assignment | None = None
         self.ready = False
+        self.silence = 0.0  #: seconds since it was heard, while it had something to say
         self.process = _started(command)
         self._reports = reports
         self._listener = threading.Thread(target=self._listen, name="polishing worker", daemon=True)
@@ -100,7 +106,9 @@ class Worker:
             except Exception:  # the end of the pipe, or half a message of a killed worker
                 self._reports.put((self, None))
                 return
-            self._reports.put((self, report))
+            self.silence = 0.0
+            if not isinstance(report, Alive):
+                self._reports.put((self, report))
 
 
 class Pool:
@@ -113,9 +121,12 @@ class Pool:
         never starts.
     command : sequence of str, optional
         Program and arguments of a worker, see :func:`worker_command`.
+    silence : float, seconds
+        How long a worker that has work may say nothing until it is given up: a stopped process neither works nor ends.
     """
 
-    def __init__(self, size: int | None = None, command: Sequence[str] | None = None) -> None:
+    def __init__(self, size: int | None = None, command: Sequence[str] | None = None, silence: float = SILENCE) -> None:
+        self._silence = silence
         self.size = worker_count() if size is None else size
         self._command = worker_command() if command is None else command
         self.workers: list[Worker] = []
@@ -186,7 +197,7 @@ class Pool:
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
     ) -> Iterator[tuple[int, Answer] | None]:
         self.start()
-        begun = False
+        begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
             for worker in self.workers:
                 if waiting and not self._winding_down and worker.ready and worker.assignment is None:
@@ -196,6 +207,10 @@ class Pool:
             if not begun:
                 begun = True
                 yield None
+            now = time.monotonic()
+            # Time in which this process did not listen, stopped itself or asleep, is nobody's silence.
+            self._kill_silent(min(now - heard_at, 2.0 * wait))
+            heard_at = now
             try:
                 worker, report = self._reports.get(timeout=wait)
             except Empty:
@@ -209,6 +224,18 @@ class Pool:
                 raise report.error
             elif isinstance(report, Done) and report.batch == batch:
                 yield report.number, report.answer
+
+    def _kill_silent(self, passed: float) -> None:
+        """Kill workers that have said nothing for long; their work is done again as that of any that die."""
+        for worker in self.workers:
+            if worker.assignment is None and worker.ready:
+                worker.silence = 0.0
+                continue
+            worker.silence += passed
+            if worker.silence > self._silence:
+                log.warning("a polishing worker has said nothing for %.0f s and is ended", worker.silence)
+                worker.silence = 0.0
+                worker.process.kill()
 
     def _under_way(self, batch: int) -> bool:
         return any(worker.assignment is not None and worker.assignment.batch == batch for worker in self.workers)

@@ -30,7 +30,7 @@ from kirigami_studio.pipeline.events import (
 )
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import USUAL_GRID, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import (
     Answer,
     GuidedTask,
@@ -45,8 +45,9 @@ from kirigami_studio.pipeline.tasks import (
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
 from kirigami_studio.polish.covering import notches_filled
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
+from kirigami_studio.settings.design import USUAL_GRID, RimRule
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -222,7 +223,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if not request.fitted_starts:
         return []
     angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry, request.start)
-    if request.symmetry in ("mirror", "turn"):
+    if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
@@ -240,7 +241,7 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
     poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry, request.start)
     poses = poses[:MOST_SYMMETRIES]
-    together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
+    together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
     return [(pose, share) for pose, share in zip(poses, each, strict=True) if share]
 
@@ -250,10 +251,10 @@ def on_sheet(request: Request, field: RatioField) -> Sheet:
 
     The model knows no hollows: where the start has some, the sheet is unfolded; one that stays folded is not feasible.
     """
-    flat = request.uniform if request.near is None or request.rim == "even" else request.near
+    flat = request.uniform if request.near is None or request.rim is RimRule.EVEN else request.near
     sheet = flat.with_field(field)
     try:
-        return unfolded(sheet, free_rim=request.rim == "free")
+        return unfolded(sheet, free_rim=request.rim is RimRule.FREE)
     except SheetError:
         return sheet
 

@@ -25,8 +25,8 @@ from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, f
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import CONVERGED, Stage
-from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import shared_symmetries, symmetric_target
+from kirigami_studio.polish.preferences import PREFERENCES, FitPreference
+from kirigami_studio.polish.symmetry import KeptSymmetry, shared_symmetries, symmetric_target
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class PolishTask:
         # A design of an earlier run keeps the second target that it was made for, or does without as it did.
         request = replace(request, second=None if candidate.second is None else candidate.second.target)
         symmetry = kept_symmetry(candidate.sheet)
-        prefer: str | None = request.prefer
+        prefer: FitPreference | None = request.prefer
         while prefer is not None:
             with one_blas_thread():
                 fit = polish(
@@ -90,7 +90,7 @@ class PolishTask:
                     stopped,
                     stages=self._stages(request.even),
                     least_panel=request.kept_size,
-                    free_rim=request.rim == "free",
+                    free_rim=request.wishes.free_rim,
                     symmetry=symmetry,
                     second=request.second,
                     start_weight=request.start.weight,
@@ -197,13 +197,15 @@ class TrimTask:
 
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
-    if symmetry is None or request.symmetry not in ("mirror", "turn"):
+    if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         return request.target
     return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry)
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], start: StartShape, setting: str, symmetry: Symmetry) -> Outline:
+def _meant(
+    target: Outline, grid: tuple[int, int], start: StartShape, setting: KeptSymmetry, symmetry: Symmetry
+) -> Outline:
     for pose in shared_symmetries(target, grid, setting, start):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)

@@ -45,7 +45,7 @@ from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import Stage
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10
@@ -140,7 +140,7 @@ class Wishes:
     free_rim : bool
     even : float
         Weight of even panels in the end.
-    symmetry : {"auto", "none", "mirror", "turn"}
+    symmetry : KeptSymmetry
         Which symmetries of the target sheets may keep.
     evenness_price : float
         IoU that a coefficient of variation of panel areas lower by 1 is worth.
@@ -156,7 +156,7 @@ class Wishes:
     least_panel: float = 0.0
     free_rim: bool = False
     even: float = 0.0
-    symmetry: str = "auto"
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO
     evenness_price: float = 0.0
     symmetry_price: float = FAIR_LOSS
     start: StartShape = RECTANGLE
@@ -331,7 +331,7 @@ def first_angles(
     target: Outline,
     grid: tuple[int, int],
     effort: int = 1,
-    setting: str = "auto",
+    setting: KeptSymmetry = KeptSymmetry.AUTO,
     start: StartShape = RECTANGLE,
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.

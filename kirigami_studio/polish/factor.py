@@ -140,7 +140,7 @@ class _ByRows:
             np.matmul(self.inverse[i], rows[i] + self.lower[i] @ found[i - 1], out=found[i])
         for i in range(len(rows) - 2, -1, -1):
             found[i] += self.transfer[i] @ found[i + 1]
-        return found.reshape(-1, right.shape[1])[self.slot]
+        return self._of_unknowns(found)
 
     def solve_transposed(self, right: FloatArray) -> FloatArray:
         found = self._in_rows(right)
@@ -150,11 +150,17 @@ class _ByRows:
             if i < len(found) - 1:
                 found[i] += self.lower[i + 1].T @ found[i + 1]
             found[i] = self.inverse[i].T @ found[i]
-        return found.reshape(-1, right.shape[1])[self.slot]
+        return self._of_unknowns(found)
+
+    def _of_unknowns(self, rows: FloatArray) -> FloatArray:
+        """What stands (m, w, D) in the places of the unknowns: (H, D)."""
+        count, width, sides = rows.shape
+        values: FloatArray = rows.reshape(count * width, sides)[self.slot]
+        return values
 
     def _in_rows(self, right: FloatArray) -> FloatArray:
         """A right-hand side (H, D) in its places: (m, w, D)."""
         rows, width = self.lower.shape[:2]
         places = np.zeros((rows * width, right.shape[1]))
         places[self.slot] = right
-        return places.reshape(rows, width, -1)
+        return places.reshape(rows, width, right.shape[1])

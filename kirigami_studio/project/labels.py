@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.plain_text import printable
 
 #: The name that a design gets by itself.
 CODE = re.compile(r"[A-Z]{1,8}[1-9][0-9]{0,5}")
@@ -89,13 +90,12 @@ def reads_as_code(name: str) -> bool:
 
 def cleaned_name(text: str) -> str:
     """A typed or pasted name as one line without characters that cannot be shown."""
-    return " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
+    return " ".join(printable(text).split())
 
 
 def cleaned_note(text: str) -> str:
     """A typed or pasted note without characters that cannot be shown; its lines stay."""
-    lines = ("".join(letter if letter.isprintable() else " " for letter in line) for line in text.splitlines())
-    return "\n".join(line.rstrip() for line in lines).strip()
+    return "\n".join(printable(line).rstrip() for line in text.splitlines()).strip()
 
 
 def file_ending(label: Label) -> str:

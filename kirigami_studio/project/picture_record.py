@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.project.json_record import Record, read_json
 
 RECORD = "picture.json"
@@ -96,13 +97,13 @@ def picture_of(members: Mapping[str, bytes]) -> TracedPicture | None:
         return None
     try:
         record = Record(read_json(members[RECORD], RECORD), RECORD)
-        name = record.text("name")
+        name = record.verbatim("name")
         member = f"picture{Path(name).suffix.lower()}"
         if member not in members:
             raise ProjectError("project.member_missing", name=member)
         width, height = record.pair("size")
         return TracedPicture(
-            name=name,
+            name=plain_line(name),
             content=members[member],
             automatic=record.number("automatic"),
             threshold=record.number("threshold"),

@@ -12,6 +12,8 @@ from kirigami_studio.foundation.files import read_toml, write_atomically
 
 #: Files of each kind that are remembered.
 MOST = 10
+#: Letters of a path: more than systems take.
+LONGEST_PATH = 4096
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +38,9 @@ class Recent:
         for name, entries in (("projects", self.projects), ("targets", self.targets)):
             if not isinstance(entries, tuple | list) or not all(isinstance(entry, str) and entry for entry in entries):
                 raise ProjectError("recent.not_paths", name=name, value=entries)
-            object.__setattr__(self, name, tuple(entries)[:MOST])
+            # A path cannot be changed to be shown, so those that cannot be shown as they are are not remembered.
+            shown = [entry for entry in entries if entry.isprintable() and len(entry) <= LONGEST_PATH]
+            object.__setattr__(self, name, tuple(shown[:MOST]))
 
     def with_project(self, path: Path) -> Recent:
         """The same with this project first."""

@@ -68,7 +68,7 @@ def keep(document: Document, note: Note, path: Path, picture: TracedPicture | No
     """
     # Imported here, so that reading notes does not slow the start of the window.
     from kirigami_studio.project import store
-    from kirigami_studio.project.cutting import with_stored_material
+    from kirigami_studio.project.store import with_stored_material
 
     stream = io.BytesIO(store.pack(with_stored_material(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
@@ -98,7 +98,7 @@ def read_note(path: Path) -> Note:
     try:
         record = Record(read_json(content, NOTE), NOTE)
         digest = record.text("digest") if record.holds("digest") else ""
-        note = Note(record.text("name"), record.text("path"), record.text("changed"), digest)
+        note = Note(record.text("name"), record.verbatim("path"), record.text("changed"), digest)
         if note.when.tzinfo is None:
             raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:

@@ -13,16 +13,17 @@ from pathlib import Path
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.design_record import record_in
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.project import migrations
 from kirigami_studio.project.artwork_record import PICTURES, artwork_members, artwork_of
 from kirigami_studio.project.codec import decode, encode
-from kirigami_studio.project.cutting import with_stored_material
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
+from kirigami_studio.project.settings import stored_material
 
 SUFFIX = ".kiri"
 #: Kinds of cut file that carry the design they came from.
@@ -75,6 +76,17 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
     content = pack(with_stored_material(document), picture)
     write_atomically(Path(path), content)
     return hashlib.sha256(content).hexdigest()
+
+
+def with_stored_material(document: Document) -> Document:
+    """The document as it is saved: with the numbers of its material, if that is a person's own."""
+    settings, known = document.fabrication, library()
+    numbers = stored_material(settings)
+    if settings.material in known.materials:
+        numbers = known.materials[settings.material] if settings.material in known.own else None
+    if numbers == settings.own:
+        return document
+    return replace(document, fabrication=replace(settings, own=numbers))
 
 
 def digest_on_disk(path: Path) -> str | None:

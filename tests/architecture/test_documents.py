@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.cli.parser import SUB_COMMANDS, build_parser
-from kirigami_studio.foundation.words import DOMAIN, read_catalogue
+from kirigami_studio.cli.parser import all_commands, build_parser
+from tests.catalogues import catalogue, forms
 
 #: Folders with documents, beside those in the root.
 FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
 #: ``[text](place)`` and ``![text](place)``; the place without its anchor and title.
 LINK = re.compile(r"\[[^\]\n]*\]\(\s*<?([^)\s#>]+)")
-#: A path with a folder: ``gui/session.py``, ``tests/data/oracles``.
+#: A path with a folder: ``gui/session/session.py``, ``tests/data/oracles``.
 PATH = re.compile(r"(?<![\w./:-])(?:[\w-]+/)+[\w-]+(?:\.[\w-]+)*/?(?![\w/*(])")
 COMMAND = re.compile(r"kirigami-studio ([^`#\n|]+)")
 #: Made by the program or by ``make``.
@@ -59,7 +59,7 @@ def missing_paths(repository: Path, text: str, *beside: Path) -> list[str]:
 
 def refused_commands(text: str) -> list[str]:
     """Commands in a document that the command line does not take."""
-    first_words = {command.name.partition(" ")[0] for command in SUB_COMMANDS}
+    first_words = {command.name.partition(" ")[0] for command in all_commands()}
     refused = []
     for shown in COMMAND.findall(text.replace("\\\n", " ")):
         words = shlex.split(shown.replace("...", ""))
@@ -190,12 +190,8 @@ def test_that_the_german_guide_names_the_keys_of_the_english_one(guides: tuple[s
         assert sorted(named(own, CODE)) == sorted(keys), own
 
 
-@pytest.mark.long
-def test_that_the_german_guide_calls_things_as_the_german_window_does(
-    guides: tuple[str, str], repository: Path
-) -> None:
-    path = repository / "resources" / "locale" / "de" / "LC_MESSAGES" / f"{DOMAIN}.po"
-    texts = read_catalogue(path, "de").texts
+def test_that_the_german_guide_calls_things_as_the_german_window_does(guides: tuple[str, str]) -> None:
+    texts = {forms(message.id)[0]: forms(message.string) for message in catalogue("de") if message.id}
     english, german = (blocks_of(guide) for guide in guides)
     for own, other in zip(german, english, strict=True):
         assert called_otherwise(other, own, texts, BOLD) == [], own

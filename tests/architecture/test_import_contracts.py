@@ -28,14 +28,13 @@ class Fault:
 
 
 ONE_WAY = "Data flows one way; packages on one line do not import each other"
-TORCH = "Only generator, baselines, training, benchmark and lattice.batched import torch"
+TORCH = "Only generator, lab and lattice.batched import torch"
 BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading and outlines.read_dxf import ezdxf"
 DASK = "Only foundation.processes imports Dask"
-WINDOW = "Layers of the window"
-COMPARED = "Only training, benchmark and cli know what the program is compared with"
+WINDOW = "Places of the window"
+LAB = "Floors of the lab"
 JUDGED = "What others are judged by knows nothing of the window"
-API = "The Python API knows nothing of window, training and benchmarks"
 SOLVERS = "Solvers know a box and values, nothing of sheets"
 FAULTS = (
     Fault("lattice", "import kirigami_studio.evaluate", ONE_WAY, "kirigami_studio.evaluate"),
@@ -46,19 +45,23 @@ FAULTS = (
     Fault("polish", "import kirigami_studio.export", ONE_WAY, "kirigami_studio.export"),
     Fault("export", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
     Fault("project", "import kirigami_studio.pipeline", ONE_WAY, "kirigami_studio.pipeline"),
-    Fault("pipeline", "import kirigami_studio.baselines", ONE_WAY, "kirigami_studio.baselines"),
-    Fault("gui", "import kirigami_studio.baselines", COMPARED, "kirigami_studio.baselines"),
-    Fault("benchmark", "import kirigami_studio.problem", ONE_WAY, "kirigami_studio.problem"),
-    Fault("problem", "import kirigami_studio.gui", JUDGED, "kirigami_studio.gui"),
-    Fault("api", "import kirigami_studio.gui", API, "kirigami_studio.gui"),
-    Fault("api", "import kirigami_studio.benchmark", API, "kirigami_studio.benchmark"),
+    Fault("pipeline", "import kirigami_studio.studio", ONE_WAY, "kirigami_studio.studio"),
+    Fault("studio", "import kirigami_studio.gui", ONE_WAY, "kirigami_studio.gui"),
+    Fault("studio", "import kirigami_studio.api", ONE_WAY, "kirigami_studio.api"),
+    Fault("gui", "import kirigami_studio.lab.baselines", ONE_WAY, "kirigami_studio.lab.baselines"),
+    Fault("cli", "import kirigami_studio.lab.benchmark", ONE_WAY, "kirigami_studio.lab.benchmark"),
+    Fault("api", "import kirigami_studio.gui", ONE_WAY, "kirigami_studio.gui"),
+    Fault("api", "import kirigami_studio.lab.problem", ONE_WAY, "kirigami_studio.lab.problem"),
     Fault("api", "import kirigami_studio.cli", ONE_WAY, "kirigami_studio.cli"),
-    Fault("baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
-    Fault("gui", "import kirigami_studio.training", ONE_WAY, "kirigami_studio.training"),
+    Fault("gui", "import kirigami_studio.api", ONE_WAY, "kirigami_studio.api"),
+    Fault("lab/benchmark", "import kirigami_studio.lab.problem", LAB, "kirigami_studio.lab.problem"),
+    Fault("lab/problem", "import kirigami_studio.gui", JUDGED, "kirigami_studio.gui"),
+    Fault("lab/baselines/solvers", "import kirigami_studio.evaluate", SOLVERS, "kirigami_studio.evaluate"),
     Fault("foundation", "import kirigami_studio.lattice", ONE_WAY, "kirigami_studio.lattice"),
-    Fault("gui/designs", "import kirigami_studio.gui.views", WINDOW, "kirigami_studio.gui.views"),
-    Fault("gui/scene", "import kirigami_studio.gui.jobs", WINDOW, "kirigami_studio.gui.jobs"),
-    Fault("gui/views", "import kirigami_studio.gui.panels", WINDOW, "kirigami_studio.gui.panels"),
+    Fault("gui/session", "import kirigami_studio.gui.widgets", WINDOW, "kirigami_studio.gui.widgets"),
+    Fault("gui/widgets", "import kirigami_studio.gui.stage", WINDOW, "kirigami_studio.gui.stage"),
+    Fault("gui/stage", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
+    Fault("gui/make", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
     *(
         Fault(package, "import torch", "The exact core never reaches torch", "torch")
         for package in ("foundation", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export")
@@ -67,7 +70,7 @@ FAULTS = (
     Fault("project", "def load():\n    import torch", "The exact core never reaches torch", "torch"),
     *(
         Fault(package, f"import {library}", TORCH, library)
-        for package in ("__main__", "cli", "gui", "gui/jobs", "pipeline", "demonstrations", "polish", "lattice")
+        for package in ("__main__", "cli", "gui", "gui/session", "studio", "pipeline", "polish", "lattice")
         for library in ("torch", "safetensors")
     ),
     *(
@@ -85,7 +88,7 @@ FAULTS = (
     Fault("cli", "import PySide6", "Only the window imports Qt", "PySide6"),
     Fault("fabricate", "import ezdxf", EZDXF, "ezdxf"),
     Fault("outlines", "import ezdxf.math", EZDXF, "ezdxf"),
-    Fault("benchmark", "import distributed", DASK, "distributed"),
+    Fault("lab/benchmark", "import distributed", DASK, "distributed"),
     Fault("foundation", "import scipy", "The foundation needs NumPy at most", "scipy"),
 )
 

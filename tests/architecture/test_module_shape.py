@@ -14,7 +14,7 @@ FRAGMENT_LINES = 60
 STANDS_ALONE = {
     "__main__.py": "python -m needs it",
     "generator/libraries.py": "it is read before torch is imported, by a thread that must not import it",
-    "gui/commands/help.py": "every menu has its module",
+    "gui/window/help_commands.py": "every menu has its module",
 }
 SAYS_NOTHING = {"utils", "util", "helpers", "helper", "manager", "misc", "common", "tools"}
 

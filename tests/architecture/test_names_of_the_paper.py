@@ -16,8 +16,8 @@ import pytest
         ("lattice/marching.py", "void_angle", r"parity rule \(Eq\. 1\)"),
         ("evaluate/siou.py", None, r"sIoU"),
         ("evaluate/total_variation.py", None, r"[Tt]otal variation"),
-        ("training/flow_path.py", "cfm_loss", r"Eq\. \d"),
-        ("training/grpo.py", "grpo_loss", r"Eq\. \d"),
+        ("lab/training/flow_path.py", "cfm_loss", r"Eq\. \d"),
+        ("lab/training/grpo.py", "grpo_loss", r"Eq\. \d"),
     ],
 )
 def test_that_a_formula_is_found_by_its_name(repository: Path, module: str, definition: str | None, said: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kirigami_studio.demonstrations.mathematics_figures import FIGURES, errors
+from kirigami_studio.lab.demonstrations.mathematics_figures import FIGURES, errors
 
 #: Those that depend on nothing but the exact geometry; the others hold results of fits and rounding errors.
 EXACT = ("parity", "void", "compact", "motion", "paths")

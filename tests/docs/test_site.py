@@ -14,11 +14,10 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import kirigami_studio
-from kirigami_studio.cli.parser import SUB_COMMANDS
+from kirigami_studio.cli.parser import all_commands
 from kirigami_studio.foundation.resources import resource
 
 pytest.importorskip("mkdocs")
-pytestmark = pytest.mark.slow
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: What a browser fetches by itself; links of a page it only follows.
@@ -84,7 +83,6 @@ def pages(site: Path) -> dict[Path, PageReader]:
     return {path: read_page(path.read_text(encoding="utf-8")) for path in found}
 
 
-@pytest.mark.long
 def test_that_pages_fetch_nothing_from_other_servers(site: Path, pages: dict[Path, PageReader]) -> None:
     assert {path.name: found for path, page in pages.items() if (found := from_elsewhere(page.fetched))} == {}
     for sheet in site.rglob("*.css"):
@@ -130,15 +128,15 @@ def test_that_formulas_are_drawn_by_the_browser_alone(site: Path) -> None:
 
 def test_that_every_command_and_its_options_are_in_the_reference(site: Path) -> None:
     text = (site / "command-line-options.html").read_text(encoding="utf-8")
-    assert [one.name for one in SUB_COMMANDS if f">{one.name}<a" not in text] == []
-    options = {name for one in SUB_COMMANDS for names, _ in one.options for name in names if name.startswith("--")}
+    assert [one.name for one in all_commands() if f">{one.name}<a" not in text] == []
+    options = {name for one in all_commands() for names, _ in one.options for name in names if name.startswith("--")}
     assert [option for option in sorted(options) if option not in text] == []
 
 
 def test_that_public_python_names_are_in_the_reference(site: Path) -> None:
     text = (site / "api-reference.html").read_text(encoding="utf-8")
     for name in ("designs", "targets", "masks", "judge", "baseline", "simulate", "score"):
-        assert f'id="kirigami_studio.problem.{name}"' in text
+        assert f'id="kirigami_studio.lab.problem.{name}"' in text
     homes = {name: module for module, names in kirigami_studio._MODULES.items() for name in names}
     assert [name for name in kirigami_studio.__all__ if f'id="kirigami_studio.{homes[name]}.{name}"' not in text] == []
 

@@ -12,9 +12,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio import __version__
 from kirigami_studio.foundation.licences import components
-from kirigami_studio.gui.application import FileOpening
-from kirigami_studio.gui.dialogs.about import AboutWindow
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.about import AboutWindow
+from kirigami_studio.gui.window.application import FileOpening
+from kirigami_studio.gui.window.main_window import MainWindow
 
 
 @pytest.fixture

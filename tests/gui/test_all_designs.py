@@ -15,21 +15,21 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.designs.badges import badges_of
-from kirigami_studio.gui.designs.gallery_selection import SortOrder
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.all_designs import AllDesigns
-from kirigami_studio.gui.scene.layout_items import states_pixmap
-from kirigami_studio.gui.views import table_card
-from kirigami_studio.gui.views.card_delegate import CardButton
-from kirigami_studio.gui.views.design_table import MOST_COMPARED
-from kirigami_studio.gui.views.gallery_model import BADGES_ROLE, NAME_ROLE
-from kirigami_studio.gui.views.table_card import button_boxes
+from kirigami_studio.gui.gallery import table_card
+from kirigami_studio.gui.gallery.all_designs import AllDesigns
+from kirigami_studio.gui.gallery.badges import badges_of
+from kirigami_studio.gui.gallery.card_delegate import CardButton
+from kirigami_studio.gui.gallery.design_table import MOST_COMPARED
+from kirigami_studio.gui.gallery.gallery_model import BADGES_ROLE, NAME_ROLE
+from kirigami_studio.gui.gallery.gallery_selection import SortOrder
+from kirigami_studio.gui.gallery.table_card import button_boxes
+from kirigami_studio.gui.stage.layout_items import states_pixmap
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton

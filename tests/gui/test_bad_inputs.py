@@ -15,8 +15,8 @@ from PySide6.QtCore import QMimeData, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 

@@ -12,8 +12,8 @@ from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.figures import Box, Figure, placed_figure

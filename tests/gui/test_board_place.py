@@ -11,10 +11,10 @@ from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.session.messages import Message
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from tests.gui.test_board_points import ALT, CTRL, LEFT, NONE, PLAIN, SHIFT, drag, placed, send, undo_label

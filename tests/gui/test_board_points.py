@@ -12,10 +12,10 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.sketching.point_tool import PointTool
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.point_tool import PointTool
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.anchors import OUT
 from kirigami_studio.outlines.figures import Box, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis

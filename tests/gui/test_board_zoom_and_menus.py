@@ -9,9 +9,9 @@ from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.view_transform import ViewTransform
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
+from kirigami_studio.gui.window.main_window import MainWindow
 from tests.gui.test_drawing_board import LEFT, PLAIN, board, drag, pixel, plate, send, use
 
 __all__ = ["board", "plate"]

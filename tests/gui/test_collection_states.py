@@ -9,8 +9,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.demonstrations.offscreen_session import click
-from kirigami_studio.demonstrations.state_sheet import StateSheet
+from kirigami_studio.lab.demonstrations.offscreen_session import click
+from kirigami_studio.lab.demonstrations.state_sheet import StateSheet
 from kirigami_studio.project.document import Mark
 
 
@@ -26,7 +26,6 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
     yield from shown(OneOfEach(tmp_path), qtbot)
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_the_collections_states_are_pictured_and_taken_back(sheet: StateSheet) -> None:
     window = sheet.window

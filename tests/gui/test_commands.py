@@ -6,9 +6,9 @@ import re
 from dataclasses import replace
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.command import Command, WindowState, Wording
-from kirigami_studio.gui.commands.actions import CommandActions
-from kirigami_studio.gui.main_window import TOOLBAR, MainWindow
+from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.widgets.actions import CommandActions
+from kirigami_studio.gui.window.main_window import TOOLBAR, MainWindow
 from kirigami_studio.project.document import Mark
 
 

@@ -13,13 +13,13 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.slits import SHEET_EDGE
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.cuts_page import CutsPage
-from kirigami_studio.gui.panels.hinge_bar import RULES
-from kirigami_studio.gui.scene.connector_items import Connectors, paint_connectors
-from kirigami_studio.gui.scene.view_transform import ViewTransform
-from kirigami_studio.gui.views.hinge_gestures import HingeDrag
+from kirigami_studio.gui.make.cuts_page import CutsPage
+from kirigami_studio.gui.make.hinge_bar import RULES
+from kirigami_studio.gui.make.hinge_gestures import HingeDrag
+from kirigami_studio.gui.stage.connector_items import Connectors, paint_connectors
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project.settings import FabricationSettings
 from tests.gui.test_cut_preview import plan_of
 
@@ -266,7 +266,6 @@ def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainW
     assert every and page.view.selected == every
 
 
-@pytest.mark.long
 def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
     page = cutting.stage.cuts
     first, second = lonely(page, 2)
@@ -280,7 +279,6 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     until(lambda: page.hinges.selection_text.text() == "2 connectors")
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("size", [(260, 260), (700, 700), (1600, 1200)])
 @pytest.mark.parametrize("cells", [3, 8, 20])
 def test_that_a_dot_is_no_wider_than_a_third_of_nine_panels_in_ten(cells: int, size: tuple[int, int]) -> None:

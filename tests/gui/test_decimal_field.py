@@ -10,8 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDoubleSpinBox, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.number_field import DecimalField, LengthField
+from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField
+from kirigami_studio.gui.window.main_window import MainWindow
 
 pytestmark = pytest.mark.qt
 

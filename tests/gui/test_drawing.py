@@ -11,14 +11,14 @@ from PySide6.QtGui import QColor, QImage, QPainterPath, QPolygonF
 from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.look import icons, theme
-from kirigami_studio.gui.look.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.fault_items import FaultKind, contact_place, faults, inverted_panels
-from kirigami_studio.gui.scene.layout_items import candidate_pixmap
-from kirigami_studio.gui.scene.mismatch_items import mismatch
-from kirigami_studio.gui.scene.paths import DOZEN, FEW, line_path, paths_of_quads
-from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.stage.fault_items import FaultKind, contact_place, faults, inverted_panels
+from kirigami_studio.gui.stage.layout_items import candidate_pixmap
+from kirigami_studio.gui.widgets import icons, theme
+from kirigami_studio.gui.widgets.mismatch_items import mismatch
+from kirigami_studio.gui.widgets.paths import DOZEN, FEW, line_path, paths_of_quads
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT, PALETTES, Palette, style_sheet
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

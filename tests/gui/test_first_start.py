@@ -10,8 +10,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QProxyStyle, QStyle, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.empty_stage import moves
+from kirigami_studio.gui.stage.empty_stage import moves
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import preferences
 from kirigami_studio.project.preferences import Preferences
 

@@ -15,10 +15,10 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.dialogs.shortcut_sheet import ShortcutSheet
-from kirigami_studio.gui.look.theme import DARK, LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.callout import beside
+from kirigami_studio.gui.widgets.callout import beside
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
 from kirigami_studio.project import preferences
 from kirigami_studio.project.preferences import Preferences
 
@@ -200,7 +200,6 @@ def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWi
     assert not any("DXF" in effect for effect, _ in sheet.showing())
 
 
-@pytest.mark.long
 def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
     window.controller.use_preferences(kept)

@@ -24,10 +24,10 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.jobs.cut_jobs import Exported
-from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.making import Exported
 
 CONTROLS = (
     QAbstractButton,
@@ -101,7 +101,6 @@ def inner(widget: QWidget) -> bool:
     )
 
 
-@pytest.mark.long
 def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow) -> None:
     for opened in (whole, cuts, tour, materials, guide, shortcuts, library, board):
         place = opened(designed)

@@ -10,12 +10,13 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.colour_scale import bar_boxes
-from kirigami_studio.gui.scene.legends import AWAY, clear_box
-from kirigami_studio.gui.scene.view_transform import Bounds, ViewTransform
-from kirigami_studio.gui.views.canvas import Canvas
-from kirigami_studio.gui.views.layout_view import USUAL, LayoutView, Overlay
+from kirigami_studio.gui.session.overlays import USUAL, Overlay
+from kirigami_studio.gui.stage.layout_view import LayoutView
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.colour_scale import bar_boxes
+from kirigami_studio.gui.widgets.legends import AWAY, clear_box
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.gui.window.main_window import MainWindow
 
 SIZES = ((1000, 640), (1280, 720), (1440, 900), (1920, 1080))
 COLOURED = (frozenset(), frozenset({Overlay.RATIOS}), frozenset({Overlay.RATIOS, Overlay.OPENINGS}))
@@ -47,7 +48,6 @@ def fill(window: MainWindow, size: tuple[int, int]) -> LayoutView:
     return view
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(("size", "more"), list(product(SIZES, COLOURED)))
 def test_that_no_legend_lies_on_the_fitted_design(
     designed: MainWindow, size: tuple[int, int], more: frozenset[Overlay]

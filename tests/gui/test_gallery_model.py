@@ -11,9 +11,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.card_delegate import SIGNS
-from kirigami_studio.gui.views.gallery_model import (
+from kirigami_studio.gui.gallery.card_delegate import SIGNS
+from kirigami_studio.gui.gallery.gallery_model import (
     CUTTABLE_ROLE,
     GRID_ROLE,
     SYMMETRY_TEXTS,
@@ -22,6 +21,7 @@ from kirigami_studio.gui.views.gallery_model import (
     problems,
     symmetry_text,
 )
+from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet

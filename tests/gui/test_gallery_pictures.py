@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views import card_delegate
+from kirigami_studio.gui.gallery import card_delegate
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from kirigami_studio.foundation.errors import Cancelled
-from kirigami_studio.gui.jobs.cut_jobs import MOST_PLANS, CutRequest, planned
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.making import MOST_PLANS, CutRequest, planned
 
 
 def request_of(document: Document, index: int, width_mm: float) -> CutRequest:

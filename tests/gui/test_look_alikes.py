@@ -15,11 +15,11 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.designs import look_alikes
-from kirigami_studio.gui.designs.gallery_selection import SortOrder
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.card_delegate import alike_box
-from kirigami_studio.gui.views.gallery_model import ALIKE_ROLE, OPEN_ROLE, GalleryModel
+from kirigami_studio.gui.gallery.card_delegate import alike_box
+from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, OPEN_ROLE, GalleryModel
+from kirigami_studio.gui.gallery.gallery_selection import SortOrder
+from kirigami_studio.gui.run import look_alikes
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -163,10 +163,8 @@ def test_that_many_designs_are_compared_in_the_worker(
     assert model.index(head(window), 0).data(ALIKE_ROLE) == 2
 
 
-def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(
-    stacked: MainWindow, english_afterwards: None
-) -> None:
-    stacked.speak("de")
+@pytest.mark.usefixtures("german")
+def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(stacked: MainWindow) -> None:
     stacked.commands["all_designs"].trigger()
     page = stacked.connections.all_designs.page
     assert page is not None

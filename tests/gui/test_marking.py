@@ -10,8 +10,8 @@ from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.gallery.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document, Mark
 

@@ -13,18 +13,18 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.generator.weights import digest_of
-from kirigami_studio.gui.designs.gallery_selection import SortOrder
-from kirigami_studio.gui.designs.generation import next_seed
-from kirigami_studio.gui.jobs.design_jobs import generating
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.views.gallery_model import FRESH_ROLE
+from kirigami_studio.gui.gallery.gallery_model import FRESH_ROLE
+from kirigami_studio.gui.gallery.gallery_selection import SortOrder
+from kirigami_studio.gui.run.generation import next_seed
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.studio.designing import generating
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -135,7 +135,6 @@ def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: M
     assert sum("Model: prior" in tip for tip in tips) == 3
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow, until: Until, tmp_path: Path) -> None:
     controller = drawn.controller
@@ -169,7 +168,6 @@ def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow
     check("opened")
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_stopped_further_run_leaves_what_was_there(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
     drawn.controller.change_settings(k=100)
@@ -206,7 +204,6 @@ def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow,
     assert any("generated near another design" in tip for tip in tips)
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
@@ -257,7 +254,6 @@ def test_that_the_next_seed_is_the_first_that_no_design_has(designs: Document) -
     assert next_seed(replace(designs, settings=replace(designs.settings, seed=7))) == 8
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_run_begun_at_once_after_another_is_not_ended_by_it(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller

@@ -9,9 +9,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.dialogs.label_editor import LabelEditor
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.gallery_model import NAME_ROLE
+from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE
+from kirigami_studio.gui.gallery.label_editor import LabelEditor
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.events import Result

@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDoubleSpinBox, QLineEdit, QMainWindow, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.panels.number_field import number_field
+from kirigami_studio.gui.widgets.number_field import number_field
 
 pytestmark = pytest.mark.qt
 

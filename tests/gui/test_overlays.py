@@ -17,15 +17,16 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.feasibility import Contact
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.panel_sizes import edges_of, necks_of, panels_in_mm, smallest_edge, smallest_neck
-from kirigami_studio.gui.commands.view import OVERLAY_COMMANDS
-from kirigami_studio.gui.look.theme import DARK, LIGHT, Palette
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.scene.colour_scale import opening_scale, paint_colour_bars, ratio_scale
-from kirigami_studio.gui.scene.fault_items import FaultKind, crossing_place
-from kirigami_studio.gui.scene.layout_labels import heat_tiles, quad_areas, smallest_parts
-from kirigami_studio.gui.scene.legends import Chip, legend_boxes, paint_legend
-from kirigami_studio.gui.scene.mismatch_items import boundary_gap
-from kirigami_studio.gui.views.layout_view import FAULT_SENTENCES, USUAL, LayoutView, Overlay, numbered_fault
+from kirigami_studio.gui.session.overlays import USUAL, Overlay
+from kirigami_studio.gui.stage.fault_items import FaultKind, crossing_place
+from kirigami_studio.gui.stage.layout_labels import heat_tiles, quad_areas, smallest_parts
+from kirigami_studio.gui.stage.layout_view import FAULT_SENTENCES, LayoutView, numbered_fault
+from kirigami_studio.gui.widgets.colour_scale import opening_scale, paint_colour_bars, ratio_scale
+from kirigami_studio.gui.widgets.legends import Chip, legend_boxes, paint_legend
+from kirigami_studio.gui.widgets.mismatch_items import boundary_gap
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.project.document import Document
 
@@ -129,7 +130,6 @@ def test_that_the_greatest_distance_of_two_squares_is_where_they_differ_most() -
     assert boundary_gap(square, square).mean == 0.0
 
 
-@pytest.mark.long
 def test_that_the_mean_distance_agrees_with_a_dense_search(designed: MainWindow) -> None:
     view, stage = designed.stage.view, designed.controller.stage
     view.grab()

@@ -7,8 +7,8 @@ import pytest
 from PySide6.QtCore import QEvent, Qt
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.nodes import Kind
 from tests.gui.test_drawing_board import LEFT, NONE, PLAIN, SHIFT, board, drag, pixel, placed, send, use
 

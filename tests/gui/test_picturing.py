@@ -16,10 +16,10 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.svg_reading import read_with_svgelements
+from kirigami_studio.gui.files import picture_jobs
 from kirigami_studio.gui.files.picturing import PictureMaker
-from kirigami_studio.gui.jobs import picture_jobs
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.canvas import Canvas
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 NAMES = ["Target silhouette", "Cut preview", "Design gallery", "Whole window"]
@@ -84,7 +84,6 @@ def test_that_an_svg_draws_in_lines_and_agrees_with_the_screen(
     assert same.mean() > 0.93
 
 
-@pytest.mark.long
 def test_that_every_view_in_sight_can_be_written(
     designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, files: object
 ) -> None:
@@ -159,7 +158,6 @@ def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Pic
     assert isinstance(largest, Canvas) and largest is designed.stage.view
 
 
-@pytest.mark.long
 def test_that_copied_cuts_are_the_exported_file(
     designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, until: Until
 ) -> None:

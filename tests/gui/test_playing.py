@@ -11,9 +11,9 @@ import pytest
 from PySide6.QtCore import QPoint, QSettings, Qt
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.deployment_bar import SPEEDS, DeploymentBar, PlayMode, phase_of, phi_at
-from kirigami_studio.gui.views.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts
+from kirigami_studio.gui.stage.deployment_bar import SPEEDS, DeploymentBar, PlayMode, phase_of, phi_at
+from kirigami_studio.gui.stage.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts
+from kirigami_studio.gui.window.main_window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]

@@ -16,10 +16,10 @@ from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.export import animation, picture
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.gui.scene.view_transform import ViewTransform
-from kirigami_studio.gui.session import DesignCache
-from kirigami_studio.gui.views import layout_view
-from kirigami_studio.gui.views.layout_view import LayoutView
+from kirigami_studio.gui.session.session import DesignCache
+from kirigami_studio.gui.stage import layout_view
+from kirigami_studio.gui.stage.layout_view import LayoutView
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

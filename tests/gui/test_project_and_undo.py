@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QPushButton
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import FabricationSettings
@@ -103,7 +102,6 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     assert designed.controller.document == NEW
 
 
-@pytest.mark.long
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(
     designed: MainWindow, until: Until
 ) -> None:

@@ -14,9 +14,9 @@ from PySide6.QtWidgets import QLabel, QMenu, QWidgetAction
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.gui.dialogs.history_list import HistoryList
 from kirigami_studio.gui.files.recent_files import RecentFiles
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.history_list import HistoryList
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import edits, recent
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
@@ -160,7 +160,6 @@ def test_that_a_list_that_was_cleared_elsewhere_stays_cleared(window: MainWindow
     assert recent.load(kept) == mine.present == Recent((str(tmp_path / "three.kiri"),))
 
 
-@pytest.mark.long
 def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
     kept = tmp_path / "recent.toml"
     script = (

@@ -13,9 +13,9 @@ from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import edits, recovery, store
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.recovery import Note
@@ -26,7 +26,7 @@ Until = Callable[[Callable[[], bool]], None]
 VICTIM = """
 import sys
 from pathlib import Path
-from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.window.application import create_application, create_window
 
 application = create_application(["studio"])
 window = create_window()
@@ -101,7 +101,6 @@ def test_that_a_killed_studio_loses_nothing(
     assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
 
 
-@pytest.mark.long
 def test_that_work_left_for_later_is_offered_again_from_the_file_menu(
     window: MainWindow, project_file: Path, folder: Path, until: Until
 ) -> None:

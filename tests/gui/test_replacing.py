@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QMimeData, QUrl
 from PySide6.QtWidgets import QPushButton
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from tests.gui.test_board_objects import bounds, drawing, pair
 from tests.gui.test_drawing_board import board, drag, plate, use

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QEvent
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.sketching.rulers import RULER, fits
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.rulers import RULER, fits
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from tests.gui.test_drawing_board import CTRL, LEFT, NONE, PLAIN, board, drag, pixel, placed, plate, send, use
 
 __all__ = ["board", "plate"]

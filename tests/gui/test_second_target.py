@@ -18,13 +18,13 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.panels.second_target_row import PRESENT
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.layout_view import Overlay
-from kirigami_studio.gui.views.phi_slider import MarkKind
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.run.second_target_row import PRESENT
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.stage.phi_slider import MarkKind
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.placed import Placed
@@ -219,7 +219,6 @@ def test_that_slider_line_status_and_cards_tell_it(shown: MainWindow, qtbot: QtB
     assert all(mark.kind is not MarkKind.SECOND for mark in stage.deployment.slider.marks())
 
 
-@pytest.mark.long
 def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, until: Until) -> None:
     shown.controller.trim(True)
     until(lambda: not shown.controller.trimming.busy)
@@ -229,7 +228,6 @@ def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, unt
     assert "untrimmed" in shown.facts.text()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_generate_uses_it_and_the_project_keeps_it(
     heart: MainWindow, files: object, until: Until, tmp_path: Path

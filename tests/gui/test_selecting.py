@@ -14,10 +14,10 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.gui.designs.gallery_selection import Selection, SortOrder
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.session import Entry
-from kirigami_studio.gui.views.gallery_model import NAME_ROLE, VALUE_ROLE, GalleryModel
+from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VALUE_ROLE, GalleryModel
+from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder
+from kirigami_studio.gui.session.session import Entry
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark

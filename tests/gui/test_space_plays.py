@@ -8,10 +8,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QPushButton
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("field", ["rows", "seed", "angle", "candidates"])
 def test_that_space_plays_from_a_number(designed: MainWindow, qtbot: QtBot, field: str) -> None:
     box = getattr(designed.settings, field)

@@ -13,10 +13,10 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.look.theme import DARK, LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.deployment_bar import phase_of, phi_at
-from kirigami_studio.gui.views.layout_view import Overlay
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.stage.deployment_bar import phase_of, phi_at
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -38,7 +38,6 @@ def test_that_the_slider_the_number_and_the_view_show_one_angle(designed: MainWi
     assert view.phi == 0.0
 
 
-@pytest.mark.long
 def test_that_a_storm_of_slider_moves_is_painted_once(designed: MainWindow) -> None:
     view, slider = designed.stage.view, designed.stage.deployment.slider
     QApplication.processEvents()
@@ -134,7 +133,6 @@ def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWind
     assert view.transform() == before
 
 
-@pytest.mark.long
 def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:
     light = designed.grab().toImage()
     designed.commands["theme"].trigger()

@@ -12,10 +12,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.designs.generation import request_of
-from kirigami_studio.gui.designs.rim_drag import moved, room_of
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.stage.rim_drag import moved, room_of
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import laid_sheet
 from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points
@@ -23,6 +22,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, start_shape
 from kirigami_studio.pipeline.auto_grid import predicted_for
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]
 LISTED = ["rectangle", "square", "circle", "ellipse:3:2", "triangle", "hexagon"]
@@ -85,12 +85,11 @@ def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: 
     until(lambda: settings.auto.accessibleDescription() != "")
     document = controller.document
     assert document.target is not None
-    wanted = predicted_for(request_of(document.target, document.settings, document.fabrication))
+    wanted = predicted_for(request_for(document.target, document.settings, document.fabrication))
     assert (settings.rows.value(), settings.columns.value()) == wanted.grid
     assert settings.auto.accessibleDescription() == wanted.reason
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_circle_gives_round_sheets_that_are_saved_and_cut(
     heart: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path

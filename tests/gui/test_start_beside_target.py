@@ -18,15 +18,14 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import SheetError
-from kirigami_studio.gui.designs.generation import own_start
-from kirigami_studio.gui.designs.two_states import size_words, start_words, starts_as
-from kirigami_studio.gui.dialogs.start_board import StartBoard
-from kirigami_studio.gui.look.readable import TIMES
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.gallery_model import START_ROLE
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.gallery.gallery_model import START_ROLE
+from kirigami_studio.gui.run.generation import own_start
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.start_board import StartBoard
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.readable import TIMES
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
@@ -35,6 +34,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape, outline_start
 from kirigami_studio.polish.flat_sheet import first_sheet, uniform_sheet
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.two_states import size_words, start_words, starts_as
 
 Until = Callable[[Callable[[], bool]], None]
 HOLLOW = [(-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, -20.0), (-40.0, 30.0)]
@@ -160,7 +160,6 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
     assert window.target.start.name == "rectangle"
 
 
-@pytest.mark.long
 def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWindow, until: Until) -> None:
     controller = heart.controller
     controller.change_settings(grid=(6, 6))
@@ -273,7 +272,6 @@ def test_that_the_tile_tells_the_size_of_the_design_on_the_stage_where_it_starts
     assert "on the stage" not in tile.toolTip()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart: MainWindow, until: Until) -> None:
     controller, model = heart.controller, heart.gallery.view.model_

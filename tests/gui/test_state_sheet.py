@@ -10,8 +10,8 @@ from PIL import Image
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.demonstrations.board_states import LARGE, SIZES
-from kirigami_studio.demonstrations.state_sheet import StateSheet, contact_sheets
+from kirigami_studio.lab.demonstrations.board_states import LARGE, SIZES
+from kirigami_studio.lab.demonstrations.state_sheet import StateSheet, contact_sheets
 
 
 @pytest.fixture
@@ -19,7 +19,6 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
     yield from shown(StateSheet(tmp_path), qtbot)
 
 
-@pytest.mark.long
 def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.all_sizes("empty")
     assert len(sheet.files) == 2 * len(SIZES)
@@ -66,23 +65,21 @@ def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
     assert sheet.window.target.threshold.isVisible()
 
 
-@pytest.mark.long
 def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:2])
     sheet.starts()
     for name in ("start-menu", "start-board-dark", "pairs-light", "pair-1280x720-dark"):
         assert (tmp_path / f"{name}.png").exists()
     assert sheet.window.target.start.name == "circle" and sheet.window.controller.document.candidates
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_the_second_target_is_shown_at_its_angle(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.board_states.SIZES", SIZES[2:])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[2:])
     sheet.window.resize(SIZES[2])
     sheet.choose_heart()
     sheet.second_target()
@@ -92,7 +89,6 @@ def test_that_the_second_target_is_shown_at_its_angle(
         assert (tmp_path / f"{name}.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.picture_target()
     sheet.messages()
@@ -100,11 +96,10 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
     assert (tmp_path / "question-1000x640-dark.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2])
     sheet.window.controller.fabrication.change(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
@@ -112,12 +107,11 @@ def test_that_the_project_states_offer_lost_work_and_leave_none(
         assert (tmp_path / f"{name}.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "kirigami_studio.demonstrations.state_sheet.SIZES", SIZES[1:2]
+        "kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2]
     )  # one is enough, each takes seconds
     sheet.editor()
     target = sheet.window.target
@@ -125,7 +119,6 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
     assert (tmp_path / "editor-points-1280x720-dark.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_part_states_show_the_picker_and_take_nothing(sheet: StateSheet, tmp_path: Path) -> None:
     before = sheet.window.controller.document
     sheet.parts()

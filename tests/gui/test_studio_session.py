@@ -18,10 +18,10 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Origin
-from kirigami_studio.gui.application import create_window
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 

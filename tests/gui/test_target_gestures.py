@@ -15,9 +15,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.application import open_first
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message, Tone
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.window.application import open_first
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 
 Until = Callable[[Callable[[], bool]], None]

@@ -13,12 +13,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.jobs.target_jobs import reading_target
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.sketching.sketch_context import Change
-from kirigami_studio.gui.views.target_view import Tool
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
+from kirigami_studio.studio.targets import reading_target
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -178,6 +178,6 @@ def test_that_the_worker_reduces_a_large_photo_for_drawing(tmp_path: Path) -> No
     (found,) = reading_target(str(path), lambda: False)
     picture = found.picture
     assert picture is not None and picture.seen is not None
-    assert (picture.seen.width(), picture.seen.height()) == (1600, 800)
+    assert picture.seen.shape == (800, 1600, 4)
     assert picture.traced is not None and picture.traced.picture == (2400, 1200)
     assert picture == replace(picture, seen=None), "what is drawn does not make it another picture"

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.application import create_window
-from kirigami_studio.gui.look.theme import LIGHT
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Tone
+from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import recovery, store
 from kirigami_studio.project.recovery import Note
 
@@ -178,7 +178,6 @@ def test_that_recovered_work_does_not_overwrite_what_was_saved_since(
     assert len(questions(window)) == 1 and width_in(project) == 140.0
 
 
-@pytest.mark.long
 def test_that_two_windows_keep_their_work_in_files_of_their_own(
     window: MainWindow, other: MainWindow, project: Path, until: Until, tmp_path: Path
 ) -> None:

@@ -13,8 +13,8 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.application import WarmUp
-from kirigami_studio.gui.jobs import importing
+from kirigami_studio.gui.window.application import WarmUp
+from kirigami_studio.studio import importing
 
 
 def test_that_it_happens_once_after_a_rest(qtbot: QtBot) -> None:
@@ -87,15 +87,16 @@ def test_that_garbage_is_collected_after_the_rooms_are_imported() -> None:
 
 IMPORTED = """
 import sys
-from kirigami_studio.gui.jobs import design_jobs, importing
+from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project.settings import FabricationSettings
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
 assert request.fitted_starts
 importing.import_generator()
 before = set(sys.modules)
 assert "torch" in before
-for event in design_jobs.generating(request, None, lambda: False):
+for event in designing.generating(request, FabricationSettings(), (), False, lambda: False):
     pass
 print(sorted(set(sys.modules) - before))
 """
@@ -107,10 +108,9 @@ def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.long
 def test_that_collections_leave_out_what_the_start_has_made() -> None:
     script = (
-        "import gc; from kirigami_studio.gui.application import create_application, create_window;"
+        "import gc; from kirigami_studio.gui.window.application import create_application, create_window;"
         "create_application(['kirigami-studio']); before = gc.get_freeze_count(); window = create_window();"
         "print(before, gc.get_freeze_count(), len(gc.get_objects())); window.close()"
     )
@@ -124,7 +124,7 @@ OPENED = """
 import sys, threading, time
 from PySide6.QtCore import QCoreApplication
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.application import create_application, create_window
+from kirigami_studio.gui.window.application import create_application, create_window
 
 class Finder:
     def find_spec(self, name, path=None, target=None):
@@ -141,12 +141,11 @@ while not window.controller.verdict.state.known or window.controller.verdict.sta
     assert time.monotonic() < end
     QCoreApplication.processEvents()
     time.sleep(0.01)
-print("kirigami_studio.project.verdict" in found[False], found[True])
+print("kirigami_studio.studio.verdict" in found[False], found[True])
 window.close()
 """
 
 
-@pytest.mark.long
 def test_that_opening_the_first_project_imports_nothing_in_the_windows_thread() -> None:
     environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
     done = subprocess.run([sys.executable, "-c", OPENED], env=environment, capture_output=True, text=True, check=True)

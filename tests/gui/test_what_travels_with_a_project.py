@@ -12,9 +12,9 @@ import pytest
 
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
-from kirigami_studio.gui.controller import Controller
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.messages import Message
+from kirigami_studio.gui.session.messages import Message
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 from kirigami_studio.project import edits, picture_record, recovery, store
 from kirigami_studio.project.document import Document
@@ -156,7 +156,6 @@ def test_that_a_recovered_project_brings_its_photo(
     assert own is not None and store.load_all(own).picture == opened.picture
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("fault", ["missing", "Nothing to paste", "no name", "too large", "no number"])
 def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
     fault: str, window: MainWindow, traced_project: Path, until: Until

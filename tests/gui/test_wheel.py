@@ -7,8 +7,8 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QComboBox, QSlider, QWidget
 
-from kirigami_studio.gui.main_window import MainWindow
-from kirigami_studio.gui.panels.number_field import DRAWING_SLIDERS
+from kirigami_studio.gui.widgets.number_field import DRAWING_SLIDERS
+from kirigami_studio.gui.window.main_window import MainWindow
 
 
 def scroll(widget: QWidget) -> None:

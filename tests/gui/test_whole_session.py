@@ -11,17 +11,22 @@ import pytest
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication, QWidget
 
-from kirigami_studio.gui.main_window import MainWindow
+from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project import store
 
 
 @pytest.mark.torch
-@pytest.mark.slow
 def test_that_the_session_without_a_display_makes_pictures_a_cut_file_and_a_project(
     tmp_path: Path, repository: Path
 ) -> None:
-    command = [sys.executable, "-m", "kirigami_studio.demonstrations.offscreen_session", "--out", str(tmp_path / "out")]
+    command = [
+        sys.executable,
+        "-m",
+        "kirigami_studio.lab.demonstrations.offscreen_session",
+        "--out",
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(command, cwd=repository, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     made = [Path(line.strip()) for line in done.stdout.splitlines()[1:]]
@@ -38,7 +43,7 @@ def test_that_the_session_reports_failure(tmp_path: Path, repository: Path) -> N
     command = [
         sys.executable,
         "-m",
-        "kirigami_studio.demonstrations.offscreen_session",
+        "kirigami_studio.lab.demonstrations.offscreen_session",
         "--out",
         str(tmp_path / "wall" / "out"),
     ]

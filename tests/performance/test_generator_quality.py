@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kirigami_studio.benchmark.generator_suite import measure_generator
+from kirigami_studio.lab.benchmark.generator_suite import measure_generator
+from kirigami_studio.lab.training.dataset import SPLITS, generate_split
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
-from kirigami_studio.training.dataset import SPLITS, generate_split
 
 pytestmark = pytest.mark.torch
 
@@ -23,7 +23,6 @@ def unseen_targets(family: str) -> tuple[Outline, ...]:
     return tuple(outline_of_mask(mask, family) for mask in split.masks)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("family", "variant", "bar"),
     [
@@ -41,7 +40,6 @@ def test_that_one_sample_matches_unseen_targets(family: str, variant: str, bar: 
     assert figures["infeasible"] == 0
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize(("family", "part", "bar"), [("sobol", slice(16), 0.97), ("structured", slice(16, 32), 0.98)])
 def test_that_one_sample_matches_the_reference_silhouettes(
     oracle_file: Path, family: str, part: slice, bar: float

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kirigami_studio.benchmark.fabrication_suite import random_design, travel_bound
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.options import CutOptions, CutOrder
 from kirigami_studio.fabricate.timing import travel_lengths
+from kirigami_studio.lab.benchmark.fabrication_suite import random_design, travel_bound
 
 GRIDS = ((24, 24), (25, 24))
 
@@ -18,7 +18,6 @@ def slit_travel(plan: CutPlan) -> float:
     return float(travel_lengths(plan.on_layer(Layer.SLITS)).sum())
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("grid", GRIDS)
 @pytest.mark.parametrize("spread", [0.3, 0.7])
 def test_that_the_shortest_order_is_within_a_seventh_of_what_no_order_beats(

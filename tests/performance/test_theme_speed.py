@@ -9,9 +9,9 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 from stopwatch import fastest
 
-from kirigami_studio.gui.application import create_window
-from kirigami_studio.gui.look import theme
-from kirigami_studio.gui.look.theme import DARK, LIGHT
+from kirigami_studio.gui.widgets import theme
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.application import create_window
 
 pytestmark = [pytest.mark.qt]
 

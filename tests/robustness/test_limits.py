@@ -6,18 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.baselines import stored
-from kirigami_studio.benchmark import run_store
 from kirigami_studio.cli import inputs
 from kirigami_studio.export import artwork_picture, dxf_reading, svg_reading
 from kirigami_studio.foundation import files
 from kirigami_studio.generator import weights
-from kirigami_studio.gui.jobs import artwork_jobs
+from kirigami_studio.gui.stage import artwork_jobs
+from kirigami_studio.lab.baselines import stored
+from kirigami_studio.lab.benchmark import run_store
+from kirigami_studio.lab.training import dataset, fitted_fields, learner
 from kirigami_studio.lattice import sheet_files
 from kirigami_studio.mechanics import network_files
 from kirigami_studio.outlines import parts, read_dxf, read_image, source_file, svg_safety
 from kirigami_studio.project import document, picture_record, recovery, store
-from kirigami_studio.training import dataset, fitted_fields, learner
 
 MIB = 2**20
 

@@ -9,16 +9,16 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.cutting import MaterialStore
-from kirigami_studio.gui.files.pasting import PASTED
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.files.recovering import Recovery
-from kirigami_studio.gui.jobs.project_jobs import ChangedOnDisk, Project, Saved, loading, saving
-from kirigami_studio.gui.jobs.queue import JobCallbacks
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.session import Session
-from kirigami_studio.gui.targeting import Targeting
+from kirigami_studio.gui.make.cutting import MaterialStore
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.target.pasting import PASTED
+from kirigami_studio.gui.target.targeting import Targeting
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.projects import ChangedOnDisk, Project, Saved, loading, saving
 
 
 class ProjectFiles(QObject):

@@ -12,14 +12,14 @@ from PySide6.QtGui import QGuiApplication, QImage, QPainter, QPicture
 from PySide6.QtWidgets import QGraphicsView, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.cutting import CutPlanner
-from kirigami_studio.gui.jobs import picture_jobs
-from kirigami_studio.gui.jobs.picture_jobs import Recording
-from kirigami_studio.gui.jobs.queue import JobCallbacks
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.session import Session
-from kirigami_studio.gui.views.canvas import Canvas
-from kirigami_studio.gui.views.gallery_view import GalleryView
+from kirigami_studio.gui.files import picture_jobs
+from kirigami_studio.gui.files.picture_jobs import Recording
+from kirigami_studio.gui.gallery.gallery_view import GalleryView
+from kirigami_studio.gui.make.cutting import CutPlanner
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.widgets.canvas import Canvas
 
 #: Pixels of the picture for each pixel of the view.
 SCALES = (1, 2, 4)

@@ -12,11 +12,12 @@ from pathlib import Path
 from PySide6.QtCore import QLockFile, QObject, Signal
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.pasting import PASTED
-from kirigami_studio.gui.jobs.queue import Cancel, JobCallbacks
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.session import Session
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.target.pasting import PASTED
 from kirigami_studio.project import recent
 from kirigami_studio.project.recent import Recent
 

@@ -11,14 +11,14 @@ from pathlib import Path
 from PySide6.QtCore import QDateTime, QDeadlineTimer, QLocale, QLockFile, QObject, QTimer, Signal
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.jobs.project_jobs import Leftover, Project, keeping, loading, reading_leftovers, removing
-from kirigami_studio.gui.jobs.queue import JobCallbacks
-from kirigami_studio.gui.messages import Message, Tone
-from kirigami_studio.gui.session import Session
-from kirigami_studio.gui.targeting import PictureTracer
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.target.targeting import PictureTracer
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.recovery import Note
+from kirigami_studio.studio.projects import Leftover, Project, keeping, loading, reading_leftovers, removing
 
 #: Unsaved work is kept as a whole project.
 SUFFIX = ".kiri"

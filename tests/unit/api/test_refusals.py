@@ -104,7 +104,7 @@ def test_that_impossible_rims_starts_cells_and_angles_are_refused(uneven: ks.She
         assert code_of(lambda phi=phi: uneven.feasibility(phi)) == code  # type: ignore[misc]
         assert code_of(lambda phi=phi: ks.score(uneven, "heart", phi=phi)) == code  # type: ignore[misc]
         assert code_of(lambda phi=phi: uneven.for_target("heart", phi=phi)) == code  # type: ignore[misc]
-    assert code_of(lambda: uneven.for_target("heart", phi=math.pi)) == "settings.angle_out_of_range"
+    assert code_of(lambda: uneven.for_target("heart", phi=math.pi)) == "request.angle_out_of_range"
     assert code_of(lambda: uneven.mask(0.0, 1)) == "raster.size_out_of_range"
     assert code_of(lambda: ks.siou(np.zeros((4, 4)), np.ones((4, 4)))) == "siou.mask_empty"
 
@@ -149,7 +149,7 @@ def test_that_impossible_designs_are_refused_before_any_work(
     options: dict[str, object], code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if "variant" not in options:
-        monkeypatch.setattr("kirigami_studio.api.running.run", lambda *_, **__: pytest.fail("the run was started"))
+        monkeypatch.setattr("kirigami_studio.pipeline.run.run", lambda *_, **__: pytest.fail("the run was started"))
     assert code_of(lambda: ks.design("heart", **options)) == code  # type: ignore[arg-type]
 
 

@@ -14,8 +14,8 @@ from safetensors.torch import load_file
 from kirigami_studio.cli import main
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.weights import load_model, store_model, variants
-from kirigami_studio.training.learner import grown_state
-from kirigami_studio.training.train_aligned import VARIANTS, AlignSettings
+from kirigami_studio.lab.training.learner import grown_state
+from kirigami_studio.lab.training.train_aligned import VARIANTS, AlignSettings
 
 pytestmark = pytest.mark.torch
 SMALL = NetworkShape(4, 4, 32, 64, 1, 16, 24, 32, 48)
@@ -31,8 +31,8 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(autouse=True)
 def few_targets(monkeypatch: pytest.MonkeyPatch) -> None:
     """Watching 200 targets of each family takes most of a minute."""
-    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 3)
-    monkeypatch.setattr("kirigami_studio.cli.learning.GROUP_COUNT", 3)
+    monkeypatch.setattr("kirigami_studio.lab.cli.learning.VALIDATION_COUNT", 3)
+    monkeypatch.setattr("kirigami_studio.lab.cli.learning.GROUP_COUNT", 3)
 
 
 def test_that_the_bundled_prior_can_be_aligned() -> None:
@@ -90,7 +90,7 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, weights: Path
 ) -> None:
     shape = replace(SMALL, direction=True, preference=True, sheets=True)
-    monkeypatch.setattr("kirigami_studio.training.train_aligned.AlignSettings", partial(AlignSettings, shape=shape))
+    monkeypatch.setattr("kirigami_studio.lab.training.train_aligned.AlignSettings", partial(AlignSettings, shape=shape))
     run = tmp_path / "run"
     words = ["train", "align", "--start", str(weights), "--steps", "2", "--batch", "4", "--drawn", "3",
              "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip

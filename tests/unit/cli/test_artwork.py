@@ -69,7 +69,6 @@ def test_that_files_and_numbers_are_told(
     assert "dpi" in warning
 
 
-@pytest.mark.long
 def test_that_options_reach_the_files(
     capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
 ) -> None:
@@ -89,7 +88,6 @@ def test_that_options_reach_the_files(
     assert roots[0].get("viewBox") == roots[1].get("viewBox")
 
 
-@pytest.mark.long
 def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
     capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
 ) -> None:
@@ -106,7 +104,6 @@ def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
     assert {"artwork.svg", "artwork.png"} < {Path(path).name for path in told["files"]}
 
 
-@pytest.mark.long
 def test_that_an_svg_is_printed_without_a_display(project: Path, tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 4 3"><text y="2">A</text></svg>')

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from kirigami_studio.benchmark import cut_files_suite
-from kirigami_studio.benchmark.cut_files_suite import CutFileFigures
 from kirigami_studio.cli import main
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.lab.benchmark import cut_files_suite
+from kirigami_studio.lab.benchmark.cut_files_suite import CutFileFigures
 
 pytestmark = pytest.mark.torch
 
@@ -22,7 +22,6 @@ def figures(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
     return json.loads(capsys.readouterr().out)
 
 
-@pytest.mark.long
 def test_that_variants_are_measured_on_both_families_of_either_split(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -111,7 +110,6 @@ def test_that_each_suite_takes_its_own_options_only(
     assert said in capsys.readouterr().err.splitlines()[-1]
 
 
-@pytest.mark.long
 def test_that_cut_files_are_counted_for_a_person_and_as_json(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

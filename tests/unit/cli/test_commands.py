@@ -18,7 +18,7 @@ from PIL import Image
 from uneven_sheets import uneven_sheet
 
 from kirigami_studio.cli import main
-from kirigami_studio.cli.parser import SUB_COMMANDS, SubCommand
+from kirigami_studio.cli.parser import SubCommand, all_commands
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
@@ -39,10 +39,10 @@ def ratios(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("command", SUB_COMMANDS, ids=lambda command: command.name)
+@pytest.mark.parametrize("command", all_commands(), ids=lambda command: command.name)
 def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
     module, function = command.run.split(":")
-    assert callable(vars(import_module(f"kirigami_studio.cli.{module}"))[function])
+    assert callable(vars(import_module(f"kirigami_studio.{module}"))[function])
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
@@ -158,7 +158,6 @@ def test_that_a_design_becomes_checked_files_with_the_same_bytes(
     assert ezdxf.readfile(folders[0] / "cut.dxf").header["$INSUNITS"] == 4
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_saved_project_is_exported_to_every_kind_of_file(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
@@ -222,7 +221,6 @@ def test_that_a_budget_is_kept_and_told(capsys: pytest.CaptureFixture[str]) -> N
     assert "budget_ended" not in answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--json")
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_search_adds_a_candidate_to_the_samples(capsys: pytest.CaptureFixture[str]) -> None:
     answered = answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--search", "--json")
@@ -291,7 +289,7 @@ def test_that_listings_are_json_and_lines(capsys: pytest.CaptureFixture[str], li
     assert names
 
 
-@pytest.mark.parametrize("command", sorted({command.name.split()[0] for command in SUB_COMMANDS}))
+@pytest.mark.parametrize("command", sorted({command.name.split()[0] for command in all_commands()}))
 def test_that_every_command_shows_examples(capsys: pytest.CaptureFixture[str], command: str) -> None:
     with pytest.raises(SystemExit) as stopped:
         main([command, "--help"])
@@ -410,14 +408,13 @@ def test_that_a_folder_that_cannot_be_written_is_refused_before_any_work(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "taken").write_text("a file")
-    monkeypatch.setattr("kirigami_studio.api.running.run", lambda *_: pytest.fail("the run was started"))
+    monkeypatch.setattr("kirigami_studio.pipeline.run.run", lambda *_: pytest.fail("the run was started"))
     for out in (tmp_path / "taken", tmp_path / "taken" / "deeper"):
         code, sentence = refusal(capsys, "design", "heart", "--k", "1", "--out", out)
         assert code == 1
         assert "taken" in sentence
 
 
-@pytest.mark.long
 def test_that_a_file_without_a_command_is_one_to_open_in_the_window(tmp_path: Path) -> None:
     target = tmp_path / "leaf.svg"
     target.write_text("<svg/>", encoding="utf-8")

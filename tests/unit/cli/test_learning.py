@@ -12,8 +12,8 @@ import pytest
 from kirigami_studio.cli import main
 from kirigami_studio.generator.unet import UNetShape
 from kirigami_studio.generator.weights import load_model
-from kirigami_studio.training.fitted_fields import FittedFields, fit_shapes, fitted_block
-from kirigami_studio.training.train_flow import FlowSettings
+from kirigami_studio.lab.training.fitted_fields import FittedFields, fit_shapes, fitted_block
+from kirigami_studio.lab.training.train_flow import FlowSettings
 
 pytestmark = pytest.mark.torch
 
@@ -21,8 +21,8 @@ pytestmark = pytest.mark.torch
 @pytest.fixture
 def small_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few validation targets and designs: 200 and 32 768 of them take most of a minute."""
-    monkeypatch.setattr("kirigami_studio.cli.learning.VALIDATION_COUNT", 12)
-    monkeypatch.setattr("kirigami_studio.training.train_flow.FlowSettings", partial(FlowSettings, chunk=128))
+    monkeypatch.setattr("kirigami_studio.lab.cli.learning.VALIDATION_COUNT", 12)
+    monkeypatch.setattr("kirigami_studio.lab.training.train_flow.FlowSettings", partial(FlowSettings, chunk=128))
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def fits(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_that_fits_of_drawn_shapes_are_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.training.fitted_fields.fit_shapes", partial(fit_shapes, block_size=3))
+    monkeypatch.setattr("kirigami_studio.lab.training.fitted_fields.fit_shapes", partial(fit_shapes, block_size=3))
     words = ["dataset", "drawn", "--grid", "4x4", "--count", "1", "--seed", "8", "--out", str(tmp_path), "--json"]
     assert main(words) == 0
     answered = json.loads(capsys.readouterr().out)
@@ -44,7 +44,6 @@ def test_that_fits_of_drawn_shapes_are_written(
     assert written.iou.min() >= 0.85
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("small_runs")
 def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, fits: Path
@@ -62,7 +61,6 @@ def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     assert second["record"]["drawn_iou"] == pytest.approx(first["record"]["drawn_iou"], abs=1e-3)
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("small_runs")
 def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     words = ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--coupling", "ot", "--batch", "16"]

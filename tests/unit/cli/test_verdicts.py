@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from command_line import answer, refusal
 
-from kirigami_studio.api.running import cuttable_first
 from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -25,6 +24,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.studio.designing import ranked_as_cut
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,6 @@ def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str],
     assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
 
 
-@pytest.mark.long
 def test_that_fixes_are_told_where_they_are_asked_for(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -100,7 +99,6 @@ def test_that_a_file_is_checked_against_its_design(
     assert "problem: In cut.dxf: " in said
 
 
-@pytest.mark.long
 def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
     target = document.target
     assert target is not None
@@ -109,17 +107,17 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     score = replace(evaluate(even, target), iou_exact=0.5)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
     crossed = replace(irregular, score=replace(irregular.score, feasible=False), index=2)
-    result = Result(Request(target, (4, 5), regular=0.0), (irregular, uniform, crossed), 3, 0.0)
+    result = Result(Request(target, (4, 5), regular=0.0, polish=0), (irregular, uniform, crossed), 3, 0.0)
     straight = replace(document.fabrication, options=CutOptions(style=ConnectorStyle.STRAIGHT))
-    found = cuttable_first(result, straight, quietly)
+    found = ranked_as_cut(result, straight, quietly)
     assert found.candidates == (uniform, irregular, crossed)
     assert [found.ranking.cuttable(one) for one in found.candidates] == [True, False, False]
     reasons = [reason.code for reason in found.ranking.reasons(found.candidates)]
     assert reasons[1:] == ["rank.jams", "rank.not_feasible"]
     assert found.jam_phi[irregular] > math.radians(10.0)
-    centred = cuttable_first(result, document.fabrication, quietly)
+    centred = ranked_as_cut(result, document.fabrication, quietly)
     assert centred.candidates == (irregular, uniform, crossed) and centred.refusals == {}
-    brittle = cuttable_first(result, replace(document.fabrication, material="card-co2"), quietly)
+    brittle = ranked_as_cut(result, replace(document.fabrication, material="card-co2"), quietly)
     assert not any(brittle.ranking.cuttable(one) for one in brittle.candidates)
     assert {note.code for note in brittle.refusals.values()} == {"as_cut.breaks"}
 

@@ -16,7 +16,6 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines import silhouettes
 
 
-@pytest.mark.long
 def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping[str, np.ndarray]) -> None:
     targets, candidates = oracles["near_target_mask"], oracles["near_candidate_mask"]
     pairs = list(zip(candidates, targets, strict=True))
@@ -27,7 +26,6 @@ def test_that_good_matches_score_as_the_released_evaluator_does(oracles: Mapping
     assert abs(ours.mean()) < 0.002
 
 
-@pytest.mark.long
 def test_that_poor_matches_are_not_flattered_by_the_canvas(oracles: Mapping[str, np.ndarray]) -> None:
     masks = oracles["10x10_mask"]
     pairs, reference = oracles["siou_pairs"][:16], oracles["siou_values"][:16]

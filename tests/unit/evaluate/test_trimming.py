@@ -99,7 +99,6 @@ def test_that_parts_move_with_their_panels(letter_l: FloatArray) -> None:
         np.testing.assert_allclose(after, deployed_parts(cut, deployment, 0.8)[row], atol=1e-12)
 
 
-@pytest.mark.long(but=12)
 @pytest.mark.parametrize("made", [design, uneven])
 @pytest.mark.parametrize("keep", [0.05, 0.15, 0.3])
 @pytest.mark.parametrize("seed", range(6))

@@ -14,7 +14,6 @@ import pypdf
 import pytest
 from PIL import Image
 
-from kirigami_studio.demonstrations import printed_states
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
@@ -29,6 +28,7 @@ from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.lab.demonstrations import printed_states
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet

@@ -37,7 +37,6 @@ def read_points(path: Path) -> list[np.ndarray]:
     ]
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize(("rows", "columns"), GRIDS)
 @pytest.mark.parametrize(("version", "kind"), [("R2010", "LWPOLYLINE"), ("R12", "POLYLINE")])
 def test_that_the_file_holds_one_polyline_for_each_cut_in_cutting_order(

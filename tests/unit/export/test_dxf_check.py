@@ -41,7 +41,6 @@ def sentences(report: FileReport) -> str:
     return " | ".join(problem.text for problem in report.problems)
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize(("rows", "columns"), [(4, 5), (10, 10), (24, 24)])
 @pytest.mark.parametrize("version", ["R2010", "R12"])
 def test_that_our_own_files_pass_with_the_numbers_of_their_plan(
@@ -66,7 +65,6 @@ def test_that_a_foreign_file_is_measured_by_its_largest_closed_contour(tmp_path:
     assert report.bounds_mm == (40.0, 40.0)
 
 
-@pytest.mark.long
 def test_that_a_sheet_that_falls_apart_is_reported(tmp_path: Path) -> None:
     document = foreign()
     document.modelspace().add_line((-1, 35), (41, 35))

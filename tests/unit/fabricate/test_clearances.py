@@ -15,7 +15,7 @@ from kirigami_studio.fabricate.slits import cut_table, edge_sides
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.mechanics.closing import closing
-from kirigami_studio.project.as_cut import planned_sheet
+from kirigami_studio.studio.as_cut import planned_sheet
 
 MakeDesign = Callable[..., Deployment]
 WIDTH = 100.0

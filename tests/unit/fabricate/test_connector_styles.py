@@ -29,8 +29,6 @@ def styled(design: Deployment, style: ConnectorStyle, material: str = "film-uv",
     return plan_cuts(design, width, material=find_material(material), options=CutOptions(style=style))
 
 
-@pytest.mark.long(but=6)
-@pytest.mark.long(but=9)
 @pytest.mark.parametrize("style", list(ConnectorStyle))
 @pytest.mark.parametrize(("material", "width"), [("film-uv", 80.0), ("card-co2", 250.0), ("pet-co2", 200.0)])
 def test_that_every_style_leaves_the_width_asked_for_within_a_micrometre(

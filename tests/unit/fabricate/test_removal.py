@@ -55,7 +55,6 @@ def test_that_a_slit_cut_through_to_the_edge_runs_over_it_like_an_edge_cut(make_
         assert check_plan(plan).overlap_mm < 1e-6
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("trimmed", [False, True])
 def test_that_the_sheet_falls_into_as_many_pieces_as_its_panels_hang_together_in(
     trimmed: bool, make_design: MakeDesign

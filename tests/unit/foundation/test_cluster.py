@@ -18,8 +18,6 @@ from kirigami_studio.foundation import processes
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.processes import Workers, ordered_results_of, results_of
 
-pytestmark = pytest.mark.slow
-
 
 def cube(number: int, marker: Path) -> tuple[int, int]:
     """The first process that is asked for that of 3 is killed before it answers."""
@@ -77,7 +75,6 @@ def test_that_the_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> Non
     assert caught.value.code == "cluster.package_missing"
 
 
-@pytest.mark.long
 def test_that_a_scheduler_without_workers_and_one_that_goes_away_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "PATIENCE", 2.0)
     with LocalCluster(n_workers=1, processes=False, threads_per_worker=1, dashboard_address=":0") as small:

@@ -9,8 +9,8 @@ from kirigami_studio.generator.conditioning import contour_points, normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import CHUNK, DIRECTION_SCALE, GAP_SCALE, PLACE_SCALE, Feedback
 from kirigami_studio.generator.feedback import _normalised_slopes as normalised_slopes
+from kirigami_studio.lab.training.corpus import deployed_outline
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
-from kirigami_studio.training.corpus import deployed_outline
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")

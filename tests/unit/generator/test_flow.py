@@ -11,7 +11,7 @@ from kirigami_studio.generator.conditioning import contour_points
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import integrate, trail
 from kirigami_studio.generator.network import TargetCode, VelocityNetwork
-from kirigami_studio.training.preference_loss import boundary_gap
+from kirigami_studio.lab.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
 OWN = DeployedGrid(4, 4)

@@ -9,9 +9,9 @@ from kirigami_studio.generator.conditioning import contour_points, normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.gauss_newton import TRUST, Residuals, gauss_newton_direction
+from kirigami_studio.lab.training.corpus import deployed_outline
+from kirigami_studio.lab.training.preference_loss import boundary_gap
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import deployed_outline
-from kirigami_studio.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")

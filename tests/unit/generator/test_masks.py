@@ -10,9 +10,9 @@ from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.generator.conditioning import normalised, turned
 from kirigami_studio.generator.unet import filled_masks
+from kirigami_studio.lab.training.corpus import zero_outline
+from kirigami_studio.lab.training.fields import sobol_fields
 from kirigami_studio.lattice.batched import BatchedLattice
-from kirigami_studio.training.corpus import zero_outline
-from kirigami_studio.training.fields import sobol_fields
 
 pytestmark = pytest.mark.torch
 

@@ -12,7 +12,7 @@ from kirigami_studio.generator.conditioning import contour_points
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, VelocityNetwork
 from kirigami_studio.generator.velocity import joined
-from kirigami_studio.training.preference_loss import boundary_gap
+from kirigami_studio.lab.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
 OWN = DeployedGrid(4, 4)

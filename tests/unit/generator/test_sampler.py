@@ -24,13 +24,13 @@ from kirigami_studio.generator.sampler import (
     turned_target,
 )
 from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lab.training.learner import grown_state
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
 
@@ -130,7 +130,6 @@ def test_that_the_angle_is_taken_into_account(corrector: Model) -> None:
     assert mean_match(opened, target, 0.6) > mean_match(flat, target, 0.6)
 
 
-@pytest.mark.long
 def test_that_another_grid_is_matched_better_than_by_carrying_fields_over(model: Model, corrector: Model) -> None:
     heart = load("heart")
     own = sample_fields(model, heart, (10, 10), 16, 0, 4)

@@ -11,7 +11,7 @@ from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.gauss_newton import LN10, SMALLEST_DIFFERENCE, variation_terms
 from kirigami_studio.generator.network import VARIATION_COST
-from kirigami_studio.training.preference_loss import boundary_gap
+from kirigami_studio.lab.training.preference_loss import boundary_gap
 
 pytestmark = pytest.mark.torch
 WEIGHT = torch.tensor([0.7, 2.0], dtype=torch.float64)

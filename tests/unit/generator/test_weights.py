@@ -106,7 +106,6 @@ def test_that_a_manifest_without_a_preference_means_the_match(folder: Path) -> N
     assert load_model("tiny", folder).preference == 0.0
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("grid", [(10, 10), (12, 9)])
 @pytest.mark.parametrize(("shape", "cost"), [("heart", 0.02), ("drop", 0.02), ("star", 0.05)])
 def test_that_a_preference_for_regularity_gives_smoother_designs_at_a_small_cost_of_match(

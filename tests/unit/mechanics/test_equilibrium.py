@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kirigami_studio.benchmark.mechanics_suite import (
+from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.lab.benchmark.mechanics_suite import (
     MORPHER_HINGES,
     SQUARES_CASES,
     SQUARES_CONSTANTS,
@@ -14,8 +16,6 @@ from kirigami_studio.benchmark.mechanics_suite import (
     rotating_squares,
     squares_force,
 )
-from kirigami_studio.foundation.errors import MechanicsError
-from kirigami_studio.foundation.resources import resource
 from kirigami_studio.mechanics.drive import Drive, clamped_ends, mean_turn, moved_panels
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow

@@ -14,7 +14,6 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import automatic_threshold, outline_of_mask, read_image, trace_image
 
 
-@pytest.mark.long(but=6)
 @pytest.mark.parametrize("name", ["heart", "star", "gear", "puzzle", "circle", "letter-l"])
 @pytest.mark.parametrize(("size", "least"), [(64, 0.985), (256, 0.997), (1000, 0.998)])
 def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture, iou) -> None:
@@ -28,7 +27,6 @@ def test_that_a_drawn_silhouette_comes_back(name, size, least, coverage, picture
     assert outline.notes == ()
 
 
-@pytest.mark.long
 def test_that_a_very_large_picture_is_read_at_reduced_size(tmp_path, coverage, iou) -> None:
     wanted = silhouettes.load("heart")
     path = tmp_path / "large.png"

@@ -18,6 +18,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import MOST_PARTS, PartKind, SourceParts
 from kirigami_studio.outlines.read import read_parts
 
+DATA = Path(__file__).resolve().parents[2] / "data" / "targets"
 LAYER = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer"'
 LOGO = f"""
 <g {LAYER} inkscape:label="Badge"><circle id="disc" cx="30" cy="40" r="20" fill="#c03030"/>
@@ -79,6 +80,13 @@ def test_that_one_part_is_taken_with_its_size_and_the_rest_is_told(logo, iou) ->
     assert outline.size == pytest.approx((40, 40)) and outline.name == "ring"
     assert iou(outline, Outline.from_points(np.asarray(box(0, 0, 1, 1).exterior.coords))) > 0.999
     assert outline.notes == ("2 parts were left out: disc, swoosh.", "Holes were filled (25 % of the area).")
+
+
+def test_that_one_part_without_a_name_of_its_own_is_called_as_its_drawing(svg) -> None:
+    """Before, the target and all its files were called "shape 1"."""
+    source = read_parts(svg('<rect width="50" height="50"/><rect x="90" id="door" width="20" height="20"/>'))
+    assert [part.name for part in source.parts] == ["shape 1", "door"]
+    assert outlined(source, "shape 1").name == source.name and outlined(source, "door").name == "door"
 
 
 def test_that_parts_that_do_not_touch_are_united_to_the_largest_and_that_is_said(logo) -> None:
@@ -238,12 +246,29 @@ def test_that_only_drawings_with_a_choice_are_asked_about(body, asks, svg) -> No
     assert read_parts(svg(body)).is_ambiguous is asks
 
 
+def test_that_one_outline_filled_and_stroked_is_one_shape_although_rounding_tells_both_apart() -> None:
+    source = read_parts(DATA / "fill_and_stroke.svg")
+    filled, stroked = (part.region.area for part in source.parts)
+    assert 0.0 < stroked - filled < 1e-9, "the later part is larger by rounding, so this test can fail"
+    assert not source.is_ambiguous
+    assert [part.name for part in source.chosen("largest")] == ["body"]
+    assert merged(source, source.chosen("largest"), Merging()).outline.size == pytest.approx((60.0, 31.24), abs=0.01)
+
+
+def test_that_the_largest_of_open_lines_is_taken_and_refused_for_want_of_an_area(svg) -> None:
+    source = read_parts(svg('<path d="M10 10L60 10M10 30L70 30" stroke="black" fill="none"/>'))
+    largest = source.chosen("largest")
+    assert [part.size[0] for part in largest] == [60.0]
+    with pytest.raises(TargetError) as refused:
+        merged(source, largest, Merging())
+    assert refused.value.code == "parts.no_area"
+
+
 def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
     source = read_parts(svg('<path id="word" d="M0 0h10v10h-10z M20 0h5v5h-5z"/>'))
     assert [part.name for part in source.parts] == ["word (1)", "word (2)"]
 
 
-@pytest.mark.long
 def test_that_the_smallest_of_too_many_parts_are_left_out_and_said(svg) -> None:
     many = "".join(f'<circle cx="{9 * k}" r="{1 + k / 1000}"/>' for k in range(MOST_PARTS + 20))
     source = read_parts(svg(many))

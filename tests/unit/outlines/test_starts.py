@@ -49,6 +49,16 @@ def test_that_impossible_numbers_are_refused(text: str) -> None:
     assert refused.value.code == "start.wrong_numbers" and text in str(refused.value)
 
 
+def test_that_a_shape_of_any_source_is_at_most_as_long_as_a_named_one() -> None:
+    assert outline_start(Outline.from_points([[0, 0], [4.9, 0], [4.9, 1], [0, 1]])).outline is not None
+    for length in (5.5, 1e3):
+        level = np.array([[0.0, 0.0], [length, 0.0], [length, 1.0], [0.0, 1.0]])
+        slat = Outline.from_points(turned(level, 0.3), "slat")
+        with pytest.raises(SheetError) as refused:
+            outline_start(slat)
+        assert refused.value.code == "start.too_long" and "slat" in str(refused.value)
+
+
 def test_that_a_library_name_or_file_is_taken(tmp_path: Path) -> None:
     path = tmp_path / "house.json"
     path.write_text(json.dumps([[0, 0], [4, 0], [4, 3], [2, 4], [0, 3]]))

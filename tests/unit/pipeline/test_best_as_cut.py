@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import replace
 
 import pytest
@@ -17,8 +18,8 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import best_as_cut
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.as_cut import AsCut, Outcome, StrainFigure
-from kirigami_studio.project.verdict import CloseLook
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.verdict import CloseLook
 
 REFUSED = CloseLook(Note.of("rank.not_feasible"))
 Looks = dict[Candidate, CloseLook]
@@ -38,15 +39,16 @@ def run() -> Result:
         Candidate(sheet.sheet, replace(score, iou_exact=iou), seed=0, index=number)
         for number, iou in enumerate((0.99, 0.98, 0.90))
     )
-    return Result(Request(target, (3, 3), k=3, regular=0.0), candidates, 3, 0.0)
+    return Result(Request(target, (3, 3), k=3, regular=0.0, polish=0), candidates, 3, 0.0)
 
 
 def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:
     """The run ranked where these designs do so as cut, and the numbers of those that were looked at."""
     seen: list[int] = []
 
-    def look(candidate: Candidate) -> CloseLook:
+    def look(candidate: Candidate) -> Generator[None, None, CloseLook]:
         seen.append(candidate.index)
+        yield
         return looks[candidate]
 
     closing = dict.fromkeys(run.candidates, 0.0)

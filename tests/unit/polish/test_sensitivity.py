@@ -131,7 +131,8 @@ def test_that_the_curvature_is_the_product_of_derivatives(grid: tuple[int, int],
 
 
 @pytest.mark.parametrize("rows", [4, 20])
-def test_that_the_system_is_solved_both_ways(rows: int) -> None:
+@pytest.mark.parametrize("sides", [3, 0])
+def test_that_the_system_is_solved_both_ways(rows: int, sides: int) -> None:
     """The dense way and the way row by row against a plain solution of the written-out matrix."""
     draw, width = np.random.default_rng(4), 11
     coupling = draw.uniform(0.0, 0.5 / width, (2, rows, width, width))
@@ -142,7 +143,7 @@ def test_that_the_system_is_solved_both_ways(rows: int) -> None:
             matrix[own, (i - 1) * width : i * width] = -coupling[0, i]
         if i < rows - 1:
             matrix[own, (i + 1) * width : (i + 2) * width] = -coupling[1, i]
-    right = draw.normal(size=(rows * width, 3))
+    right = draw.normal(size=(rows * width, sides))
     factor = factored(coupling, np.arange(rows * width))
     np.testing.assert_allclose(factor.solve(right), np.linalg.solve(matrix, right), atol=1e-12)
     np.testing.assert_allclose(factor.solve_transposed(right), np.linalg.solve(matrix.T, right), atol=1e-12)

@@ -9,9 +9,9 @@ import pytest
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.project.as_cut import estimate
-from kirigami_studio.project.fabricability import TRIAL, Fabricability, fabricability
 from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.as_cut import estimate
+from kirigami_studio.studio.fabricability import TRIAL, Fabricability, fabricability
 
 
 def test_that_a_uniform_sheet_can_be_made_and_one_with_slivers_cannot() -> None:

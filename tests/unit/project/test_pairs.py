@@ -14,7 +14,7 @@ from kirigami_studio.lattice.laying import start_error, start_match
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.polish.flat_sheet import uniform_sheet
 from kirigami_studio.project.store import load
-from kirigami_studio.project.verdict import Level, assess
+from kirigami_studio.studio.verdict import Level, assess
 
 PAIRS = sorted(resource("pairs").glob("*.kiri"))
 

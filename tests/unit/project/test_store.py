@@ -16,9 +16,7 @@ from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
-from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.evaluate.siou import ShapeMatch
+from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
 from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
@@ -92,7 +90,8 @@ def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: 
     cut = trim(deployment, pentagon, 0.0, score.transform)
     sampled = uneven_sheet(4, 5, seed=9)
     first = Candidate(sheet, score, 0, 0, sampled_sheet=sampled, trim=cut)
-    second = Candidate(Sheet(sheet.field), score, 0, 1, sampled_sheet=Sheet.uniform(4, 5))
+    plain = Sheet(sheet.field)
+    second = Candidate(plain, evaluate(deploy(plain), pentagon), 0, 1, sampled_sheet=Sheet.uniform(4, 5))
     document = Document(pentagon, candidates=(first, second), chosen=0)
     store.save(document, tmp_path / "uneven.kiri")
     again = store.load(tmp_path / "uneven.kiri")
@@ -103,8 +102,8 @@ def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: 
 
 def test_that_second_targets_and_how_designs_show_them_come_back(document: Document, tmp_path: Path) -> None:
     before, after = SecondTarget(load("circle"), 0.8, 0.3), SecondTarget(load("drop"), 1.1, 2.0)
-    match = ShapeMatch(0.81, 0.82, Similarity(0.2, -0.3, (0.1, 0.4)))
-    first = replace(document.candidates[0], second=SecondMatch(before, match))
+    (match,) = second_matches([deploy(document.candidates[0].sheet)], before)
+    first = replace(document.candidates[0], second=match)
     wished = replace(
         document,
         candidates=(first, *document.candidates[1:]),
@@ -408,7 +407,7 @@ def claiming(shape: str) -> bytes:
         (edit("candidates", 0, to=7), r"candidates\[0\] must be a JSON object"),
         (edit("candidates", 1, "polished", to=1), r"candidates\[1\].polished must be true or false"),
         (edit("candidates", 1, "score", "siou", to=None), r"score.siou must be a number"),
-        (edit("candidates", 1, "score", "contact", "where", to=[1]), "where must be two numbers"),
+        (edit("candidates", 1, "score", "contact", to={"phi": 0.2, "where": [1]}), "where must be two numbers"),
         (edit("candidates", 1, "score", "transform", "scale", to=-1.0), "positive scale"),
         (edit("candidates", 1, "score", to={}), "score has no entry 'siou'"),
         (edit("candidates", 1, "score", "transform", to={}), "transform has no entry 'scale'"),
@@ -441,7 +440,6 @@ def test_that_nan_in_the_json_is_refused(document: Document, tmp_path: Path) -> 
         store.load(write_members(tmp_path / "nan.kiri", members))
 
 
-@pytest.mark.long
 def test_that_a_zip_bomb_is_refused_before_it_unpacks(document: Document, tmp_path: Path) -> None:
     members = members_of(document) | {"bomb": bytes(store.LARGEST_CONTENT + 1)}
     with pytest.raises(ProjectError, match="unpacks to more than 128 MB"):

@@ -1,1 +1,0 @@
-"""Dialogs: files, the silhouette library, materials, the export report, the history, help."""

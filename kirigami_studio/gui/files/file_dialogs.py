@@ -1,0 +1,127 @@
+"""File dialogs: the system's own, with the right filters, in the folder that was used last."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Protocol
+
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
+
+TARGET_FILTER = mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+START_FILTER = mark("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+ARTWORK_FILTER = mark("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)")
+PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
+
+
+class FileDialogs(Protocol):
+    """Asks the user for files; None means that the user has cancelled."""
+
+    def target(self) -> Path | None:
+        """A target to open."""
+
+    def start(self) -> Path | None:
+        """A shape to open as the start outline."""
+
+    def artwork(self) -> Path | None:
+        """A picture to print on the sheet."""
+
+    def project(self) -> Path | None:
+        """A project to open."""
+
+    def save(self, proposal: str) -> Path | None:
+        """A place for the project."""
+
+    def export(self, proposal: str) -> Path | None:
+        """A place for an exported file; the proposal's extension is the kind that is offered first."""
+
+    def picture(self, proposal: str) -> Path | None:
+        """A place for the picture of a view, PNG or SVG."""
+
+    def folder(self) -> Path | None:
+        """A folder for many files."""
+
+
+class SystemFileDialogs:
+    """The dialogs of the desktop."""
+
+    def __init__(self, window: QWidget) -> None:
+        self._window = window
+        self._folder = ""
+
+    def target(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, tr(TARGET_FILTER))
+        return self._remembered(name)
+
+    def start(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, tr(START_FILTER))
+        return self._remembered(name)
+
+    def artwork(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Choose picture"), self._folder, tr(ARTWORK_FILTER))
+        return self._remembered(name)
+
+    def project(self) -> Path | None:
+        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, tr(PROJECT_FILTER))
+        return self._remembered(name)
+
+    def save(self, proposal: str) -> Path | None:
+        dialog = self._saver(tr("Save project"), proposal, [tr(PROJECT_FILTER)])
+        return self._answer(dialog)
+
+    def export(self, proposal: str) -> Path | None:
+        kind = kind_of(Path(proposal).suffix)
+        dialog = self._saver(
+            tr("Export {upper}", upper=kind.extension[1:].upper()), proposal, [each.filter for each in FILE_KINDS]
+        )
+        dialog.selectNameFilter(kind.filter)
+        dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
+        return self._answer(dialog)
+
+    def picture(self, proposal: str) -> Path | None:
+        kinds = {tr("PNG picture (*.png)"): ".png", tr("SVG drawing (*.svg)"): ".svg"}
+        dialog = self._saver(tr("Export picture"), proposal, list(kinds))
+        dialog.filterSelected.connect(lambda text: take_extension(dialog, kinds.get(text, "")))
+        return self._answer(dialog)
+
+    def folder(self) -> Path | None:
+        name = QFileDialog.getExistingDirectory(self._window, tr("Export to a folder"), self._folder)
+        return self._remembered(name)
+
+    def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
+        """A dialog that appends the extension itself, so that it asks before it overwrites the right file."""
+        dialog = QFileDialog(self._window, title, self._folder)
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+        dialog.setNameFilters(filters)
+        dialog.setDefaultSuffix(Path(proposal).suffix)
+        dialog.selectFile(proposal)
+        return dialog
+
+    def _answer(self, dialog: QFileDialog) -> Path | None:
+        accepted = dialog.exec() == QFileDialog.DialogCode.Accepted
+        names = dialog.selectedFiles() if accepted else []
+        dialog.deleteLater()
+        return self._remembered(names[0] if names else "")
+
+    def _remembered(self, name: str) -> Path | None:
+        if not name:
+            return None
+        self._folder = str(Path(name).parent)
+        return Path(name)
+
+
+def follow_filter(dialog: QFileDialog, text: str) -> None:
+    """Give the proposed name the extension of the file type that was picked."""
+    take_extension(dialog, next((kind.extension for kind in FILE_KINDS if kind.filter == text), ""))
+
+
+def take_extension(dialog: QFileDialog, extension: str) -> None:
+    """Give the proposed name another extension, unless that is empty."""
+    if extension:
+        dialog.setDefaultSuffix(extension)
+        names = dialog.selectedFiles()
+        if names:
+            dialog.selectFile(Path(names[0]).with_suffix(extension).name)

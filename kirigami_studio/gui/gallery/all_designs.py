@@ -1,0 +1,269 @@
+"""All designs in one window: a bar, filters, the table of cards, the comparison of up to four, what the keys do."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.gallery.compare_four import CompareFour
+from kirigami_studio.gui.gallery.design_table import WIDTHS, DesignTable
+from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
+from kirigami_studio.gui.gallery.gallery_model import GalleryModel
+from kirigami_studio.gui.gallery.gallery_panel import STEPS
+from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_texts
+from kirigami_studio.gui.widgets.card import ElidedLabel, FittingLabel, ToolButton
+
+
+class AllDesigns(QFrame):
+    """The page; what it asks for is done elsewhere."""
+
+    closed = Signal()
+    selection_changed = Signal(Selection)
+    order_wanted = Signal(SortOrder)
+    show_all_wanted = Signal()
+    again_wanted = Signal()
+    alike_wanted = Signal()
+    nearness_changed = Signal(int)  #: position of the slider
+    comparing_changed = Signal(bool)
+    compare_built = Signal(CompareFour)
+
+    def __init__(self, model: GalleryModel, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        self._selection = model.selection
+        self._model = model
+        self.table = DesignTable(model)
+        self._compare: CompareFour | None = None
+        self.filters = FilterControls(self, "all-")
+        self.filters.changed.connect(lambda: self.selection_changed.emit(self.filters.apply(self._selection)))
+        self.pages = QStackedWidget()
+        self.pages.addWidget(self.table)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 8, 8, 8)
+        column.setSpacing(8)
+        column.addLayout(self._head())
+        self.filter_row = self._filter_row()
+        column.addWidget(self.filter_row)
+        column.addWidget(self.pages, 1)
+        column.addLayout(self._foot())
+        self.table.size_wanted.connect(lambda step: self.card_size.setValue(self.card_size.value() + step))
+        self.table.compare_wanted.connect(lambda: self.show_comparison(True))
+        self.table.compared_changed.connect(self._show_compared)
+        self.table.current_changed.connect(self._show_current)
+        model.arranged.connect(self._count)
+        self._show_compared()
+        self._count()
+
+    def _head(self) -> QHBoxLayout:
+        title = QLabel(tr("All designs"))
+        title.setObjectName("cardTitle")
+        self.count = FittingLabel()
+        self.order = order_box("allOrder")
+        self.order.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self.order.setFixedWidth(150)
+        self.order.activated.connect(lambda _: self.order_wanted.emit(self.order.currentData()))
+        self.card_size = QSlider(Qt.Orientation.Horizontal)
+        self.card_size.setObjectName("cardSize")
+        self.card_size.setRange(0, len(WIDTHS) - 1)
+        self.card_size.setPageStep(1)
+        self.card_size.setFixedWidth(70)
+        self.card_size.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.card_size.setAccessibleName(tr("Size of the cards"))
+        self.card_size.setToolTip(tr("Size of the cards (+ and -)."))
+        self.card_size.valueChanged.connect(self.table.set_size)
+        self.card_size.setValue(1)
+        self.again = ToolButton("allAgain", "again", tr("More designs (Ctrl+R)."))
+        self.again.clicked.connect(self.again_wanted)
+        self.alike = QPushButton(tr("More like this"))
+        self.alike.setObjectName("small")
+        self.alike.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.alike.setToolTip(
+            tr("Generate designs like the one that is marked, and add them. The slider says how near they are to it.")
+        )
+        self.alike.clicked.connect(self.alike_wanted)
+        self.nearness = QSlider(Qt.Orientation.Horizontal)
+        self.nearness.setObjectName("allNearness")
+        self.nearness.setRange(0, STEPS)
+        self.nearness.setPageStep(STEPS // 10)
+        self.nearness.setFixedWidth(90)
+        self.nearness.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.nearness.setAccessibleName(tr("How far from the marked design new ones may be"))
+        self.nearness.setToolTip(tr("Left: close variations of the marked design. Right: loosely similar."))
+        self.nearness.valueChanged.connect(self.nearness_changed)
+        self.comparison = QPushButton()
+        self.comparison.setObjectName("small")
+        self.comparison.setCheckable(True)
+        self.comparison.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.comparison.setToolTip(
+            tr("Compare up to four designs (C). Mark them with Space, the keys 1 to 4, or Ctrl+click.")
+        )
+        self.comparison.clicked.connect(self.show_comparison)
+        self.close_button = ToolButton("closeAllDesigns", "close", tr("Back to the window (Esc)."))
+        self.close_button.clicked.connect(self.closed)
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        row.addWidget(title)
+        row.addWidget(self.count)
+        row.addStretch(1)
+        near, far = QLabel(tr("near")), QLabel(tr("far"))
+        for label in (near, far):
+            label.setObjectName("muted")
+        self._grid_only: tuple[QWidget, ...] = (self.order, self.card_size, self.alike, near, self.nearness, far)
+        parts: tuple[QWidget | None, ...] = (self.alike, near, self.nearness, far, self.again, None)
+        for part in (*parts, self.comparison, self.order, self.card_size, self.close_button):
+            if part is None:
+                row.addSpacing(6)
+            else:
+                row.addWidget(part)
+        return row
+
+    def _filter_row(self) -> QWidget:
+        pane = self.filters.wide()
+        self.show_all = QPushButton(tr("Show all"))
+        self.show_all.setObjectName("link")
+        self.show_all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.show_all.setToolTip(tr("Take every filter off."))
+        self.show_all.clicked.connect(self.show_all_wanted)
+        layout = pane.layout()
+        if isinstance(layout, QHBoxLayout):
+            layout.addWidget(self.show_all)
+            layout.addStretch(1)
+        return pane
+
+    def _foot(self) -> QHBoxLayout:
+        """What the keys do, and the note on the current design."""
+        self.note = ElidedLabel()
+        self.keys = FittingLabel()
+        self.use = QPushButton(tr("Use this design"))
+        self.use.setObjectName("primary")
+        self.use.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.use.setToolTip(tr("Take the marked design to the stage and close this table (Enter)."))
+        self.use.clicked.connect(self._use)
+        row = QHBoxLayout()
+        row.setSpacing(12)
+        row.addWidget(self.keys)
+        row.addWidget(self.note, 1)
+        row.addWidget(self.use)
+        return row
+
+    def _use(self) -> None:
+        if self.table.current is not None:
+            self.table.taken.emit(self.table.current)
+
+    @property
+    def compare(self) -> CompareFour:
+        """The comparison, built when it is first wanted: its drawings take longer than all the rest."""
+        if self._compare is None:
+            self._compare = CompareFour()
+            self._compare.left.connect(lambda: self.show_comparison(False))
+            self.pages.addWidget(self._compare)
+            self.compare_built.emit(self._compare)
+        return self._compare
+
+    # what is shown -------------------------------------------------------------------------------------------------
+
+    @property
+    def comparing(self) -> bool:
+        """Whether the comparison is shown in the place of the cards."""
+        return self._compare is not None and self.pages.currentWidget() is self._compare
+
+    def show_comparison(self, on: bool) -> None:
+        """Show the marked designs beside each other, or the cards; with one alone, the next card is beside it."""
+        if on and len(self.table.compared) < 2:
+            self._mark_two()
+        on = on and len(self.table.compared) >= 2
+        self.comparison.setChecked(on)
+        if on == self.comparing:
+            return
+        compare = self.compare
+        compare.bar.play.setChecked(False)
+        self.pages.setCurrentWidget(compare if on else self.table)
+        self.filter_row.setVisible(not on)
+        for part in (*self._grid_only, self.again, self.use):
+            part.setVisible(not on)
+        self.comparing_changed.emit(on)
+        self._show_keys()
+        self.focus()
+
+    def _mark_two(self) -> None:
+        """Mark the current design and the next one, so that there is something to compare."""
+        current = self.table.current
+        if current is not None and current not in self.table.compared:
+            self.table.toggle_compared(current)
+        row = self._model.row_of(current)
+        beside = [other for other in (row + 1, row - 1) if 0 <= other < self._model.rowCount()]
+        if len(self.table.compared) == 1 and beside:
+            self.table.toggle_compared(self._model.entries[beside[0]].candidate)
+
+    def focus(self) -> None:
+        """Give the keyboard to what is shown."""
+        (self.compare if self.comparing else self.table).setFocus()
+
+    def show_selection(self, selection: Selection) -> None:
+        """Show which designs are shown, and in which order."""
+        self._selection = selection
+        self.filters.show(selection)
+        self.order.setCurrentIndex(self.order.findData(selection.order))
+        self.show_all.setVisible(selection.filters)
+        self._count()
+
+    def set_ready(self, ready: bool) -> None:
+        """Whether there are designs that more can be added to."""
+        for part in (self.again, self.alike, self.nearness):
+            part.setEnabled(ready)
+
+    def _count(self) -> None:
+        taken = [entry.candidate for entry in self._model.taken]
+        self.count.set_texts(*count_texts(taken, len(self._model.all_entries)))
+        self._fit()
+        self.use.setEnabled(bool(taken))
+
+    def _show_compared(self) -> None:
+        count = len(self.table.compared)
+        text = tr_n("Compare {count}", "Compare {count}", count) if count > 1 else tr("Compare")
+        self.comparison.setText(text)
+        if self.comparing and count < 2:
+            self.show_comparison(False)
+
+    def _show_current(self) -> None:
+        current = self.table.current
+        note = "" if current is None else self._model.note_of(current)
+        name = "" if current is None else self._model.name_of(current)
+        self.note.setText(tr("{name}: {note}", name=name, note=" ".join(note.split())) if note else "")
+
+    def _show_keys(self) -> None:
+        if self.comparing:
+            keys: tuple[str, ...] = (tr("1 to 4: use a design   ·   Space: play   ·   Esc: back to the cards"),)
+        else:
+            keys = (
+                tr(
+                    "Enter: use   ·   Space or 1 to 4: mark to compare   ·   C: compare   ·   F2: name and note   ·   "
+                    "I: pin   ·   Del: reject   ·   Esc: close"
+                ),
+                tr("Enter: use   ·   Space: mark   ·   C: compare   ·   F2: name   ·   Esc: close"),
+            )
+        self.keys.set_texts(*keys)
+        self._fit()
+
+    def _fit(self) -> None:
+        self.count.fit(max(0, self.width() - 830))
+        self.keys.fit(self.width() - 260)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._show_keys()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(700, 400)

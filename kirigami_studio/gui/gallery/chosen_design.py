@@ -1,0 +1,273 @@
+"""Work on the chosen design in the worker: trim it, fit it again, score it as the generator sampled it.
+
+:class:`TrimSwitch` and :class:`Refitter` each run at most one :class:`ChosenDesignJob` and make one edit of its result;
+:class:`SampledScores` changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Generic, TypeVar
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.steps import Steps
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project import edits
+from kirigami_studio.project.document import Document
+from kirigami_studio.studio.designing import Decoded, Refitted, refitting, scoring_sample, trimming
+
+T = TypeVar("T")
+#: Designs whose sampled state is kept.
+CAPACITY = 256
+
+
+class ChosenDesignJob(Generic[T]):
+    """At most one job on the chosen design; its only report ends it.
+
+    Parameters
+    ----------
+    session : Session
+    on_busy : callable
+        Hears whether a design is being worked on.
+    on_report : callable
+        Gets the candidate that the job was begun with, and the report.
+    """
+
+    def __init__(
+        self, session: Session, on_busy: Callable[[bool], None], on_report: Callable[[Candidate, T], None]
+    ) -> None:
+        self._session, self._on_busy, self._on_report = session, on_busy, on_report
+        self._job = LatestJob[T](session.queue)
+        self._candidate: Candidate | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being worked on."""
+        return self._job.busy
+
+    def start(self, name: str, candidate: Candidate, steps: Steps[T]) -> None:
+        """Start a job on a design; ``name`` follows the word "while"."""
+        self.stop()
+        self._candidate = candidate
+        self._job.start(name, steps, JobCallbacks(self._take, self._end, self._end, self._fail))
+        self._on_busy(True)
+
+    def stop(self) -> None:
+        """Stop, and ignore what is still being made."""
+        if self.busy:
+            self._job.stop()
+            self._end()
+
+    def stop_unless(self, candidate: Candidate | None) -> None:
+        """Go on only while this design is the one on the stage."""
+        if candidate != self._candidate:
+            self.stop()
+
+    def _take(self, report: T) -> None:
+        before = self._candidate
+        self.stop()
+        if before is not None:
+            self._on_report(before, report)
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._end()
+        self._session.report_failure(sentence, trace)
+
+    def _end(self) -> None:
+        self._candidate = None
+        self._on_busy(False)
+
+
+def chosen_name(document: Document) -> str:
+    """The chosen design in a sentence."""
+    return tr("the design") if document.label is None else tr("design {name}", name=document.label.text)
+
+
+class TrimSwitch(QObject):
+    """Trims the chosen design along the target, or takes its trim off."""
+
+    busy_changed = Signal(bool)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self.job = ChosenDesignJob[Decoded](session, self.busy_changed.emit, self._take)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being trimmed."""
+        return self.job.busy
+
+    def switch(self, on: bool) -> None:
+        """Trim the chosen design, or bring back what was cut off; while it is being trimmed, stop that."""
+        candidate = self._session.document.candidate
+        if not on and self.busy:
+            self.cancel()
+        elif candidate is None:
+            self._session.post(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
+        elif on and candidate.trim is None:
+            self._start(candidate)
+        elif not on and candidate.trim is not None:
+            label = tr("Untrim {design}", design=chosen_name(self._session.document))
+            self._replace(replace(candidate, trim=None), label)
+            self._session.set_status(tr("Trim removed."))
+
+    def cancel(self) -> None:
+        """Stop because the user says so."""
+        self.job.stop()
+        self._session.set_status(tr("Trimming stopped; nothing changed."))
+
+    def _start(self, candidate: Candidate) -> None:
+        document = self._session.document
+        if document.target is None:
+            return
+        steps = partial(trimming, candidate, document.target, document.fabrication)
+        self.job.start(tr("trimming the design"), candidate, steps)
+        self._session.set_status(tr("Trimming {name} …", name=chosen_name(document)))
+
+    def _take(self, before: Candidate, report: Decoded) -> None:
+        after, trim = report.candidate, report.candidate.trim
+        if before != self._session.document.candidate or trim is None:
+            return
+        self._session.cache.put(after, report.deployment)
+        self._replace(after, tr("Trim {design}", design=chosen_name(self._session.document)))
+        self._session.set_status(
+            tr(
+                "Trimmed: match {trimmed:.1f} %, untrimmed {match:.1f} %; {removed_share:.1f} % is cut off.",
+                trimmed=100 * trim.iou,
+                match=100 * after.score.iou_exact,
+                removed_share=100 * trim.removed_share,
+            )
+        )
+
+    def _replace(self, candidate: Candidate, label: str) -> None:
+        document = self._session.document
+        if document.chosen is not None:
+            self._session.apply(edits.replace_candidate(document, document.chosen, candidate, label))
+
+
+class Refitter(QObject):
+    """Fits the chosen design again by what the settings prefer."""
+
+    busy_changed = Signal(bool)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self.job = ChosenDesignJob[Refitted](session, self.busy_changed.emit, self._take)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a design is being fitted."""
+        return self.job.busy
+
+    def start(self) -> None:
+        """Fit the chosen design."""
+        document = self._session.document
+        candidate, target = document.candidate, document.target
+        if candidate is None or target is None:
+            self._session.post(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
+            return
+        if len(document.locked) == candidate.sheet.field.ratio.size:
+            self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
+            return
+        steps = partial(refitting, candidate, target, document.settings, document.locked, document.fabrication)
+        self.job.start(tr("fitting the design"), candidate, steps)
+        self._session.set_status(tr("Fitting {design} … Press Esc to stop.", design=chosen_name(document)))
+
+    def cancel(self) -> None:
+        """Stop because the user says so."""
+        self.job.stop()
+        self._session.set_status(tr("Fitting stopped; nothing changed."))
+
+    def _take(self, before: Candidate, report: Refitted) -> None:
+        after = report.decoded.candidate
+        numbers = {
+            "before": 100 * before.score.iou_exact,
+            "after": 100 * after.score.iou_exact,
+            "varied": 100 * before.score.evenness.area_cv,
+            "varies": 100 * after.score.evenness.area_cv,
+        }
+        if report.better:
+            better = tr(
+                "Fitted again: match {before:.1f} % → {after:.1f} %, panels ±{varied:.0f} % → ±{varies:.0f} %.",
+                **numbers,
+            )
+            self._replace(before, report, better)
+        else:
+            sentence = tr(
+                "No better fit found: match {after:.2f} %, panels ±{varies:.0f} %; "
+                "was {before:.2f} %, ±{varied:.0f} %.",
+                **numbers,
+            )
+            taken = tr(
+                "Fit applied: match {after:.2f} %, panels ±{varies:.0f} %; was {before:.2f} %, ±{varied:.0f} %.",
+                **numbers,
+            )
+            actions = ((tr("Apply anyway"), partial(self._replace, before, report, taken)),)
+            self._session.post(Message(sentence, Tone.HINT, actions=actions))
+            self._session.set_status(tr("Fitting finished; the design is unchanged."))
+
+    def _replace(self, before: Candidate, report: Refitted, sentence: str) -> None:
+        """Replace the design, unless it or its locks have changed since the fit began."""
+        session, after = self._session, report.decoded.candidate
+        label = tr("Fit {design}", design=chosen_name(session.document))
+        edit = edits.take_changed(session.document, before, after, label)
+        if edit is None:
+            session.set_status(tr("The design has changed since the fit. Press Fit again (Ctrl+F)."))
+            return
+        if edits.moves_locked(session.document, before, after):
+            session.set_status(tr("Voids were locked since the fit. Press Fit again (Ctrl+F)."))
+            return
+        session.cache.put(after, report.decoded.deployment)
+        session.apply(edit)
+        sentences = [sentence]
+        if after.trim is not None:
+            sentences.append(tr("Trimmed again: match {match:.1f} %.", match=100 * after.trim.iou))
+        elif report.untrimmed:
+            sentences.append(tr("Trim removed: {reason}", reason=report.untrimmed))
+        session.set_status(" ".join(sentences))
+
+
+class SampledScores(QObject):
+    """Scores the design on the stage as the generator sampled it, before any fit; the newest request wins."""
+
+    known = Signal(Candidate, Entry)  #: as it is, as it was sampled
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._sampled: OrderedDict[tuple[Candidate, Outline], Candidate] = OrderedDict()
+        self._job = LatestJob[Decoded](session.queue)
+
+    def look_up(self, candidate: Candidate, target: Outline | None) -> None:
+        """Find out how a candidate was sampled, at once when that is known."""
+        self.stop()
+        if candidate.sampled_sheet is None or target is None:
+            return
+        before = self._sampled.get((candidate, target))
+        if before is not None:
+            self.known.emit(candidate, self._session.cache.entry(before))
+            return
+        callbacks = JobCallbacks(partial(self._take, candidate, target), on_failed=self._session.report_failure)
+        self._job.start(tr("scoring the unpolished design"), partial(scoring_sample, candidate, target), callbacks)
+
+    def stop(self) -> None:
+        """Forget what is still being scored."""
+        self._job.stop()
+
+    def _take(self, candidate: Candidate, target: Outline, report: Decoded) -> None:
+        self._session.cache.put(report.candidate, report.deployment)
+        self._sampled[candidate, target] = report.candidate
+        while len(self._sampled) > CAPACITY:
+            self._sampled.popitem(last=False)
+        self.known.emit(candidate, self._session.cache.entry(report.candidate))

@@ -1,0 +1,313 @@
+"""All designs as a table of large cards, walked through by keys and mouse; nothing here changes the choice by itself.
+
+The arrow keys move the current card; Enter takes its design to the stage.  The table shares the gallery's model, so
+that order, filters and groups are the same in both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QRegion,
+    QResizeEvent,
+    QShowEvent,
+)
+from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.gallery.card_delegate import GAP, SCROLL_BAR, CardButton, lay_out_cards
+from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
+from kirigami_studio.gui.gallery.table_card import TableCards, button_at, card_size
+from kirigami_studio.gui.widgets.theme import Palette
+from kirigami_studio.outlines.outline import Outline
+
+#: Least widths of a card, pixels, from small to large.
+WIDTHS = (270, 340, 430, 560)
+#: Designs that are compared at most.
+MOST_COMPARED = 4
+#: Keys that give a design a place in the comparison.
+PLACES = (Qt.Key.Key_1, Qt.Key.Key_2, Qt.Key.Key_3, Qt.Key.Key_4)
+
+
+class DesignTable(QListView):
+    """Cards in a grid that fills the window; the current card is the one that keys act on."""
+
+    taken = Signal(Candidate)  #: to the stage
+    left = Signal()  #: back to the window
+    pin_wanted = Signal(Candidate)
+    reject_wanted = Signal(Candidate)
+    rename_wanted = Signal(Candidate)
+    menu_wanted = Signal(Candidate, QPoint)  #: place on the screen
+    alike_toggled = Signal(Candidate)
+    clear_wanted = Signal()  #: the filter leaves nothing; show everything
+    compare_wanted = Signal()
+    compared_changed = Signal()
+    size_wanted = Signal(int)  #: by how many steps cards should become larger
+    current_changed = Signal()
+
+    def __init__(self, model: GalleryModel, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.model_ = model
+        self.cards = TableCards(self)
+        self.hint: Callable[[], tuple[str, str]] = lambda: ("", "")  #: what an empty table says
+        self._size = 1
+        self._compared: list[Candidate] = []
+        self._current: Candidate | None = None
+        lay_out_cards(self, model, self.cards)
+        self.setAccessibleName(tr("Table of all designs"))
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self._draw_waiting)
+        model.arranged.connect(self._follow)
+        self.selectionModel().currentChanged.connect(self._note_current)
+
+    @property
+    def current(self) -> Candidate | None:
+        """The design that keys act on."""
+        return self._current if self.model_.row_of(self._current) >= 0 else None
+
+    @property
+    def compared(self) -> tuple[Candidate, ...]:
+        """Those that were marked to be compared, in the order of their places."""
+        return tuple(self._compared)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.cards.palette_ = palette
+        self.viewport().update()
+
+    def set_target(self, target: Outline | None) -> None:
+        """Draw over another target; pictures of designs that are gone are dropped."""
+        same = target == self.cards.target
+        self.cards.target = target
+        self.cards.forget_pictures([entry.design for entry in self.model_.all_entries] if same else ())
+        self.viewport().update()
+
+    def set_on_stage(self, candidate: Candidate | None) -> None:
+        """Mark the design that is on the stage."""
+        if candidate is not self.cards.on_stage:
+            self.cards.on_stage = candidate
+            self.viewport().update()
+
+    def set_size(self, size: int) -> None:
+        """Show larger or smaller cards, from 0 on."""
+        self._size = min(max(size, 0), len(WIDTHS) - 1)
+        self._share_width()
+
+    def go_to(self, candidate: Candidate | None) -> None:
+        """Make a design, or the card that it lies under, the current one and scroll to it."""
+        row = self.model_.row_of(candidate)
+        if row < 0:
+            row = self.model_.row_of(self.model_.head_of(candidate)) if candidate is not None else -1
+        index = self.model_.index(max(row, 0), 0)
+        if index.isValid():
+            self.setCurrentIndex(index)
+            self.scrollTo(index, QAbstractItemView.ScrollHint.EnsureVisible)
+
+    def _note_current(self, current: QModelIndex) -> None:
+        if current.isValid():
+            self._current = current.data(CANDIDATE_ROLE)
+            self.current_changed.emit()
+
+    def _follow(self) -> None:
+        """Rows have changed: the same design stays current, those that are gone are no longer compared."""
+        there = set(map(id, (entry.candidate for entry in self.model_.all_entries)))
+        staying = [one for one in self._compared if id(one) in there or self.model_.number_of(one)]
+        if len(staying) != len(self._compared):
+            self._set_compared(staying)
+        if self.isVisible() and self.model_.rowCount():
+            row = self.model_.row_of(self._current)
+            if row < 0 or self.currentIndex().row() != row:
+                self.go_to(self._current)
+        self.current_changed.emit()
+
+    # comparing -----------------------------------------------------------------------------------------------------
+
+    def toggle_compared(self, candidate: Candidate | None, place: int | None = None) -> None:
+        """Mark a design to be compared, at a place (from 0) or the next free one, or take it out again."""
+        if candidate is None:
+            return
+        marked = list(self._compared)
+        before = marked.index(candidate) if candidate in marked else None
+        if before is not None:
+            marked.remove(candidate)
+        if before is None or (place is not None and place != before):
+            at = len(marked) if place is None else min(place, len(marked))
+            if place is not None and before is None and len(marked) > place:
+                marked[at] = candidate  # it takes the place of the one there
+            else:
+                marked.insert(at, candidate)
+        self._set_compared(marked[-MOST_COMPARED:])
+
+    def clear_compared(self) -> None:
+        """Nothing is to be compared."""
+        self._set_compared([])
+
+    def _set_compared(self, candidates: list[Candidate]) -> None:
+        self._compared = candidates
+        self.cards.compared = tuple(candidates)
+        self.viewport().update()
+        self.compared_changed.emit()
+
+    # events --------------------------------------------------------------------------------------------------------
+
+    def event(self, event: QEvent) -> bool:
+        """Keys without Ctrl and Alt belong to the table: what they do elsewhere would happen out of sight."""
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
+            plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier)
+            function = Qt.Key.Key_F1 <= event.key() <= Qt.Key.Key_F12
+            if plain and not function and event.text() != "?":
+                event.accept()
+                return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        key, candidate = event.key(), self.current
+        if key in (Qt.Key.Key_Escape, Qt.Key.Key_A):
+            self.left.emit()
+        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
+            self.size_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)
+        elif key in (Qt.Key.Key_C, Qt.Key.Key_K):
+            self.compare_wanted.emit()
+        elif candidate is None or not self._act(key, candidate):
+            if key in _MOVING:
+                super().keyPressEvent(event)
+            else:
+                event.ignore()  # Qt would look for a design whose name begins with the letter
+
+    def _act(self, key: int, candidate: Candidate) -> bool:
+        """Do what a key does to the current design; whether it does anything."""
+        if key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.taken.emit(candidate)
+        elif key == Qt.Key.Key_Space:
+            self.toggle_compared(candidate)
+        elif key in PLACES:
+            self.toggle_compared(candidate, PLACES.index(Qt.Key(key)))
+        elif key == Qt.Key.Key_I:
+            self.pin_wanted.emit(candidate)
+        elif key in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
+            self.reject_wanted.emit(candidate)
+        elif key == Qt.Key.Key_G and self.currentIndex().data(ALIKE_ROLE):
+            self.alike_toggled.emit(candidate)
+        else:
+            return False
+        return True
+
+    def _at(self, place: QPoint) -> tuple[QModelIndex, Candidate | None, CardButton | None]:
+        index = self.indexAt(place)
+        if not index.isValid():
+            return index, None, None
+        return index, index.data(CANDIDATE_ROLE), button_at(self.visualRect(index), place)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        place = event.position().toPoint()
+        index, candidate, button = self._at(place)
+        if event.button() != Qt.MouseButton.LeftButton:
+            event.accept()  # the menu comes with its own event
+        elif candidate is None:
+            if self.model_.rowCount() == 0 and self.model_.all_entries:
+                self.clear_wanted.emit()
+        elif button is not None:
+            (self.pin_wanted if button is CardButton.PIN else self.reject_wanted).emit(candidate)
+        elif index.data(ALIKE_ROLE) and self.cards.alike_box(self.visualRect(index), index).contains(place):
+            self.alike_toggled.emit(candidate)
+        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            self.toggle_compared(candidate)
+        else:
+            super().mousePressEvent(event)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        _, candidate, button = self._at(event.position().toPoint())
+        if candidate is not None and button is None and event.button() == Qt.MouseButton.LeftButton:
+            self.taken.emit(candidate)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        _, candidate, button = self._at(event.position().toPoint())
+        self._hover(candidate, button)
+        if event.buttons() == Qt.MouseButton.NoButton:
+            super().mouseMoveEvent(event)
+
+    def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        self._hover(None, None)
+        super().leaveEvent(event)
+
+    def _hover(self, candidate: Candidate | None, button: CardButton | None) -> None:
+        if (candidate, button) != (self.cards.under_mouse, self.cards.hovered_button):
+            self.cards.under_mouse, self.cards.hovered_button = candidate, button
+            self.viewport().update()
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:  # noqa: N802 - Qt's name
+        _, candidate, _ = self._at(event.pos())
+        place = event.globalPos()
+        if candidate is None and event.reason() == QContextMenuEvent.Reason.Keyboard and self.current is not None:
+            candidate = self.current
+            place = self.viewport().mapToGlobal(self.visualRect(self.currentIndex()).center())
+        if candidate is not None:
+            self.menu_wanted.emit(candidate, place)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        self._share_width()
+        super().resizeEvent(event)
+
+    def _share_width(self) -> None:
+        """Share the width among as many cards as fit into a row."""
+        width = self.width() - SCROLL_BAR
+        columns = max(1, width // (WIDTHS[self._size] + GAP))
+        wanted = card_size(width // columns - GAP)
+        if wanted != self.cards.card:
+            self.cards.card = wanted
+            self.scheduleDelayedItemsLayout()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        super().showEvent(event)
+        self._follow()
+
+    def _draw_waiting(self) -> None:
+        """Paint the cards that lack their pictures, and no others: a large screen shows dozens that are done."""
+        region = QRegion()
+        for cell in self.cards.waiting:
+            region += cell
+        self.viewport().update(region)
+
+    def scrollContentsBy(self, dx: int, dy: int) -> None:  # noqa: N802 - Qt's name
+        super().scrollContentsBy(dx, dy)
+        if self.cards.pending:  # their cells are elsewhere now
+            self.cards.waiting.clear()
+            self.viewport().update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        self.cards.begin(event.region())
+        super().paintEvent(event)
+        if self.cards.pending:
+            self._later.start()
+        if self.model_.rowCount() > 0:
+            return
+        painter = QPainter(self.viewport())
+        painter.setPen(QColor(self.cards.palette_.muted))
+        flags = int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap)
+        painter.drawText(self.viewport().rect().adjusted(20, 0, -20, 0), flags, "\n\n".join(self.hint()))
+        painter.end()
+
+
+_MOVING = frozenset(
+    {
+        Qt.Key.Key_Left,
+        Qt.Key.Key_Right,
+        Qt.Key.Key_Up,
+        Qt.Key.Key_Down,
+        Qt.Key.Key_Home,
+        Qt.Key.Key_End,
+        Qt.Key.Key_PageUp,
+        Qt.Key.Key_PageDown,
+        Qt.Key.Key_Tab,
+        Qt.Key.Key_Backtab,
+    }
+)

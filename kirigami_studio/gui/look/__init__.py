@@ -1,1 +1,0 @@
-"""How the window looks: palettes, icons, readable numbers, what the user prefers."""

@@ -1,0 +1,365 @@
+"""Cutting: the plan and files of the design on the stage, the numbers it is cut with, the materials of a project."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from kirigami_studio.fabricate.material import Material, library
+from kirigami_studio.fabricate.material_copies import save_copy
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import Steps
+from kirigami_studio.foundation.words import mark, number, tr, tr_n
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.project import edits
+from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.settings import stored_material
+from kirigami_studio.project.sheet_size import set_opened_size
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange
+from kirigami_studio.studio.making import (
+    ANIMATION,
+    CutRequest,
+    Exported,
+    ManyPages,
+    Motion,
+    Planned,
+    animating,
+    exporting,
+    exporting_all,
+    exporting_artwork,
+    exporting_coupon,
+    planning,
+)
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import SimulatedSheet
+    from kirigami_studio.studio.verdict import Verdict
+
+#: Changes that follow each other faster than this (ms) lead to one plan.
+PLAN_DELAY_MS = 120
+TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
+
+
+class CutPlanner(QObject):
+    """Keeps the cut plan of the design on the stage up to date, and writes files."""
+
+    planned = Signal(object)  #: Planned, or None without a design
+    answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
+    refused = Signal(str)
+    not_planned = Signal(CutRequest, str)  #: what was to be planned, and why it cannot be
+    exported = Signal(Exported)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[Planned](session.queue)
+        self._wanted: CutRequest | None = None
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(PLAN_DELAY_MS)
+        self._timer.timeout.connect(self._plan)
+        session.display.settled.connect(self.plan_soon)
+        session.fabrication_changed.connect(self.plan_soon)
+        session.document_changed.connect(self._take_name)
+
+    @property
+    def request(self) -> CutRequest | None:
+        """The design on the stage and how it is to be cut."""
+        stage, document = self._session.stage, self._session.document
+        if stage is None:
+            return None
+        facts = design_facts(document, stage.candidate)
+        return CutRequest(
+            stage.candidate,
+            stage.design.deployment,
+            document.target,
+            document.fabrication,
+            facts,
+            artwork=document.artwork,
+            document=document,
+        )
+
+    def plan_soon(self) -> None:
+        """Plan the cuts of the design on the stage, unless something changes again before."""
+        self._wanted = self.request
+        self._timer.start()
+
+    def _take_name(self, document: Document) -> None:
+        """Plan again where the design on the sheet is called otherwise now."""
+        before = self._wanted
+        if not document.fabrication.engrave or before is None:
+            return
+        now = self.request
+        if now is not None and now.candidate is before.candidate and now.name != before.name:
+            self.plan_soon()
+
+    def close(self) -> None:
+        """Plan no more."""
+        self._timer.stop()
+
+    def _plan(self) -> None:
+        self._job.stop()
+        if self._wanted is None:
+            self.planned.emit(None)
+            return
+        callbacks = JobCallbacks(partial(self._take, self._wanted), on_failed=partial(self._refuse, self._wanted))
+        self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
+
+    def _take(self, request: CutRequest, made: Planned) -> None:
+        self.planned.emit(made)
+        self.answered.emit(request, made)
+
+    def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
+        told = sentence if request.candidate.trim is None else f"{sentence} {tr(TRIM_AGAIN)}"
+        self.refused.emit(told)
+        self.not_planned.emit(request, told)
+
+    def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
+        """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        steps = partial(exporting, request, path, many_pages)
+        self._write(tr("exporting {name}", name=path.name), steps, partial(self.export, request, path, True))
+
+    def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
+        """Write an animation; ``sheet`` is the design as cut, if it is known already."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        steps = partial(animating, request, path, motion, sheet)
+        self._write(tr("exporting {name}", name=path.name), steps)
+
+    def export_all(self, request: CutRequest, folder: Path, name: str, many_pages: bool = False) -> None:
+        """Write everything that there is of a design into a folder; a PDF of many pages only after asking."""
+        self._session.set_status(tr("Exporting to {name} …", name=folder.name))
+        steps = partial(exporting_all, request, folder, name, many_pages)
+        again = partial(self.export_all, request, folder, name, True)
+        self._write(tr("exporting to {name}", name=folder.name), steps, again)
+
+    def export_artwork(self, request: CutRequest, folder: Path, many_pages: bool = False) -> None:
+        """Write the printed sheet into a folder; a PDF of many pages only after asking."""
+        self._session.set_status(tr("Exporting the artwork …"))
+        steps = partial(exporting_artwork, request, folder, many_pages)
+        self._write(tr("exporting the artwork"), steps, partial(self.export_artwork, request, folder, True))
+
+    def export_coupon(self, material: Material, path: Path) -> None:
+        """Write the calibration coupon of a material."""
+        self._session.set_status(tr("Exporting {name} …", name=path.name))
+        steps = partial(exporting_coupon, material, path, self._session.document.fabrication)
+        self._write(tr("exporting {name}", name=path.name), steps)
+
+    def _write(
+        self, name: str, steps: Steps[Exported | ManyPages | None], with_pages: Callable[[], None] | None = None
+    ) -> None:
+        """Start a job; ``with_pages`` starts it once more, for as many pages as it takes."""
+        callbacks = JobCallbacks(partial(self._take_written, with_pages), on_failed=self._report_failure)
+        self._session.queue.start(name, steps, callbacks)
+
+    def _take_written(self, with_pages: Callable[[], None] | None, report: Exported | ManyPages | None) -> None:
+        match report:
+            case Exported():
+                self._report(report)
+            case ManyPages() if with_pages is not None:
+                self._session.set_status(tr("Not exported yet: {count} pages.", count=report.pages))
+                write = (tr("Write all pages"), with_pages)
+                self._session.post(Message(report.note, Tone.WARNING, actions=(write,)))
+
+    def _report(self, exported: Exported) -> None:
+        path, made = exported.path, exported.planned
+        if made is None:
+            self._session.set_status(tr("Exported {path}.", path=path))
+            message = Message(picture_sentence(exported), Tone.DONE, str(path))
+        else:
+            self._session.set_status(
+                tr_n(
+                    "Exported {path}: {count} cut, {cut_length_mm:.0f} mm.",
+                    "Exported {path}: {count} cuts, {cut_length_mm:.0f} mm.",
+                    len(made.plan.copies) * len(made.plan.paths),
+                    path=path,
+                    cut_length_mm=len(made.plan.copies) * made.plan.cut_length_mm,
+                )
+            )
+            message = message_of(path, made, exported.verdict)
+        self._session.post(message)
+        for about in older_messages(exported):
+            self._session.post(about)
+        self.exported.emit(exported)
+
+    def _report_failure(self, sentence: str, trace: str) -> None:
+        self._session.set_status(tr("Export failed."))
+        self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def older_messages(exported: Exported) -> list[Message]:
+    """What became of files that an earlier export left in the folder."""
+    found = []
+    if exported.removed:
+        names = ", ".join(exported.removed)
+        sentence = tr("Removed files of an earlier export that this one does not have: {names}.", names=names)
+        found.append(Message(sentence, Tone.HINT))
+    if left := ", ".join(name for name in exported.older if name not in exported.removed):
+        sentence = tr(
+            "The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=left
+        )
+        found.append(Message(sentence, Tone.WARNING))
+    return found
+
+
+def picture_sentence(exported: Exported) -> str:
+    """Say that a picture was written, and which motion an animation shows."""
+    name, motion = exported.path.name, exported.motion
+    if exported.path.suffix.lower() != ANIMATION:
+        return tr("{name} exported.", name=name)
+    if motion is None:
+        sentence = tr("{name} exported: the ideal motion, with connectors of no width.", name=name)
+        why = tr("Not as cut: {reason}", reason=exported.not_as_cut)
+        return f"{sentence} {why}" if exported.not_as_cut else sentence
+    if motion.jams:
+        return tr("{name} exported: as cut, it jams at {jam:.0f}°.", name=name, jam=math.degrees(motion.jam_phi))
+    return tr("{name} exported: as cut, to {reached:.0f}°.", name=name, reached=math.degrees(motion.reached))
+
+
+def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
+    """Say what a written cut file holds, and whether cutting it would succeed; a coupon has no verdict."""
+    plan, check = made.plan, made.report
+    if verdict is not None and verdict.problems:
+        sentence = tr(
+            "{name} exported. {level}: {text}", name=path.name, level=verdict.level.words, text=verdict.problems[0].text
+        )
+        return Message(sentence, Tone.WARNING, "\n".join([str(path), *verdict.lines]))
+    details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
+    if check.ok:
+        name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
+        count = len(plan.copies) * len(plan.paths)
+        if made.removed_share:
+            sentence = tr_n(
+                "{name} exported and checked: {count} cut, trimmed outline, no faults.",
+                "{name} exported and checked: {count} cuts, trimmed outline, no faults.",
+                count,
+                name=name,
+            )
+        else:
+            sentence = tr_n(
+                "{name} exported and checked: {count} cut, no faults.",
+                "{name} exported and checked: {count} cuts, no faults.",
+                count,
+                name=name,
+            )
+        return Message(sentence, Tone.DONE, details)
+    sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
+    return Message(sentence, Tone.WARNING, details)
+
+
+class FabricationEditor:
+    """Changes the numbers that the design is cut with, or says why it cannot.
+
+    ``chosen`` gets the names of the fields that a person has set.
+    """
+
+    def __init__(self, session: Session, chosen: Callable[[Collection[str]], None]) -> None:
+        self._session = session
+        self._chosen = chosen
+
+    def change(self, **changes: Unpack[FabricationChange]) -> None:
+        """Change sheet, material, widths or what files are written for."""
+        self._apply(lambda document: edits.set_fabrication(document, **changes))
+        self._chosen(changes.keys())
+
+    def set_opened_size(self, longer_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to a shape whose longer side is so long."""
+        self._apply(lambda document: set_opened_size(document, longer_mm))
+        self._chosen(("opened_mm",))
+
+    def cut_at_drawn_size(self, longer_mm: float) -> None:
+        """Let the flat sheet be as wide as opens to the size that the target was drawn with."""
+        self._apply(lambda document: Edit(tr("Cut at the drawn size"), set_opened_size(document, longer_mm).document))
+
+    def change_options(self, **changes: Unpack[OptionsChange]) -> None:
+        """Change connector style, order or tabs."""
+        self._apply(lambda document: edits.set_cut_options(document, **changes))
+
+    def set_hinge_width(self, hinges: frozenset[int], width_mm: float) -> None:
+        """Give connectors a width of their own."""
+        if hinges:
+            self._apply(lambda document: edits.set_hinge_width(document, hinges, width_mm))
+
+    def remove_hinges(self, hinges: frozenset[int]) -> None:
+        """Leave no connector at these hinges."""
+        if hinges:
+            self._apply(lambda document: edits.remove_hinges(document, hinges))
+
+    def reset_hinges(self, hinges: frozenset[int]) -> None:
+        """Give connectors the usual width again."""
+        if hinges:
+            self._apply(lambda document: edits.reset_hinges(document, hinges))
+
+    def _apply(self, make: Callable[[Document], Edit]) -> None:
+        try:
+            edit = make(self._session.document)
+        except KirigamiError as error:
+            self._session.refuse(error)
+        else:
+            self._session.apply(edit)
+
+
+class MaterialStore(QObject):
+    """Compares the material that a project carries with the user's own."""
+
+    material_added = Signal(str)  #: its key
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+
+    def compare(self, document: Document) -> None:
+        """A project was opened: say where its material is unknown or differs."""
+        material = stored_material(document.fabrication)
+        if material is None:
+            return
+        known = library().materials.get(material.key)
+        if known is None:
+            sentence = tr(
+                "You don't have the material {name}; the project's own values are used.",
+                name=tr(material.name),
+            )
+            keep = (tr("Add to my materials"), partial(self.keep, material))
+            self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
+        elif known != replace(material, name=known.name, note=known.note):  # words do not cut
+            sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
+            self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
+
+    def keep(self, material: Material) -> None:
+        """Save what a project carries among the own materials."""
+        try:
+            save_copy(material)
+        except KirigamiError as error:
+            self._session.post(Message(str(error), Tone.ERROR))
+            return
+        self._session.set_status(tr("Added {name} to your materials.", name=material.name))
+        self.material_added.emit(material.key)
+
+
+def differences(carried: Material, known: Material) -> str:
+    """One line for every entry in which two materials differ."""
+    theirs, ours = asdict(carried), asdict(known)
+    return "\n".join(
+        tr(
+            "{entry}: {theirs} in the project, {ours} in your materials",
+            entry=name,
+            theirs=_text(value),
+            ours=_text(ours[name]),
+        )
+        for name, value in theirs.items()
+        if value != ours[name]
+    )
+
+
+def _text(value: object) -> str:
+    return number(value, "g") if isinstance(value, float) else str(value)

@@ -1,0 +1,427 @@
+"""From design to cut file: material, widths in mm, live numbers, export.
+
+The row with the material is made here; the window puts it above the settings that designs are asked for with.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.fabricate.material import library
+from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.make.export_row import ExportRow
+from kirigami_studio.gui.make.more_options import MoreOptions
+from kirigami_studio.gui.make.verdict import VerdictState
+from kirigami_studio.gui.widgets.card import (
+    Card,
+    ScrolledWhenShort,
+    ToolButton,
+    muted_label,
+)
+from kirigami_studio.gui.widgets.choice_box import ComboBox
+from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.readable import (
+    TIMES,
+    UNKNOWN,
+    readable_length,
+    readable_range,
+    readable_size,
+    readable_time,
+)
+from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
+
+if TYPE_CHECKING:
+    from kirigami_studio.fabricate.cut_plan import CutPlan
+    from kirigami_studio.fabricate.timing import CutTimes
+    from kirigami_studio.studio.making import Planned
+
+#: Settings that are shown at once.
+LENGTHS = ("width_mm", "connector_mm", "kerf_mm")
+#: Lengths of slots and of open cuts differ by much more than this share.
+SAME_LENGTH = 1e-3
+#: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
+LEAST_DETAILS = 150
+#: Key and label of the live numbers, in reading order.
+NUMBERS = (
+    ("size", mark("Sheet")),
+    ("slits", mark("Cuts")),
+    ("length", mark("Cut length")),
+    ("time", mark("Time")),
+    ("pieces", mark("Pieces")),
+    ("ligament", mark("Min. ligament")),
+)
+
+
+class Extent(Enum):
+    """How much the panel shows; each is more than the one before."""
+
+    EXPORT = "export"  #: the sheet's size in the header, what is wrong, and the export
+    CHOICES = "choices"  #: the widths too
+    ALL = "all"  #: the live numbers and the options too
+
+
+#: What the button does next, in the words of its tooltip.
+NEXT = {
+    Extent.EXPORT: (Extent.CHOICES, mark("Show widths.")),
+    Extent.CHOICES: (Extent.ALL, mark("Show cutting numbers and more options.")),
+    Extent.ALL: (Extent.EXPORT, mark("Hide widths and numbers.")),
+}
+
+
+class FabricationPanel(Card):
+    """Reports changed fields by name and shows the plan that they lead to."""
+
+    changed = Signal(dict)  #: field of FabricationSettings -> value
+    options_changed = Signal(dict)  #: field of CutOptions -> value
+    edited = Signal()
+    materials_wanted = Signal()
+    export_wanted = Signal(str)  #: extension
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(tr("Fabrication"), parent)
+        self._calm = True
+        self._extent, self._by_hand = Extent.ALL, False
+        self._summaries = ("", "")  # with the live numbers in sight, and without
+        self._presets = library().materials
+        self.material = ComboBox()
+        self.material.setObjectName("material")
+        self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.material.setAccessibleName(tr("Material preset"))
+        self.material.setMinimumContentsLength(8)
+        self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.edit_materials = ToolButton(
+            "editMaterials", "material", tr("Copy, edit and calibrate materials (Ctrl+M).")
+        )
+        self.edit_materials.clicked.connect(self.materials_wanted)
+        self.reload_materials()
+        self.material.activated.connect(self._take_material)
+        self.material_row = self._material_row()
+        self.form = Form(FabricationSettings, 82, parent=self)
+        self.form.changed.connect(self.changed)
+        self.form.edited.connect(self.edited)
+        self.lengths = {name: self.form.decimal(name) for name in LENGTHS}
+        self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
+        self.warnings = muted_label()
+        self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.warnings.setMinimumHeight(3 * self.warnings.fontMetrics().lineSpacing() + 2)
+        self.warnings.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.options = MoreOptions()
+        self.options.changed.connect(self.changed)
+        self.options.options_changed.connect(self.options_changed)
+        self.options.edited.connect(self.edited)
+        self.exports = ExportRow()
+        self.exports.export_wanted.connect(self.export_wanted)
+        self.export, self.more, self.kinds = self.exports.export, self.exports.more, self.exports.kinds
+        self._build_fold()
+        self._lay_out()
+        self.body.addWidget(self.warnings)
+        self.body.addWidget(self.exports)
+        self.show_plan(None)
+
+    def _build_fold(self) -> None:
+        """The button that folds parts away, and the summary that stands for the numbers."""
+        self.details = QWidget()
+        self.details.setObjectName("plain")
+        self.summary = QLabel()
+        self.summary.setObjectName("muted")
+        self.fold = ToolButton("foldFabrication", "down", tr("Show more or fewer fabrication settings."))
+        self.header.addWidget(self.summary)
+        self.header.addWidget(self.fold)
+        self.fold.clicked.connect(self._change_by_hand)
+        self.summary.hide()
+
+    def _change_by_hand(self) -> None:
+        self._by_hand = True
+        self._show_extent(NEXT[self._extent][0])
+
+    def fit(self, extent: Extent) -> None:
+        """Show as much as there is room for, unless the user has decided."""
+        if not self._by_hand:
+            self._show_extent(extent)
+
+    @property
+    def extent(self) -> Extent:
+        """How much is shown."""
+        return self._extent
+
+    def _show_extent(self, extent: Extent) -> None:
+        self._extent = extent
+        self.fold.setToolTip(tr(NEXT[extent][1]))
+        self.scrolled.setVisible(extent is not Extent.EXPORT)
+        self.table.setVisible(extent is Extent.ALL)
+        self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
+        self._show_summary()
+        self._show_warning()
+        self.fold.show_icon("down" if extent is Extent.ALL else "up")
+
+    def restore(self, settings: QSettings) -> None:
+        """Show as much as the user chose the last time."""
+        if (saved := settings.value("fabrication")) in [extent.value for extent in Extent]:
+            self._by_hand = True
+            self._show_extent(Extent(saved))
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep how much the user chose to see for the next time."""
+        if self._by_hand:
+            settings.setValue("fabrication", self._extent.value)
+
+    def _material_row(self) -> QWidget:
+        """The material stands where designs are asked for: what it can bear decides how they are made."""
+        row = QWidget()
+        row.setObjectName("plain")
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.setSpacing(4)
+        caption = QLabel(tr("&Material"))
+        caption.setObjectName("muted")
+        caption.setBuddy(self.material)
+        line.addWidget(caption)
+        line.addSpacing(4)
+        line.addWidget(self.material, 1)
+        line.addWidget(self.edit_materials)
+        return row
+
+    def _lay_out(self) -> None:
+        rows = QVBoxLayout(self.details)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(5)
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        for name in LENGTHS:
+            row.addLayout(self.form.captioned(name), 1)
+        rows.addLayout(row)
+        self.table = QWidget()
+        self.table.setObjectName("plain")
+        table = QGridLayout(self.table)
+        table.setContentsMargins(0, 1, 0, 0)
+        table.setHorizontalSpacing(8)
+        table.setVerticalSpacing(1)
+        for place, (key, label) in enumerate(NUMBERS):
+            line, column = divmod(place, 3)
+            caption = QLabel(tr(label))
+            caption.setObjectName("muted")
+            self.numbers[key].setObjectName("number")
+            self.numbers[key].setAccessibleName(tr(label))
+            table.addWidget(caption, 3 * line, column)
+            table.addWidget(self.numbers[key], 3 * line + 1, column)
+            for part in (caption, self.numbers[key]):
+                part.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        table.setRowMinimumHeight(2, 3)
+        for column, stretch in enumerate((12, 9, 11)):
+            table.setColumnStretch(column, stretch)
+        rows.addWidget(self.table)
+        rows.addWidget(self.options)
+        self.scrolled = ScrolledWhenShort(self.details, LEAST_DETAILS)
+        self.body.addWidget(self.scrolled)
+
+    def reload_materials(self) -> None:
+        """Read the library again; the choice is shown with the next settings."""
+        self._presets = library().materials
+        with QSignalBlocker(self.material):
+            self.material.clear()
+            for key, material in self._presets.items():
+                self.material.addItem(tr(material.name), key)
+
+    def _take_material(self, index: int) -> None:
+        """A new material brings its own connector and kerf."""
+        self.changed.emit({"material": self.material.itemData(index), "connector_mm": None, "kerf_mm": None})
+        self.edited.emit()
+
+    def show_settings(self, settings: FabricationSettings) -> None:
+        """Show the document's numbers, the material's own where it has none."""
+        material = self._presets.get(settings.material) or stored_material(settings)
+        with QSignalBlocker(self.material):
+            if self.material.findData(settings.material) < 0:
+                self.material.addItem(tr(material.name) if material else settings.material, settings.material)
+            self.material.setCurrentIndex(self.material.findData(settings.material))
+        if material is not None:
+            self.material.setToolTip(
+                tr(
+                    "{machine}, {thickness_mm:g} mm. {note}",
+                    machine=tr(material.machine),
+                    thickness_mm=material.thickness_mm,
+                    note=tr(material.note),
+                )
+            )
+        shown = {
+            "width_mm": settings.width_mm,
+            "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),
+            "kerf_mm": settings.kerf_mm if settings.kerf_mm is not None else (material.kerf_mm if material else 0.0),
+        }
+        self.form.show(shown)
+        self.options.show_settings(settings)
+        extension = ".pdf" if material is not None and material.by_hand else ".dxf"
+        self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version, extension)
+
+    def show_plan(self, planned: Planned | None) -> None:
+        """Show what the plan amounts to; None when there is no design."""
+        self.exports.allow(cuts=planned is not None, pictures=planned is not None)
+        if planned is None:
+            self._forget_numbers()
+            self._warn(tr("Choose a design to see its cut plan."), calm=True)
+            return
+        plan, report = planned.plan, planned.report
+        copies = len(plan.copies)
+        length, times = plan.cut_length_mm, plan.times
+        if planned.work is not None:
+            length, times = planned.work.cut_length_mm, planned.work.times
+        texts = {
+            "size": readable_size(*plan.size_mm),
+            "slits": f"{copies * len(plan.paths)}",
+            "length": readable_length(length),
+            "time": readable_range(times.low, times.high),
+            "pieces": f"{copies * report.pieces}",
+            "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
+        }
+        for key, text in texts.items():
+            self.numbers[key].setText(text)
+        self.numbers["size"].setToolTip(format_copies(plan))
+        self.options.rows.setText(*rows_of_copies(plan))
+        self.options.rows.setToolTip(format_copies(plan))
+        self.numbers["time"].setToolTip(format_times(times))
+        self.numbers["length"].setToolTip(format_slots(planned))
+        size = texts["size"] if copies == 1 else sheets_of(plan)
+        self._sum_up(size, copies * len(plan.paths), planned.removed_share)
+
+    def show_verdict(self, state: VerdictState) -> None:
+        """Show what is to be expected of the sheet, and why: the same list as in the banner."""
+        if not state.known:
+            return
+        level, *reasons = state.lines
+        weighty = state.verdict is not None and bool(state.verdict.problems)
+        if reasons and not state.pending:
+            first = tr("{level}: {reason}", level=level, reason=reasons[0])
+        else:
+            first = "\n".join([level, *reasons[:1]])
+        self._warn("\n".join([first, *reasons[1:]]), calm=not reasons, muted=not weighty)
+
+    def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:
+        """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
+        percent = 100 * removed_share
+        if removed_share:
+            beside_numbers = tr("trimmed, {percent:.1f} % cut off", percent=percent)
+            self._summaries = (beside_numbers, tr("{size}  ·  trimmed", size=size))
+            tip = tr(
+                "Trimmed: {percent:.1f} % of the sheet is cut off along the target, also in the cut file.",
+                percent=percent,
+            )
+        else:
+            self._summaries = ("", tr_n("{size}  ·  {count} cut", "{size}  ·  {count} cuts", cuts, size=size))
+            tip = ""
+        self.summary.setToolTip(tip)
+        self._show_summary()
+
+    def _show_summary(self) -> None:
+        text = self._summaries[self._extent is not Extent.ALL]
+        self.summary.setText(text)
+        self.summary.setVisible(bool(text))
+
+    def show_waiting(self) -> None:
+        """Designs are being made; there is no plan to show before one is chosen."""
+        self.show_plan(None)
+        self._warn(tr("The cut plan appears when the run is done."), calm=True)
+
+    def show_refusal(self, sentence: str) -> None:
+        """Say why no plan can be made with these numbers."""
+        self.exports.allow(cuts=False, pictures=True)
+        self._forget_numbers()
+        self._warn(sentence, calm=False)
+
+    def show_untrimmed(self) -> None:
+        """The design is whole: what was said of a trimmed one goes at once, before its own plan is made."""
+        if self.summary.toolTip():
+            self._forget_summary()
+
+    def _forget_summary(self) -> None:
+        self._summaries = ("", "")
+        self.summary.setToolTip("")
+        self._show_summary()
+
+    def _forget_numbers(self) -> None:
+        self._forget_summary()
+        for label in self.numbers.values():
+            label.setText(UNKNOWN)
+
+    def _warn(self, text: str, calm: bool, muted: bool | None = None) -> None:
+        first, *more = text.split("\n")
+        self.warnings.setText(tr("{first}  (+{count} more)", first=first, count=len(more)) if more else first)
+        self.warnings.setToolTip(text)
+        self.warnings.setObjectName("muted" if (calm if muted is None else muted) else "warning")
+        self.warnings.style().unpolish(self.warnings)
+        self.warnings.style().polish(self.warnings)
+        self._calm = calm
+        self._show_warning()
+
+    def _show_warning(self) -> None:
+        """What is wrong stays in sight even when the numbers are folded away."""
+        self.warnings.setVisible(self._extent is Extent.ALL or not self._calm)
+
+
+def format_copies(plan: CutPlan) -> str:
+    """How the copies lie in the file, where it holds more than one."""
+    if len(plan.copies) == 1:
+        return ""
+    rows, columns = plan.copies.rows_and_columns
+    return tr(
+        "{count} copies in the file, in rows of {columns} ({rows} rows), {gap:g} mm apart: {size}.",
+        count=len(plan.copies),
+        columns=columns,
+        rows=rows,
+        gap=plan.copies.gap_mm,
+        size=readable_size(*plan.copies.spread_mm),
+    )
+
+
+def sheets_of(plan: CutPlan) -> str:
+    """How many sheets of what size the file holds."""
+    count, size = len(plan.copies), readable_size(*plan.size_mm)
+    return tr_n("{count} sheet of {size}", "{count} sheets of {size}", count, size=size)
+
+
+def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:
+    """Columns and rows of copies and what they take, longest text first; "" for a single sheet."""
+    if len(plan.copies) == 1:
+        return ("",)
+    rows, columns = plan.copies.rows_and_columns
+    short = tr_n("{count} copy", "{count} copies", len(plan.copies))
+    middle = tr_n(
+        "{count} copy, rows of {columns}", "{count} copies, rows of {columns}", len(plan.copies), columns=columns
+    )
+    return f"{short}: {columns} {TIMES} {rows}, {readable_size(*plan.copies.spread_mm)}", middle, short
+
+
+def format_slots(planned: Planned) -> str:
+    """What slots cost, where the machine profile asks for them."""
+    open_mm = len(planned.plan.copies) * planned.plan.cut_length_mm
+    # Copies alone leave the length of every cut as it is.
+    if planned.work is None or abs(planned.work.cut_length_mm / open_mm - 1.0) < SAME_LENGTH:
+        return ""
+    return tr(
+        "Closed slots: {factor:.2f} times the open cut length of {length}.",
+        factor=planned.work.cut_length_mm / open_mm,
+        length=readable_length(open_mm),
+    )
+
+
+def format_times(times: CutTimes) -> str:
+    """What the time consists of."""
+    return tr(
+        "About {total}: {cut} cutting, {travel} travel, {extra} switching.\nRange: half to twice the acceleration.",
+        total=readable_time(times.total),
+        cut=readable_time(times.cut),
+        travel=readable_time(times.travel),
+        extra=readable_time(times.extra),
+    )

@@ -1,0 +1,97 @@
+"""Choices about the cuts that most sheets leave as they are: connector style, order, tabs, what files are for."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
+
+from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
+from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.settings.fabrication import FabricationSettings
+
+
+class MoreOptions(QWidget):
+    """Reports each changed field by name; folded away until asked for."""
+
+    options_changed = Signal(dict)  #: field of CutOptions -> value
+    changed = Signal(dict)  #: field of FabricationSettings -> value
+    edited = Signal()  #: a number was left
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.fold = ToolButton(
+            "moreOptions", "down", tr("More options: connector style, order, tabs, copies, machine, DXF version.")
+        )
+        self.fold.setText(tr("More options"))
+        self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.fold.setCheckable(True)
+        self.cuts, self.files = Form(CutOptions, parent=self), Form(FabricationSettings, parent=self)
+        self.style_, self.order = self.cuts.choice("style"), self.cuts.choice("order")
+        self.tabs, self.tab_mm = self.cuts.whole("tabs"), self.cuts.decimal("tab_mm")
+        self.copies, self.copy_gap = self.cuts.whole("copies"), self.cuts.decimal("copy_gap_mm")
+        profiles = [(key, one.name, one.note.text if one.note else "") for key, one in PROFILES.items()]
+        self.profile = self.files.choice("profile", profiles)
+        self.dxf_version, self.paper = self.files.choice("dxf_version"), self.files.choice("paper")
+        self.markers, self.engrave = self.files.switch("markers"), self.files.switch("engrave")
+        self.rows = ElidedLabel()
+        self.rows.setObjectName("muted")
+        self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
+        self.rows.setAccessibleName(tr("Rows of copies"))
+        self.content = QWidget()
+        self.content.setObjectName("plain")
+        self._lay_out()
+        self._connect()
+        self.content.hide()
+
+    def _lay_out(self) -> None:
+        table = QGridLayout(self.content)
+        table.setContentsMargins(0, 0, 0, 0)
+        table.setHorizontalSpacing(8)
+        table.setVerticalSpacing(6)
+        cuts, files = self.cuts.captioned, self.files.captioned
+        table.addLayout(cuts("style"), 0, 0, 1, 2)
+        table.addLayout(cuts("order"), 0, 2, 1, 2)
+        table.addLayout(cuts("tabs"), 1, 0)
+        table.addLayout(cuts("tab_mm"), 1, 1)
+        table.addLayout(files("dxf_version"), 1, 2, 1, 2)
+        table.addLayout(files("profile"), 2, 0, 1, 4)
+        table.addLayout(cuts("copies"), 3, 0)
+        table.addLayout(cuts("copy_gap_mm"), 3, 1)
+        table.addWidget(self.rows, 3, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
+        table.addLayout(files("paper"), 4, 0, 1, 2)
+        marks = QVBoxLayout()
+        marks.setSpacing(4)
+        marks.addWidget(self.engrave)
+        marks.addWidget(self.markers)
+        table.addLayout(marks, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
+        elsewhere = ("width_mm", "connector_mm", "kerf_mm")  # above, in the panel
+        for line, row in enumerate([*self.cuts.remaining(), *self.files.remaining(elsewhere)], 5):
+            table.addLayout(row, line, 0, 1, 4)
+        for column in range(4):
+            table.setColumnStretch(column, 1)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.setSpacing(6)
+        whole.addWidget(self.fold, 0, Qt.AlignmentFlag.AlignLeft)
+        whole.addWidget(self.content)
+
+    def _connect(self) -> None:
+        self.fold.toggled.connect(self._show_content)
+        self.cuts.changed.connect(self.options_changed)
+        self.files.changed.connect(self.changed)
+        for form in (self.cuts, self.files):
+            form.edited.connect(self.edited)
+
+    def show_settings(self, settings: FabricationSettings) -> None:
+        """Show the document's choices without reporting them as gestures."""
+        self.cuts.show_settings(settings.options)
+        self.files.show_settings(settings)
+        self.tab_mm.setEnabled(settings.options.tabs > 0)
+        self.copy_gap.setEnabled(settings.options.copies != 1)
+
+    def _show_content(self, shown: bool) -> None:
+        self.content.setVisible(shown)
+        self.fold.show_icon("up" if shown else "down")

@@ -1,0 +1,177 @@
+"""The verdict on the design on the stage as it is cut now, and fixes for it, found in the worker."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.stage.as_cut import AsCutReader
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.studio.designing import request_for
+from kirigami_studio.studio.making import CutRequest, Planned, fixing
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.fixes import Advice
+    from kirigami_studio.studio.verdict import Verdict
+
+#: Designs and settings whose fixes are kept.
+CAPACITY = 32
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VerdictState:
+    """What is known of the design on the stage.
+
+    Attributes
+    ----------
+    verdict : Verdict or None
+        None without a design, and before its cuts are planned.
+    pending : bool
+        Whether the sheet is still being planned or closed on its connectors.
+    advice : Advice or None
+        Fixes that were tried, once they were.
+    searching : bool
+        Whether they are being tried.
+    """
+
+    verdict: Verdict | None = None
+    pending: bool = False
+    advice: Advice | None = None
+    searching: bool = False
+
+    @property
+    def known(self) -> bool:
+        """Whether there is something to show."""
+        return self.verdict is not None or self.pending
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The list that is shown: the verdict's own, then what was tried."""
+        checking = tr("Checking the sheet as cut …")
+        if self.verdict is None:
+            return (checking,) if self.pending else ()
+        level, *reasons = self.verdict.lines
+        return (checking if self.pending else level, *reasons, *(() if self.advice is None else self.advice.lines))
+
+
+UNKNOWN, PENDING = VerdictState(), VerdictState(pending=True)
+
+
+class VerdictKeeper(QObject):
+    """Judges the design on the stage whenever its plan or its simulation is there; looks for fixes where it is not
+    ready to cut.
+    """
+
+    changed = Signal(VerdictState)
+
+    def __init__(self, session: Session, as_cut: AsCutReader, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session, self._as_cut = session, as_cut
+        self._job = LatestJob["Advice | None"](session.queue)
+        self._known: OrderedDict[tuple[Candidate, FabricationSettings], Advice] = OrderedDict()
+        self._planned: tuple[CutRequest, Planned] | None = None
+        self.state = UNKNOWN
+        session.display.stage_changed.connect(self.forget)
+        session.display.settled.connect(self._wait)
+        session.fabrication_changed.connect(self._wait)
+        as_cut.changed.connect(self._judge)
+
+    @property
+    def busy(self) -> bool:
+        """Whether the verdict is still to come, or fixes are being tried."""
+        return self.state.pending or self._job.busy
+
+    def forget(self) -> None:
+        """The design is about to change, or is not planned: nothing is known."""
+        self._drop()
+        self._say(UNKNOWN)
+
+    def _drop(self) -> None:
+        self._job.stop()
+        self._planned = None
+
+    def forget_fixes(self) -> None:
+        """Materials have changed: what was found with them no longer holds."""
+        self._known.clear()
+
+    def _wait(self) -> None:
+        """The design on the stage is about to be planned."""
+        self._drop()
+        self._say(UNKNOWN if self._session.stage is None else PENDING)
+
+    def take_plan(self, request: CutRequest, made: Planned) -> None:
+        """The cuts of a design are planned and checked."""
+        stage = self._session.stage
+        if stage is not None and stage.candidate == request.candidate:
+            self._planned = request, made
+            self._judge()
+
+    def take_refusal(self, request: CutRequest, sentence: str) -> None:
+        """The cuts of a design cannot be planned, for this reason."""
+        from kirigami_studio.fabricate.findings import Problem
+        from kirigami_studio.studio.verdict import Verdict
+
+        self._planned = None
+        self._look_for_fixes(request, Verdict((Problem.error("plan.refused", reason=sentence),)))
+
+    def _judge(self) -> None:
+        if self._planned is None:
+            return
+        from kirigami_studio.studio.verdict import judge  # which planning has imported: in the worker
+
+        (request, made), state = self._planned, self._as_cut.state
+        as_cut = state.problem or (None if state.sheet is None else state.sheet.as_cut)
+        verdict = judge(request.candidate, made.plan, made.report, as_cut)
+        if as_cut is None:
+            self._job.stop()
+            self._say(VerdictState(verdict, pending=True))
+        else:
+            self._look_for_fixes(request, verdict)
+
+    def _look_for_fixes(self, request: CutRequest, verdict: Verdict) -> None:
+        self._job.stop()
+        if verdict.ok:
+            self._say(VerdictState(verdict))
+            return
+        # What files are written for does not matter to the sheet.
+        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
+        if key in self._known:
+            self._known.move_to_end(key)
+            self._say(VerdictState(verdict, advice=self._known[key]))
+            return
+        document = self._session.document
+        try:
+            run = None if document.target is None else request_for(document.target, document.settings, request.settings)
+        except KirigamiError:  # its material is gone, which the verdict tells
+            run = None
+        callbacks = JobCallbacks(partial(self._take_advice, key, verdict), on_failed=partial(self._fail, verdict))
+        self._job.start(
+            tr("trying fixes"), partial(fixing, request, verdict, document.named_candidates, run), callbacks
+        )
+        self._say(VerdictState(verdict, searching=True))
+
+    def _take_advice(self, key: tuple[Candidate, FabricationSettings], verdict: Verdict, advice: Advice | None) -> None:
+        if advice is None:
+            return
+        self._known[key] = advice
+        while len(self._known) > CAPACITY:
+            self._known.popitem(last=False)
+        self._say(VerdictState(verdict, advice=advice))
+
+    def _fail(self, verdict: Verdict, sentence: str, trace: str) -> None:
+        self._say(VerdictState(verdict))
+
+    def _say(self, state: VerdictState) -> None:
+        if state is not self.state:
+            self.state = state
+            self.changed.emit(state)

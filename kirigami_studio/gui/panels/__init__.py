@@ -1,1 +1,0 @@
-"""Groups of controls around the canvases: they show a document and report gestures; the controller decides."""

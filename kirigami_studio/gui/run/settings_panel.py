@@ -1,0 +1,353 @@
+"""What the next run designs: grid, symmetry, match or regular, angle, number; under More how it searches."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import replace
+
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QSlider,
+    QSpinBox,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.foundation.settings import Choice
+from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.run.second_target_row import SecondTargetRow
+from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_start
+from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
+from kirigami_studio.gui.widgets.choice_box import ChoiceBox
+from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.number_field import DecimalField
+from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
+from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
+from kirigami_studio.settings.design import DesignSettings
+
+ROWS = mark(
+    "Rows of voids, from top to bottom. More voids match the target more closely but are smaller ({low} to {high})."
+)
+COLUMNS = mark(
+    "Columns of voids, from left to right. More voids match the target more closely but are smaller ({low} to {high})."
+)
+#: Value of the entry for a shape that was loaded.
+LOADED_START = "loaded"
+#: Least weight of a start that can be set here.
+LIGHTEST_START = 0.01
+START = mark("What the sheet looks like while it is flat.")
+START_WEIGHT = mark(
+    "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the target is matched "
+    "more closely and the start less."
+)
+RECTANGLES_ARE_EXACT = mark("A rectangle is matched exactly at any weight.")
+#: Pixels that the rows get at least, where a small window scrolls them.
+LEAST_HEIGHT = 148
+#: Positions of the slider.
+POSITIONS = 100
+#: Milliseconds after the last key or notch that mean the slider has been let go.
+LET_GO_MS = 600
+KEEP_SEED = mark("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
+
+
+class SettingsPanel(Card):
+    """Reports each changed field by name; shows whatever the document holds."""
+
+    changed = Signal(dict)  #: field of DesignSettings -> value
+    edited = Signal()  #: a field was left, or its change is complete
+    keep_changed = Signal(bool)  #: whether Generate draws from the seed that is shown
+    regular_moved = Signal(float)  #: 0 match .. 1 regular, while the slider is dragged
+    regular_chosen = Signal(float)  #: the slider was let go
+    other_start_wanted = Signal(str)  #: one of OTHER_STARTS
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(tr("Design"), parent)
+        self._symmetry_found = ""
+        self._chosen_grid: tuple[int, int] | None = None
+        self._start = RECTANGLE
+        self._has_second = False
+        self.form = Form(DesignSettings, 48, parent=self)
+        #: What is known about generators by their names; others are listed by name alone.
+        self._variants = {str(one.value): one for one in self.form.settings["variant"].setting.choices}
+        auto, regular = self.form.settings["auto_grid"].setting, self.form.settings["regular"].setting
+        self.auto = QToolButton()
+        self.auto.setObjectName(auto.widget)
+        self.auto.setText(tr("Auto"))
+        self.auto.setCheckable(True)
+        self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.auto.setFixedHeight(29)
+        self.auto.setAccessibleName(tr(auto.spoken))
+        self.auto.setToolTip(tr(auto.about))
+        self.rows = _voids("rows", tr("Rows"), tr(ROWS, low=SMALLEST_GRID, high=LARGEST_GRID))
+        self.columns = _voids("columns", tr("Columns"), tr(COLUMNS, low=SMALLEST_GRID, high=LARGEST_GRID))
+        self.candidates, self.seed = self.form.whole("k"), self.form.whole("seed")
+        self.angle = self.form.decimal("phi")
+        self.dice = ToolButton("newSeed", "dice", tr("New random seed."))
+        self.dice.setFixedSize(29, 29)
+        self.keep = ToolButton("keepSeed", "keep", tr(KEEP_SEED), checkable=True)
+        self.keep.setChecked(True)
+        self.keep.setFixedSize(29, 29)
+        self.keep.toggled.connect(self.keep_changed)
+        self.symmetry, self.rim = self.form.choice("symmetry"), self.form.choice("rim")
+        self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)
+        self.start.insertSeparator(self.start.count())
+        self.start.add_choices(OTHER_STARTS)
+        self.regular = QSlider(Qt.Orientation.Horizontal)
+        self.regular.setObjectName("regular")
+        self.regular.setRange(0, POSITIONS)
+        self.regular.setSingleStep(POSITIONS // 20)
+        self.regular.setPageStep(POSITIONS // 4)
+        self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.regular.setAccessibleName(tr(regular.spoken))
+        self.regular.setToolTip(tr(regular.about))
+        self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
+        self.more = ToolButton(
+            "moreSettings",
+            "down",
+            tr("More settings: second target, seed, model, polish, preference, rim, start weight, search."),
+            checkable=True,
+        )
+        self.more.setText(tr("More"))
+        self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.variant = self.form.choice("variant", (), self._choose_variant)
+        self.polish = self.form.choice("polish", show=self._choose_polish)
+        self.prefer = self.form.choice("prefer")
+        self.start_weight = DecimalField()
+        self.start_weight.setObjectName("startWeight")
+        self.start_weight.setRange(LIGHTEST_START, HEAVIEST)
+        self.start_weight.setDecimals(2)
+        self.start_weight.setSingleStep(0.1)
+        self.start_weight.setAccessibleName(tr("Weight of the start"))
+        self.search = self.form.switch("search")
+        self.search.setMinimumHeight(29)
+        self.second = SecondTargetRow()
+        self._lay_out()
+        self.set_variants(("balanced",))
+        self._connect()
+
+    def _lay_out(self) -> None:
+        grid = _side_by_side(self.auto, self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
+        seed = _side_by_side(self.seed, self.dice, self.keep)
+        match, even = QLabel(tr("Mat&ch")), QLabel(tr("Regular"))
+        match.setBuddy(self.regular)
+        for label in (match, even):
+            label.setObjectName("muted")
+        content = QWidget()
+        content.setObjectName("plain")
+        rows = QVBoxLayout(content)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(8)
+        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
+        self.header.addWidget(self.more)
+        self.hidden = QWidget()
+        self.hidden.setObjectName("plain")
+        below = QVBoxLayout(self.hidden)
+        below.setContentsMargins(0, 0, 0, 0)
+        below.setSpacing(8)
+        first, second, third, fourth, fifth, slider = (QHBoxLayout() for _ in range(6))
+        for row, place in (
+            (first, rows),
+            (slider, rows),
+            (second, rows),
+            (third, below),
+            (fourth, below),
+            (fifth, below),
+        ):
+            row.setSpacing(8)
+            place.addLayout(row)
+        rows.addWidget(self.second)
+        rows.addWidget(self.hidden)
+        self.hidden.hide()
+        self.second.hide()
+        caption = self.form.captioned
+        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
+        first.addLayout(caption("symmetry"), 5)
+        slider.addWidget(match)
+        slider.addWidget(self.regular, 1)
+        slider.addWidget(even)
+        second.addLayout(captioned(tr("S&tart as"), self.start, self.start), 14)
+        second.addLayout(caption("phi"), 9)
+        second.addLayout(caption("k"), 7)
+        third.addLayout(caption("seed", seed), 4)
+        third.addLayout(caption("variant"), 3)
+        fourth.addLayout(caption("polish"), 1)
+        fourth.addLayout(caption("prefer"), 1)
+        fifth.addLayout(caption("rim"), 2)
+        fifth.addLayout(captioned(tr("Start weight"), self.start_weight, self.start_weight), 2)
+        fifth.addLayout(caption("search"), 3)
+        for other in self.form.remaining():
+            below.addLayout(other)
+
+    def _connect(self) -> None:
+        self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
+        self.columns.valueChanged.connect(
+            lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
+        )
+        self.auto.clicked.connect(self._switch_auto)
+        self.form.changed.connect(self.changed)
+        self.form.edited.connect(self.edited)
+        self.start.activated.connect(self._choose_start)
+        self.regular.valueChanged.connect(self._move_regular)
+        self.regular.sliderReleased.connect(self._choose_regular)
+        self._let_go.timeout.connect(self._choose_regular)
+        self.more.toggled.connect(self._fold)
+        self.second.changed.connect(lambda second: self.changed.emit({"second": second}))
+        self.second.edited.connect(self.edited)
+        self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
+        self.start_weight.valueChanged.connect(
+            lambda weight: self.changed.emit({"start": replace(self._start, weight=weight)})
+        )
+        for box, width in ((self.rows, 42), (self.columns, 42), (self.start_weight, 48)):  # 42: two digits
+            box.setKeyboardTracking(False)
+            compact(box, width)
+            box.editingFinished.connect(self.edited)
+
+    def _switch_auto(self, on: bool) -> None:
+        """Leave the grid to the run, or keep the one that is shown."""
+        shown = (self.rows.value(), self.columns.value())
+        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
+
+    def _choose_start(self) -> None:
+        """Report the start that was chosen; the box keeps the present one until a shape has been loaded."""
+        chosen = self.start.currentData()
+        if chosen in (value for value, _, _ in OTHER_STARTS):
+            self._show_start(self._start)
+            self.other_start_wanted.emit(chosen)
+        elif chosen != LOADED_START:
+            self.changed.emit({"start": replace(listed_start(chosen), weight=self._start.weight)})
+            self.edited.emit()
+
+    def _move_regular(self) -> None:
+        self.regular_moved.emit(self.regular.value() / POSITIONS)
+        if self.regular.isSliderDown():
+            self._let_go.stop()
+        else:
+            self._let_go.start()
+
+    def _choose_regular(self) -> None:
+        self._let_go.stop()
+        self.regular_chosen.emit(self.regular.value() / POSITIONS)
+
+    def _fold(self, shown: bool) -> None:
+        self.hidden.setVisible(shown)
+        self._show_second()
+        self.more.show_icon("up" if shown else "down")
+
+    def _show_second(self) -> None:
+        """A second target that is in force is in sight, whatever is folded away."""
+        self.second.setVisible(self.more.isChecked() or self._has_second)
+
+    def restore(self, settings: QSettings) -> None:
+        """Show more settings, or not, as the last time."""
+        self.more.setChecked(settings.value("moreSettings") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep for the next time whether more settings are shown."""
+        settings.setValue("moreSettings", "yes" if self.more.isChecked() else "no")
+
+    def show_symmetry(self, sentence: str) -> None:
+        """Tell in the tooltip how symmetric the target is; an empty sentence while that is not known."""
+        self._symmetry_found = sentence
+        self._show_symmetry_tip()
+
+    def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
+        """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
+        self._chosen_grid = grid
+        auto = self.form.settings["auto_grid"].setting
+        about = tr(auto.about)
+        self.auto.setToolTip(f"{about}\n{reason}" if reason else about)
+        self.auto.setAccessibleDescription(reason)
+        if grid is not None and self.auto.isChecked():
+            self._show_grid(grid)
+
+    def _show_grid(self, grid: tuple[int, int]) -> None:
+        for box, count in zip((self.rows, self.columns), grid, strict=True):
+            with QSignalBlocker(box):
+                box.setValue(count)
+
+    def _show_symmetry_tip(self) -> None:
+        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, self._symmetry_found) if part))
+        self.symmetry.setAccessibleDescription(self._symmetry_found)
+
+    def set_variants(self, names: tuple[str, ...]) -> None:
+        """Offer these generators; the chosen one stays."""
+        chosen = self.variant.currentData()
+        with QSignalBlocker(self.variant):
+            self.variant.clear()
+            self.variant.add_choices([self._variants.get(name, Choice(name, name)) for name in names])
+            if chosen is not None:
+                self._choose_variant(chosen)
+
+    def show_settings(self, settings: DesignSettings) -> None:
+        """Show the document's settings without reporting them as gestures."""
+        self.form.show_settings(settings)
+        self.auto.setChecked(settings.auto_grid)
+        self._show_grid(self._chosen_grid if settings.auto_grid and self._chosen_grid else settings.grid)
+        if not self.regular.isSliderDown() and not self._let_go.isActive():
+            with QSignalBlocker(self.regular):
+                self.regular.setValue(round(POSITIONS * settings.regular))
+        self._show_start(settings.start)
+        self._has_second = settings.second is not None
+        self.second.show_second(settings.second, settings.phi)
+        self._show_second()
+        self._show_symmetry_tip()
+        self.rim.setToolTip(self.rim.about)
+        self._show_preference(fitted=settings.polish > 0 or settings.search > 0)
+
+    def _show_start(self, start: StartShape) -> None:
+        """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
+        self._start = start
+        listed = self.start.findData(start.name)
+        plain = replace(start, weight=USUAL_WEIGHT)
+        is_listed = 0 <= listed < len(STARTS) and plain == listed_start(start.name)
+        with QSignalBlocker(self.start):
+            loaded = self.start.findData(LOADED_START)
+            if loaded >= 0:
+                self.start.removeItem(loaded)
+            if not is_listed:
+                listed = len(STARTS)
+                self.start.insert_choice(listed, LOADED_START, start.name, "")
+            self.start.setCurrentIndex(listed)
+        self.start.setToolTip(f"{tr(START)}\n{self.start.about}")
+        with QSignalBlocker(self.start_weight):
+            self.start_weight.setValue(start.weight)
+        held = start.outline is not None
+        self.start_weight.setEnabled(held)
+        self.start_weight.setToolTip(
+            tr(START_WEIGHT, low=LIGHTEST_START, most=HEAVIEST) if held else tr(RECTANGLES_ARE_EXACT)
+        )
+
+    def _choose_polish(self, steps: int) -> None:
+        self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
+        self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
+
+    def _show_preference(self, fitted: bool) -> None:
+        self.prefer.setEnabled(fitted)
+        tip = tr("What polishing prefers among nearly equal matches. {about}", about=self.prefer.about)
+        self.prefer.setToolTip(tip if fitted else tr("What polishing prefers. Turn on Polish to use it."))
+
+    def _choose_variant(self, name: str) -> None:
+        known = self._variants.get(name)
+        self.variant.choose(name, name if known is None else known.label)
+        about = "" if known is None else tr(known.about)
+        self.variant.setToolTip(tr("Model that generates the designs. {about}", about=about).strip())
+
+
+def _voids(name: str, accessible: str, tip: str) -> QSpinBox:
+    box = QSpinBox()
+    box.setObjectName(name)
+    box.setRange(SMALLEST_GRID, LARGEST_GRID)
+    box.setToolTip(tip)
+    box.setAccessibleName(accessible)
+    return box
+
+
+def _side_by_side(*widgets: QWidget) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.setSpacing(4)
+    for widget in widgets:
+        row.addWidget(widget, 1 if isinstance(widget, QSpinBox) else 0)
+    return row

@@ -1,5 +1,0 @@
-"""Gestures on the target view -> changes of the target.
-
-A tool follows the pointer and the keys, paints what it is about to do, and hands over one :class:`Change` when the
-gesture is complete.  Tools know the drawing board in mm (``target.placed``) and no document.
-"""

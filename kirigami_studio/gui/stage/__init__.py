@@ -1,0 +1,1 @@
+"""The chosen design at any angle: the deployment slider, overlays, plots, artwork, and editing by hand."""

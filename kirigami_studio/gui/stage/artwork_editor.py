@@ -1,0 +1,204 @@
+"""Design > Artwork: the picture that is printed on the sheet, and how it lies."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QComboBox, QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from kirigami_studio.export.artwork import (
+    FEWEST_STRIPES,
+    LARGEST_SCALE,
+    MOST_STRIPES,
+    SMALLEST_SCALE,
+    ArtPicture,
+    Artwork,
+    Fitting,
+    State,
+)
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.widgets.card import muted_label
+from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
+
+#: Pixels.
+WIDTH = 330
+#: Farthest a picture is shifted, in sides of the box.
+FARTHEST = 5.0
+STATES = (
+    (State.TARGET, mark("Opened sheet"), mark("Seen whole when the sheet is open, cut up while it is flat")),
+    (State.FLAT, mark("Flat sheet"), mark("Seen whole while the sheet is flat, cut up when it is open")),
+)
+FITTINGS = (
+    (Fitting.FILL, mark("Fill"), mark("Cover all of the sheet")),
+    (Fitting.FIT, mark("Fit"), mark("Show all of the picture")),
+)
+NO_PICTURE = mark("No picture yet. Choose a photo, a PNG or an SVG: it is printed in register with the cuts.")
+
+
+class ArtworkEditor(QWidget):
+    """A small window beside the stage, which shows every change at once."""
+
+    picture_wanted = Signal()
+    removed = Signal()
+    second_wanted = Signal()
+    second_removed = Signal()
+    stripes_wanted = Signal(int)
+    changed = Signal(dict)  #: fields of Laid with their new values
+    edited = Signal()  #: the next change is an undo step of its own
+    export_wanted = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, Qt.WindowType.Tool)
+        self.setWindowTitle(tr("Artwork"))
+        self.setObjectName("artworkEditor")
+        self.about = QLabel(tr(NO_PICTURE))
+        self.about.setWordWrap(True)
+        self.choose = QPushButton(tr("&Choose picture …"))
+        self.choose.setToolTip(tr("Lay a picture on the sheet: PNG, JPG, BMP, TIFF, WebP or SVG"))
+        self.remove = QPushButton(tr("&Remove"))
+        self.remove.setToolTip(tr("Print nothing on the sheet"))
+        self.second = QPushButton(tr("&Second picture …"))
+        self.second.setToolTip(tr("Seen in the other state, in stripes between those of the first picture"))
+        self.remove_second = QPushButton(tr("Re&move"))
+        self.remove_second.setToolTip(tr("Print the first picture alone"))
+        self.about_second = muted_label()
+        self.export = QPushButton(tr("&Export artwork …"))
+        self.export.setObjectName("primary")
+        self.export.setToolTip(
+            tr(
+                "SVG and PDF in true mm and PNG at 300 dpi, in register with the cut file. The PDF has the pages that "
+                "are chosen for cuts."
+            )
+        )
+        self.state = self._choices(STATES)
+        self.fitting = self._choices(FITTINGS)
+        self.scale = self._field(100.0 * SMALLEST_SCALE, 100.0 * LARGEST_SCALE, tr(" %"), 5.0)
+        self.turn = self._field(-360.0, 360.0, "°", 5.0)
+        self.right = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
+        self.up = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
+        self.stripes = self._field(FEWEST_STRIPES, MOST_STRIPES, "", 10.0)
+        self.stripes.setDecimals(0)
+        self._fields = (self.state, self.fitting, self.scale, self.turn, self.right, self.up)
+        self._lay_out()
+        self._connect()
+        self.show_artwork(None, exportable=False)
+        # Over the stage's upper right corner: beside the candidates, off the target and the menus.
+        self.move(parent.mapToGlobal(QPoint(round(0.74 * parent.width()) - WIDTH, 120)))
+
+    @staticmethod
+    def _choices(table: tuple[tuple[State | Fitting, str, str], ...]) -> QComboBox:
+        box = QComboBox()
+        for row, (value, text, tip) in enumerate(table):
+            box.addItem(tr(text), value)
+            box.setItemData(row, tr(tip), Qt.ItemDataRole.ToolTipRole)
+        return box
+
+    @staticmethod
+    def _field(least: float, most: float, suffix: str, step: float) -> DecimalField:
+        field = DecimalField()
+        field.setRange(least, most)
+        field.setDecimals(1)
+        field.setSingleStep(step)
+        field.setSuffix(suffix)
+        number_field(field)
+        return field
+
+    def _lay_out(self) -> None:
+        column, form, above, below = QVBoxLayout(self), QFormLayout(), QHBoxLayout(), QHBoxLayout()
+        column.setContentsMargins(14, 14, 14, 14)
+        column.setSpacing(10)
+        column.addWidget(self.about)
+        above.addWidget(self.choose, 1)
+        above.addWidget(self.remove)
+        column.addLayout(above)
+        for caption, tip, field in (
+            (tr("&Whole on"), tr("The state in which the picture is seen as it is"), self.state),
+            (tr("&Size"), tr("How the picture lies in the box around that state"), self.fitting),
+            (tr("Sca&le"), tr("Times that size"), self.scale),
+            (tr("&Turn"), tr("Counter-clockwise, about the picture's middle"), self.turn),
+            (tr("To the r&ight"), tr("In widths of the box"), self.right),
+            (tr("&Up"), tr("In heights of the box"), self.up),
+        ):
+            field.setToolTip(tip)
+            label = QLabel(caption)
+            label.setBuddy(field)
+            form.addRow(label, field)
+        column.addLayout(form)
+        sharing, stripes = QHBoxLayout(), QFormLayout()
+        sharing.addWidget(self.second, 1)
+        sharing.addWidget(self.remove_second)
+        column.addLayout(sharing)
+        column.addWidget(self.about_second)
+        self.stripes.setToolTip(tr("Stripes of both pictures across the flat sheet"))
+        label = QLabel(tr("Stri&pes"))
+        label.setBuddy(self.stripes)
+        stripes.addRow(label, self.stripes)
+        column.addLayout(stripes)
+        below.addStretch(1)
+        below.addWidget(self.export)
+        column.addLayout(below)
+        self.setFixedWidth(WIDTH)
+
+    def _connect(self) -> None:
+        self.choose.clicked.connect(lambda: self.picture_wanted.emit())
+        self.remove.clicked.connect(lambda: self.removed.emit())
+        self.export.clicked.connect(lambda: self.export_wanted.emit())
+        self.second.clicked.connect(lambda: self.second_wanted.emit())
+        self.remove_second.clicked.connect(lambda: self.second_removed.emit())
+        self.stripes.valueChanged.connect(lambda value: self.stripes_wanted.emit(round(value)))
+        self.stripes.editingFinished.connect(self.edited)
+        self.state.activated.connect(lambda: self._change({"state": self.state.currentData()}, whole=True))
+        self.fitting.activated.connect(lambda: self._change({"fitting": self.fitting.currentData()}, whole=True))
+        self.scale.valueChanged.connect(lambda value: self._change({"scale": value / 100.0}))
+        self.turn.valueChanged.connect(lambda value: self._change({"turn": math.radians(value)}))
+        for field in (self.right, self.up):
+            field.valueChanged.connect(self._shift)
+        for field in (self.scale, self.turn, self.right, self.up):
+            field.editingFinished.connect(self.edited)
+
+    def _shift(self) -> None:
+        self._change({"shift": (self.right.value() / 100.0, self.up.value() / 100.0)})
+
+    def _change(self, changes: dict[str, object], whole: bool = False) -> None:
+        self.changed.emit(changes)
+        if whole:
+            self.edited.emit()
+
+    def show_artwork(self, artwork: Artwork | None, exportable: bool) -> None:
+        """Show what is printed now, and whether there is a design to print it on."""
+        for part in (*self._fields, self.remove):
+            part.setEnabled(artwork is not None)
+        self.export.setEnabled(artwork is not None and exportable)
+        self.second.setEnabled(artwork is not None)
+        second = None if artwork is None else artwork.second
+        for part in (self.remove_second, self.stripes):
+            part.setEnabled(second is not None)
+        self.about_second.setText("" if second is None else _described(second))
+        if artwork is None:
+            self.about.setText(tr(NO_PICTURE))
+            return
+        laid = artwork.first
+        self.about.setText(_described(laid.picture))
+        blockers = [QSignalBlocker(field) for field in (*self._fields, self.stripes)]
+        self.state.setCurrentIndex(self.state.findData(laid.state))
+        self.fitting.setCurrentIndex(self.fitting.findData(laid.fitting))
+        for field, value in (
+            (self.scale, 100.0 * laid.scale),
+            (self.turn, math.degrees(laid.turn)),
+            (self.right, 100.0 * laid.shift[0]),
+            (self.up, 100.0 * laid.shift[1]),
+            (self.stripes, float(artwork.stripes)),
+        ):
+            if abs(field.value() - value) > 0.05:
+                field.setValue(value)
+        for blocker in blockers:
+            blocker.unblock()
+
+
+def _described(picture: ArtPicture) -> str:
+    """The picture's name, not too long for a line, and its size."""
+    name, (width, height) = Path(picture.name), picture.size
+    short = name.name if len(name.name) <= 32 else f"{name.stem[:24]}…{name.suffix}"
+    return tr("{name}, {width} x {height} pixels", name=short, width=width, height=height)

@@ -1,0 +1,102 @@
+"""Jobs on artwork: read a picture, draw an SVG, paint the printed flat sheet that the moving panels are cut from."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QSize, Qt
+from PySide6.QtGui import QGuiApplication, QImage, QImageWriter, QPainter
+from PySide6.QtSvg import QSvgRenderer
+
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.export.artwork import ArtPicture, Artwork
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.steps import Cancel
+from kirigami_studio.gui.stage.artwork_items import ShownArtwork
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio import importing
+
+#: Pixels along the longer side of the flat sheet as it is shown: a view is seldom larger.
+SHOWN_SIDE = 1200
+#: Any width would do: what is shown is scaled.
+WIDTH_MM = 100.0
+#: Seconds of processor time that a document may take to be drawn, and how much smaller it is drawn before.
+MOST_SECONDS, REDUCTIONS = 3.0, (128, 64, 32, 16, 8, 4, 2, 1)
+#: Command lines have no display; text needs an application all the same, because it has the fonts.
+_APPLICATION: list[QGuiApplication] = []
+
+
+def reading_artwork(path: Path, cancel: Cancel) -> Iterator[ArtPicture]:
+    """Read a picture file for printing."""
+    importing.import_pictures()
+    from kirigami_studio.export.artwork_picture import read_picture
+
+    yield read_picture(path, svg_to_png)
+
+
+def painting_artwork(
+    artwork: Artwork, design: PosedDesign, target: Outline | None, cancel: Cancel
+) -> Iterator[ShownArtwork]:
+    """Paint the flat sheet of a design as it would be printed."""
+    importing.import_exporters()
+    from kirigami_studio.export.artwork_patches import PrintedSheet, printed_patches
+    from kirigami_studio.export.artwork_raster import Page, paint
+    from kirigami_studio.foundation.units import MM_PER_INCH
+
+    sheet = PrintedSheet.uncut(design, None if target is None else target.points, WIDTH_MM)
+    points = sheet.corners.reshape(-1, 2)
+    low, high = points.min(axis=0), points.max(axis=0)
+    dpi = SHOWN_SIDE / float((high - low).max()) * MM_PER_INCH
+    page = Page((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
+    pixels = np.asarray(paint(printed_patches(artwork, sheet, 0.0, 0.0), page))
+    height, width, _ = pixels.shape
+    image = QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)
+    shown = image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)  # its own copy of the pixels
+    yield ShownArtwork(artwork, sheet, shown, complex(page.low[0], page.high[1]), page.dots_per_mm)
+
+
+def _drawn(renderer: QSvgRenderer, size: QSize) -> QImage:
+    image = QImage(QSize(1, 1).expandedTo(size), QImage.Format.Format_ARGB32_Premultiplied)
+    image.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(image)
+    renderer.render(painter)
+    painter.end()
+    return image
+
+
+def svg_to_png(content: bytes, side: int) -> bytes:
+    """Draw an SVG document on nothing, for the window and for the command line, which has no drawing of its own.
+
+    Qt draws SVG Tiny 1.2 and a part of SVG 1.1: shapes, gradients, pictures and text, but not every filter.
+
+    Parameters
+    ----------
+    content : bytes
+    side : int
+        Pixels along the longer side of the document's page.
+
+    Raises
+    ------
+    TargetError
+        It cannot be drawn, or not in a few seconds.
+    """
+    if QGuiApplication.instance() is None:
+        _APPLICATION.append(QGuiApplication(["kirigami-studio", "-platform", "offscreen"]))
+    renderer = QSvgRenderer(QByteArray(content))
+    page = renderer.viewBoxF().size() if not renderer.viewBoxF().isEmpty() else renderer.defaultSize().toSizeF()
+    if not renderer.isValid() or page.isEmpty():
+        raise TargetError("artwork.svg_not_drawn")
+    # Nothing can stop a drawing that is under way: small ones tell how long the next, of twice the side, may take.
+    for reduction in REDUCTIONS:
+        begun = time.thread_time()
+        image = _drawn(renderer, (page * (side / reduction / max(page.width(), page.height()))).toSize())
+        if reduction > 1 and time.thread_time() - begun > MOST_SECONDS / 4:
+            raise TargetError("artwork.svg_too_slow", seconds=MOST_SECONDS)
+    stored = QByteArray()
+    buffer = QBuffer(stored)
+    buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+    QImageWriter(buffer, QByteArray(b"PNG")).write(image)
+    return bytes(stored.data())

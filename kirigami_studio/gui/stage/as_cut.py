@@ -1,0 +1,187 @@
+"""How designs do as cut, found out in the worker: the one on the stage simulated, all others estimated."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.project.sheet_size import cut_for
+from kirigami_studio.studio.designing import one_sheet
+from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
+
+#: Sheets that are kept; one of 10 x 10 voids takes about half a megabyte.
+CAPACITY = 32
+#: Changes that follow each other faster than this (ms) lead to one estimate.
+ESTIMATE_DELAY_MS = 250
+#: A design, how it is cut, and its target.
+Key = tuple[Candidate, FabricationSettings, Outline | None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AsCutState:
+    """What is known of the design on the stage.
+
+    Attributes
+    ----------
+    sheet : SimulatedSheet or None
+    busy : bool
+        Whether it is being found out.
+    problem : str
+        Why it cannot be found out, "" if it can.
+    """
+
+    sheet: SimulatedSheet | None = None
+    busy: bool = False
+    problem: str = ""
+
+
+UNKNOWN, BUSY = AsCutState(), AsCutState(busy=True)
+
+
+class AsCutReader(QObject):
+    """Closes at most one sheet at a time; a new plan takes the place of the one before."""
+
+    changed = Signal(AsCutState)
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob["SimulatedSheet | None"](session.queue)
+        self._known: OrderedDict[Key, SimulatedSheet] = OrderedDict()
+        self._candidate: Candidate | None = None
+        self.state = UNKNOWN
+        session.display.stage_changed.connect(self._take_stage)
+        session.display.settled.connect(self._wait)
+        session.fabrication_changed.connect(self._wait)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a sheet is being closed."""
+        return self._job.busy
+
+    def forget(self) -> None:
+        """The design is about to be planned anew: stop, and say that nothing is known."""
+        self._drop()
+        self._say(UNKNOWN)
+
+    def _drop(self) -> None:
+        self._job.stop()
+        self._candidate = None
+
+    def _wait(self) -> None:
+        """The design on the stage is about to be planned."""
+        self._drop()
+        self._say(UNKNOWN if self._session.stage is None else BUSY)
+
+    def read(self, request: CutRequest, made: Planned) -> None:
+        """Close a sheet whose cuts are planned, unless that was done before."""
+        stage = self._session.stage
+        if stage is None or stage.candidate != request.candidate:
+            return
+        self._job.stop()
+        self._candidate = request.candidate
+        # What files are written for does not matter to the sheet.
+        settings = one_sheet(request.settings)
+        key = (request.candidate, settings, request.target)
+        if key in self._known:
+            self._known.move_to_end(key)
+            self._say(AsCutState(self._known[key]))
+            return
+        callbacks = JobCallbacks(partial(self._take, key), on_failed=self._fail)
+        self._job.start(tr("closing the sheet as cut"), partial(simulating, request, made), callbacks)
+        self._say(BUSY)
+
+    def _take_stage(self, entry: Entry | None) -> None:
+        if entry is None or entry.candidate != self._candidate:
+            self.forget()
+
+    def _take(self, key: Key, found: SimulatedSheet | None) -> None:
+        if found is None:
+            return
+        self._known[key] = found
+        while len(self._known) > CAPACITY:
+            self._known.popitem(last=False)
+        self._say(AsCutState(found))
+
+    def _fail(self, sentence: str, trace: str) -> None:
+        self._say(AsCutState(problem=sentence))
+
+    def _say(self, state: AsCutState) -> None:
+        if state is not self.state:
+            self.state = state
+            self.changed.emit(state)
+
+
+class AsCutEstimates(QObject):
+    """Estimates for all designs of the gallery whether they close, once more when material, widths or style change."""
+
+    changed = Signal(object)  #: dict of Candidate to AsCut, as far as they are known
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._job = LatestJob[Estimated](session.queue)
+        self._entries: tuple[Entry, ...] = ()
+        self._settings: FabricationSettings | None = None
+        self.known: dict[Candidate, AsCut] = {}
+        self.strain_limit = math.inf  #: of the material that they were estimated in
+        self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
+        self._timer.timeout.connect(self._begin)
+        session.display.gallery_reset.connect(self._take_entries)
+        session.fabrication_changed.connect(self._timer.start)
+
+    @property
+    def busy(self) -> bool:
+        """Whether designs are still to be estimated."""
+        return self._job.busy or self._timer.isActive()
+
+    def close(self) -> None:
+        """Estimate no more."""
+        self._timer.stop()
+
+    def _take_entries(self, entries: tuple[Entry, ...]) -> None:
+        self._entries = entries
+        self._timer.start()
+
+    def _begin(self) -> None:
+        self._job.stop()
+        document = self._session.document
+        settings = one_sheet(document.fabrication)
+        if settings.opened_mm is not None:  # every design has the width of its own that opens to this size
+            settings = replace(settings, width_mm=settings.opened_mm)
+        there = {entry.candidate for entry in self._entries}
+        before = self.known
+        if settings != self._settings:
+            self._settings, self.known = settings, {}
+        self.known = {candidate: found for candidate, found in self.known.items() if candidate in there}
+        if before:
+            self.changed.emit(dict(self.known))
+        missing = tuple(
+            (entry.candidate, entry.design.deployment, one_sheet(cut_for(document, entry.candidate)))
+            for entry in self._entries
+            if entry.candidate not in self.known
+        )
+        if missing:
+            steps = partial(estimating, missing)
+            self._job.start(tr("estimating the designs as cut"), steps, JobCallbacks(self._take, self._tell))
+
+    def _take(self, report: Estimated) -> None:
+        self.known.update(report.found)
+        self.strain_limit = report.strain_limit
+
+    def _tell(self) -> None:
+        self.changed.emit(dict(self.known))

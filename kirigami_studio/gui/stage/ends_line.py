@@ -1,0 +1,134 @@
+"""What lies at the two ends of the slider, and at a second target: pictures, names, sizes and matches."""
+
+from __future__ import annotations
+
+import math
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QSizePolicy, QWidget
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.studio.two_states import TwoStates
+
+#: Edge of a picture (pixels), and room between it and the words.
+PICTURE, GAP = 20, 9
+
+
+class EndsLine(QWidget):
+    """Buttons below the slider; each names an end of the motion, or the second target between them, and goes there."""
+
+    phi_wanted = Signal(float)  #: radians
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.start = EndButton("flatEnd", Qt.AlignmentFlag.AlignLeft)
+        self.passed = EndButton("passedState", Qt.AlignmentFlag.AlignHCenter)
+        self.target = EndButton("openEnd", Qt.AlignmentFlag.AlignRight)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(10)
+        for button in (self.start, self.passed, self.target):
+            row.addWidget(button, 1)
+            button.clicked.connect(lambda _=False, button=button: self.phi_wanted.emit(button.phi))
+        self.passed.hide()
+        self._named = self._low = False
+        self.show_states(None)
+
+    def show_states(self, states: TwoStates | None) -> None:
+        """Name both ends of a design, and what it passes; nothing without one."""
+        self._named = states is not None
+        self.setVisible(self._named and not self._low)
+        if states is None:
+            return
+        start, target, passed = states.start, states.target, states.passed
+        tip = tr("{state}. Click to close the sheet.", state=states.flat_line())
+        self.start.show_state(math.pi, start.outline, start.texts(), tip)
+        tip = tr("{state}. Click to open the sheet.", state=states.open_line())
+        self.target.show_state(states.phi, target.outline, target.texts(), tip)
+        self.passed.setVisible(passed is not None)
+        if passed is not None:
+            tip = tr("{state}. Click to go there.", state=passed.line())
+            self.passed.show_state(passed.phi, passed.outline, passed.texts(), tip)
+
+    def set_low(self, low: bool) -> None:
+        """Leave room to the drawing in a low panel; the status line tells both matches, too."""
+        self._low = low
+        self.setVisible(self._named and not self._low)
+
+
+class EndButton(QAbstractButton):
+    """A small outline and the longest text that fits, aligned to a side; the start at the left is that of a sheet.
+
+    Attributes
+    ----------
+    phi : float, radians
+        The angle that it goes to.
+    """
+
+    def __init__(self, name: str, side: Qt.AlignmentFlag) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.phi = math.pi
+        self._side = side
+        self._outline: FloatArray | None = None
+        self._texts: tuple[str, ...] = ("",)
+        self._palette: Palette = LIGHT
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+    def show_state(self, phi: float, outline: FloatArray, texts: tuple[str, ...], tip: str) -> None:
+        """Show what there is at an angle (radians): an outline (P, 2), and what is known of it, longest text first."""
+        self.phi, self._outline, self._texts = phi, outline, texts
+        self.setToolTip(tip)
+        self.setAccessibleName(texts[0])
+        self.setAccessibleDescription(tip)
+        self.update()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self.update()
+
+    def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(160, PICTURE + 4)
+
+    def drawn_text(self) -> str:
+        """What is shown at the present width."""
+        return fitted(self.fontMetrics(), self._texts, self.width() - PICTURE - GAP - 4)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        if self._outline is None:
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.hasFocus() or self.underMouse():
+            painter.setPen(QPen(QColor(self._palette.accent if self.hasFocus() else self._palette.border), 1.0))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 5, 5)
+        text, at_left, at_right = self.drawn_text(), Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
+        left, words = 2.0, QRectF(self.rect()).adjusted(PICTURE + GAP, 0, 0, 0)
+        if self._side is at_right:
+            left, words = self.width() - PICTURE - 2.0, QRectF(self.rect()).adjusted(0, 0, -PICTURE - GAP, 0)
+        elif self._side is not at_left:
+            left = max(left, 0.5 * (self.width() - PICTURE - GAP - self.fontMetrics().horizontalAdvance(text)))
+            words.setLeft(left + PICTURE + GAP - 2.0)
+        is_sheet = self._side is at_left
+        paint_end(painter, QRectF(left, 2.0, PICTURE, PICTURE), self._outline, is_sheet, self._palette)
+        painter.setPen(QColor(self._palette.muted))
+        aligned = at_right if self._side is at_right else at_left
+        painter.drawText(words, int(aligned | Qt.AlignmentFlag.AlignVCenter), text)
+        painter.end()
+
+
+def paint_end(painter: QPainter, box: QRectF, outline: FloatArray, sheet: bool, palette: Palette) -> None:
+    """Draw an outline (P, 2), y up, as large as fits: a sheet is blue, a target orange."""
+    transform = ViewTransform.fitting(Bounds.of(outline), box, 1.0)
+    paint = paint_start_shape if sheet else paint_target_shape
+    paint(painter, transform.to_pixels(outline), palette, 1.4)

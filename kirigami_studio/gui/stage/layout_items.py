@@ -1,0 +1,191 @@
+"""Paint the sheet, large and as a small picture: panels in two blues show which way each one turns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, QSizeF, Qt
+from PySide6.QtGui import QColor, QPaintEngine, QPainter, QPen, QPixmap
+
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.gui.widgets.paths import DOZEN, line_path, paths_of_quads, round_pen
+from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
+from kirigami_studio.gui.widgets.theme import Palette
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.outlines.outline import Outline
+
+#: Panels smaller than this (pixels) get no line: it would swallow them.
+SMALLEST_LINED_PANEL = 3.6
+#: Pixels around the picture of a target, and around the pictures on a card.
+MARGIN, CARD_MARGIN = 6.0, 3.5
+#: Radius (pixels) of the ring around the smallest edge or neck.
+RING = 7.0
+#: Share of a card's picture that the sheet over its target gets; the rest shows it flat.
+TARGET_SHARE = 0.56
+
+
+def paint_panels(
+    painter: QPainter,
+    panels: FloatArray,
+    turns_left: BoolArray,
+    palette: Palette,
+    trimmed: Mapping[int, FloatArray] | None = None,
+) -> None:
+    """Fill all panels.
+
+    Parameters
+    ----------
+    panels : (K, 4, 2) float, pixels
+    turns_left : (K,) bool
+        Panels that turn counter-clockwise while the sheet opens get the lighter blue.
+    trimmed : mapping of row to (P, 2) float, pixels, optional
+        What trimming has left of panels, drawn instead of them.
+    """
+    trimmed = trimmed or {}
+    whole = np.ones(len(panels), dtype=np.bool_)
+    whole[list(trimmed)] = False
+    size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
+    line = QPen(Qt.PenStyle.NoPen)
+    if size >= SMALLEST_LINED_PANEL:
+        line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6 if size > 6 else 0.4)
+        line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
+    # In a drawing that is saved, every panel is a shape of its own.
+    together = 1 if painter.paintEngine().type() is QPaintEngine.Type.SVG else DOZEN
+    for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
+        # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
+        painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
+        painter.setBrush(QColor(colour))
+        for path in paths_of_quads(panels[chosen & whole], together):
+            painter.drawPath(path)
+        for row, part in trimmed.items():
+            if chosen[row] and len(part):
+                painter.drawPath(line_path(part, closed=True))
+
+
+def turning_left(rows: int, columns: int) -> BoolArray:
+    """Which of the (rows + 1)(columns + 1) panels turn counter-clockwise: those with I + J odd."""
+    odd: BoolArray = np.add.outer(np.arange(rows + 1), np.arange(columns + 1)) % 2 == 1
+    return odd.reshape(-1)
+
+
+def paint_candidate(
+    painter: QPainter, rect: QRectF, design: PosedDesign, target: Outline | None, palette: Palette
+) -> None:
+    """Draw one design and its target into ``rect``."""
+    nodes = design.nodes(design.phi_target)
+    bounds = Bounds.of(nodes)
+    if target is not None:
+        bounds = bounds.united(Bounds.of(target.points))
+    transform = ViewTransform.fitting(bounds, rect, CARD_MARGIN)
+    field = design.deployment.field
+    trimmed = {row: transform.to_pixels(part) for row, part in design.kept(nodes, design.phi_target).items()}
+    panels = transform.to_pixels(design.panels(nodes))
+    paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
+    if target is not None:
+        paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
+
+
+def paint_flat(painter: QPainter, rect: QRectF, design: PosedDesign, palette: Palette) -> None:
+    """Draw the sheet as it is cut, upright, into ``rect``."""
+    flat = PosedDesign(design.deployment, Similarity(), math.pi, design.trim)
+    nodes = flat.nodes(math.pi)
+    transform = ViewTransform.fitting(Bounds.of(nodes), rect, CARD_MARGIN)
+    trimmed = {row: transform.to_pixels(part) for row, part in flat.kept(nodes, math.pi).items()}
+    turning = turning_left(*design.deployment.sheet.grid)
+    paint_panels(painter, transform.to_pixels(flat.panels(nodes)), turning, palette, trimmed)
+
+
+def candidate_pixmap(
+    design: PosedDesign, target: Outline | None, size: QSize, ratio: float, palette: Palette
+) -> QPixmap:
+    """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat."""
+    pixmap = _blank(size, ratio)
+    painter = _painter(pixmap)
+    width, height = TARGET_SHARE * size.width(), float(size.height())
+    paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
+    paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
+    painter.end()
+    return pixmap
+
+
+def states_pixmap(
+    design: PosedDesign,
+    target: Outline | None,
+    size: QSize,
+    ratio: float,
+    palette: Palette,
+    as_cut: bool = False,
+    ringed: bool = False,
+) -> QPixmap:
+    """Return a design flat, half way and over its target side by side, to one scale; ``size`` in logical pixels.
+
+    ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck.
+    """
+    pixmap = _blank(size, ratio)
+    painter = _painter(pixmap)
+    angles = (math.pi, 0.5 * (math.pi + design.phi_target), design.phi_target)
+    upright = PosedDesign(design.deployment, Similarity(design.pose.scale), math.pi, design.trim)
+    poses = (upright if as_cut else design, design, design)
+    shown = [posed.nodes(phi) for posed, phi in zip(poses, angles, strict=True)]
+    boxes = [Bounds.of(nodes) for nodes in shown]
+    if target is not None:
+        boxes[-1] = boxes[-1].united(Bounds.of(target.points))
+    spans = [max(box.right - box.left, box.top - box.bottom) for box in boxes]
+    side, turning = size.width() / len(angles), turning_left(*design.deployment.sheet.grid)
+    for number, (posed, phi, nodes, box, span) in enumerate(zip(poses, angles, shown, boxes, spans, strict=True)):
+        edge = (min(side, size.height()) - 2 * CARD_MARGIN) * span / max(spans)
+        middle = QPointF((number + 0.5) * side, 0.5 * size.height())
+        transform = ViewTransform.fitting(box, QRectF(middle - QPointF(edge, edge) / 2, QSizeF(edge, edge)))
+        trimmed = {row: transform.to_pixels(part) for row, part in posed.kept(nodes, phi).items()}
+        panels = transform.to_pixels(posed.panels(nodes))
+        paint_panels(painter, panels, turning, palette, trimmed)
+        if ringed and number == 0:
+            _paint_ring(painter, panels[[row for row in range(len(panels)) if row not in trimmed]], palette)
+    if target is not None:
+        painter.setPen(round_pen(palette.target, 1.2))  # no halo: in so small a picture it would hide the rim's panels
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPath(line_path(transform.to_pixels(target.points), closed=True))
+    painter.end()
+    return pixmap
+
+
+def _paint_ring(painter: QPainter, panels: FloatArray, palette: Palette) -> None:
+    """Ring the smallest edge or neck of panels (K, 4, 2), pixels."""
+    found = [smallest_edge(list(panels), 0.0), smallest_neck(list(panels), 0.0)]
+    places = [place for place in found if place is not None]
+    if places:
+        x, y = min(places, key=lambda place: place.size_mm).where
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for colour, width in ((palette.fault_line, 4.0), (palette.fault, 2.0)):
+            painter.setPen(QPen(QColor(colour), width))
+            painter.drawEllipse(QPointF(x, y), RING, RING)
+
+
+def target_pixmap(
+    target: Outline, size: QSize, ratio: float, palette: Palette, margin: float = MARGIN, line: float = 2.0
+) -> QPixmap:
+    """Return a target's picture for lists; ``size``, ``margin`` and width of the ``line`` in logical pixels."""
+    pixmap = _blank(size, ratio)
+    painter = _painter(pixmap)
+    transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), margin)
+    paint_target_shape(painter, transform.to_pixels(target.points), palette, line)
+    painter.end()
+    return pixmap
+
+
+def _blank(size: QSize, ratio: float) -> QPixmap:
+    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    return pixmap
+
+
+def _painter(pixmap: QPixmap) -> QPainter:
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    return painter

@@ -1,0 +1,622 @@
+"""The sheet at any angle over its target, and the tour from fault to fault."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
+from PySide6.QtWidgets import QWidget
+
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.score import Score
+from kirigami_studio.evaluate.second_target import SecondMatch
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.session.overlays import USUAL, Overlay
+from kirigami_studio.gui.stage.artwork_items import ShownArtwork, paint_artwork
+from kirigami_studio.gui.stage.connector_items import STRETCH_TITLE, paint_stretch, stretch_scale
+from kirigami_studio.gui.stage.fault_items import (
+    Fault,
+    FaultKind,
+    contact_place,
+    crossing_place,
+    faults,
+    inverted_panels,
+    paint_fault,
+)
+from kirigami_studio.gui.stage.grip_items import GripPlaces, grip_places, paint_grips
+from kirigami_studio.gui.stage.gripping import UNKNOWN as GRIPS_UNKNOWN
+from kirigami_studio.gui.stage.gripping import GripState
+from kirigami_studio.gui.stage.layout_items import paint_panels, turning_left
+from kirigami_studio.gui.stage.layout_labels import (
+    SmallPart,
+    heat_tiles,
+    paint_dimension,
+    paint_heat,
+    paint_numbers,
+    paint_shaded,
+    quad_areas,
+    room_in,
+    smallest_parts,
+)
+from kirigami_studio.gui.stage.void_gestures import VoidGestures
+from kirigami_studio.gui.stage.void_items import VoidShapes, steady
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.colour_scale import (
+    OPENING_TITLE,
+    RATIO_TITLE,
+    ColourScale,
+    bar_boxes,
+    opening_scale,
+    paint_colour_bars,
+    ratio_scale,
+)
+from kirigami_studio.gui.widgets.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
+from kirigami_studio.gui.widgets.mismatch_items import (
+    Mismatch,
+    design_mismatch,
+    difference_chips,
+    paint_mismatch,
+    usual_chips,
+)
+from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.outlines.outline import Outline
+
+if TYPE_CHECKING:
+    from kirigami_studio.mechanics.gripping import Gripping
+    from kirigami_studio.studio.as_cut import SimulatedSheet
+
+#: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
+COMPARED_WITHIN = math.radians(12.0)
+#: Opacity of the target's outline there.
+FAINT = 0.4
+#: Width (mm) of the flat sheet until it is known.
+USUAL_WIDTH_MM = 100.0
+#: Pixels around a fault's middle that belong to its sign.
+FAULT_REACH = 12.0
+#: Radians past the first contact from which the place of the overlap at that angle is marked as well.
+NEAR_CONTACT = math.radians(0.5)
+#: The greatest distance between sheet and target is marked from this length (pixels) on.
+SHORTEST_GAP = 6.0
+#: Narrower than this (pixels) the legend says less.
+NARROW = 440
+#: Pixels from the top that the caption takes.
+CAPTION_HEIGHT = 44.0
+#: What panels look like below artwork that does not cover them.
+PAPER = "#ffffff"
+#: How much a fault is enlarged over the fitted picture.
+CLOSE_UP = 5.0
+#: Designs whose facts are kept: a step back in the history shows one of them again.
+KEPT_FACTS = 64
+#: A mouse that moves less than this (pixels) between press and release has clicked.
+STILL = 4.0
+
+
+#: What the status line says of a fault that was clicked.
+FAULT_SENTENCES = {
+    FaultKind.INVERTED: mark("Inverted or collapsed panel."),
+    FaultKind.CONTACT: mark("First contact during deployment."),
+    FaultKind.CROSSING: mark("The sheet overlaps itself here."),
+}
+#: Overlays that a colour bar explains.
+BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Overlay.STRETCH: STRETCH_TITLE}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigidFacts:
+    """What is the same of a design at every angle, because its panels are rigid.
+
+    Attributes
+    ----------
+    inverted : (K,) bool
+        Panels that are inverted or collapsed.
+    small : tuple of SmallPart
+        Its smallest parts; panels that were trimmed are left out.
+    largest_opening : float, world
+        Area of the void that opens widest.
+    """
+
+    inverted: BoolArray
+    small: tuple[SmallPart, ...]
+    largest_opening: float
+
+    @classmethod
+    @lru_cache(maxsize=KEPT_FACTS)
+    def of(cls, design: PosedDesign) -> RigidFacts:
+        """Measure a design, once."""
+        panels, trim = design.panels(design.nodes(design.phi_target)), design.trim
+        trimmed = () if trim is None else (row for row, part in enumerate(trim.kept) if part is not None)
+        small = tuple(smallest_parts(panels, frozenset(trimmed)))
+        opened = quad_areas(design.voids(design.nodes(0.5 * math.pi)))
+        return cls(inverted_panels(panels), small, float(opened.max()))
+
+
+@lru_cache(maxsize=KEPT_FACTS)
+def _extent(design: PosedDesign) -> FloatArray:
+    """The box around the motion of a design: 2 ms for 24 x 24 voids."""
+    return design.extent()
+
+
+class LayoutView(Canvas):
+    """Draws one design at the current angle; all is computed while painting, so slider storms cost nothing."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._design: PosedDesign | None = None
+        self._rigid = RigidFacts(np.zeros(0, dtype=np.bool_), (), 0.0)
+        self._contact: FloatArray | None = None
+        self._contact_phi: float | None = None
+        self._target: Outline | None = None
+        self._second: tuple[float, FloatArray] | None = None
+        self._bounds: Bounds | None = None
+        self._phi = math.pi
+        self._overlays: frozenset[Overlay] = USUAL
+        self._wanted = USUAL  #: what was asked for, also while a plain picture is taken
+        self._width_mm = USUAL_WIDTH_MM
+        self._scales: list[ColourScale] = []
+        self._cut: SimulatedSheet | None = None
+        self._artwork: ShownArtwork | None = None
+        self._grips = GRIPS_UNKNOWN
+        self._overstretched = 0
+        self._areas: Mismatch | None = None
+        self._faults: tuple[Fault, ...] = ()
+        self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
+        self._caption = ""
+        self._box: tuple[tuple[object, ...], QRectF] | None = None  #: what it depends on, and the scene's box
+        self.voids = VoidGestures(self, self._void_shapes)
+        self.setObjectName("layoutView")
+        self.setAccessibleName(tr("Layout of the chosen design"))
+        self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
+
+    @property
+    def phi(self) -> float:
+        """Angle that is shown, radians."""
+        return self._phi
+
+    @property
+    def design(self) -> PosedDesign | None:
+        """The design that is drawn."""
+        return self._design
+
+    @property
+    def second(self) -> tuple[float, FloatArray] | None:
+        """Angle (radians) of the second target, and its outline (P, 2) over the sheet there; None without one."""
+        return self._second
+
+    @property
+    def artwork(self) -> ShownArtwork | None:
+        """The printed sheet of the last design that was painted."""
+        return self._artwork
+
+    @property
+    def areas(self) -> Mismatch | None:
+        """Missing and extra area of the last painted picture, when that overlay is on."""
+        return self._areas
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """Marked places of the last painted picture."""
+        return self._faults
+
+    @property
+    def overlays(self) -> frozenset[Overlay]:
+        return self._overlays
+
+    def show_design(
+        self,
+        design: PosedDesign | None,
+        score: Score | None,
+        target: Outline | None,
+        second: SecondMatch | None = None,
+    ) -> None:
+        """Show another design; without one the target it is to be for, without that the empty state.
+
+        ``second`` is how this very sheet shows a second target.
+        """
+        self._design, self._target, self._cut, self._second = design, target, None, None
+        self._areas, self._faults = None, ()
+        before, self._bounds = self._bounds, None
+        if design is not None:
+            self._rigid = RigidFacts.of(design)
+            self._bounds = Bounds.of(_extent(design))
+            self._contact = None if score is None else contact_place(design, score)
+            self._contact_phi = None if score is None or score.contact is None else score.contact.phi
+            if target is not None:
+                self._bounds = self._bounds.united(Bounds.of(target.points))
+            if second is not None:
+                line = second.match.transform.inverse().apply(second.target.outline.points)
+                self._second = second.target.phi, design.to_world(line, second.target.phi)
+                self._bounds = self._bounds.united(Bounds.of(self._second[1]))
+            if self.voids.on and before is not None:
+                self._bounds = steady(before, self._bounds)
+        elif target is not None:
+            self._bounds = Bounds.of(target.points)
+        self.voids.follow()
+        self.update()
+
+    def show_draft(self, design: PosedDesign) -> None:
+        """Show a design that is being edited by hand, without fitting the view again."""
+        self._design, self._cut, self._second = design, None, None
+        self._areas, self._faults, self._contact = None, (), None
+        self._rigid = RigidFacts.of(design)
+        self.update()
+
+    def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
+        """Show how much the connectors of the design are stretched; None where that is not known."""
+        if sheet is not self._cut:
+            self._cut = sheet
+            self.update()
+
+    def show_artwork(self, shown: ShownArtwork | None) -> None:
+        """Show the printed sheet of a design on its panels; None where nothing is printed."""
+        self._artwork = shown
+        self.update()
+
+    def show_grips(self, state: GripState) -> None:
+        """Show where to hold and to pull the design as cut."""
+        self._grips = state
+        self.update()
+
+    def _void_shapes(self) -> VoidShapes | None:
+        transform = self.transform()
+        return None if self._design is None or transform is None else VoidShapes.of(self._design, self._phi, transform)
+
+    def set_phi(self, phi: float) -> None:
+        """Show another angle, radians."""
+        self._phi = phi
+        self.voids.follow()
+        self.update()
+
+    def set_overlays(self, overlays: frozenset[Overlay]) -> None:
+        """Choose what is drawn over the panels."""
+        self._overlays = self._wanted = overlays
+        self.update()
+
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Set the width of the flat sheet, mm: all lengths on the drawing follow from it."""
+        if width_mm != self._width_mm:
+            self._width_mm = width_mm
+            self.update()
+
+    @property
+    def mm_per_unit(self) -> float:
+        """Millimetres of one world unit; 0 while there is no design."""
+        return 0.0 if self._design is None else self._design.mm_per_world(self._width_mm)
+
+    @property
+    def scales(self) -> list[ColourScale]:
+        """Colour bars of the last painted picture."""
+        return self._scales
+
+    def find_faults(self) -> tuple[Fault, ...]:
+        """All faults of the design at the angle that is shown, whether they are marked or not."""
+        design = self._design
+        if design is None:
+            return ()
+        found = list(faults(design.panels(design.nodes(self._phi)), self._rigid.inverted, self._contact))
+        found = [replace(one, phi=self._contact_phi) if one.kind is FaultKind.CONTACT else one for one in found]
+        beyond = self._contact_phi if self._contact_phi is not None else design.phi_target
+        if self._phi < beyond - NEAR_CONTACT:  # the way there is known to be free
+            place = crossing_place(design, self._phi)
+            if place is not None:
+                found.append(Fault(FaultKind.CROSSING, (float(place[0]), float(place[1]))))
+        return tuple(found)
+
+    def fault_at(self, pixel: QPointF) -> Fault | None:
+        """The marked fault under a pixel, if any."""
+        transform = self.transform()
+        if transform is None:
+            return None
+        for fault in self._faults:
+            x, y = transform.to_pixels(np.array(fault.where)).tolist()
+            if math.hypot(x - pixel.x(), y - pixel.y()) <= FAULT_REACH:
+                return fault
+        return None
+
+    def set_hint(self, icon: str, headline: str, hint: str) -> None:
+        """Say in the empty view what to do next."""
+        self._hint = (icon, headline, hint)
+        self.update()
+
+    @property
+    def caption(self) -> str:
+        """What the upper left corner says."""
+        return self._caption
+
+    def set_caption(self, text: str) -> None:
+        """Show in the upper left corner what does not fit into the header."""
+        self._caption = text
+        self.update()
+
+    def empty_state(self) -> tuple[str, str, str]:
+        return self._hint
+
+    def scene_bounds(self) -> Bounds | None:
+        return self._bounds
+
+    def scene_box(self) -> QRectF:
+        """Beside the legends that are on, at every angle alike, so that the picture rests while the sheet moves."""
+        legend = Overlay.MISMATCH in self._wanted and self._target is not None
+        size, font = (self.width(), self.height()), self.font().key()
+        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top())
+        if self._box is None or self._box[0] != key:  # asked for several times in every paint event
+            self._box = (key, self._find_box(legend))
+        return self._box[1]
+
+    def _find_box(self, legend: bool) -> QRectF:
+        view, bounds = QRectF(self.rect()), self.scene_bounds()
+        if bounds is None:
+            return view
+        metrics = self.fontMetrics()
+        titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
+        legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
+        if legend:
+            chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
+            legends += legend_boxes(chips, metrics, self.width(), self.height())
+        return clear_box(bounds, view, self.margin(), legends)
+
+    @property
+    def overstretched(self) -> int:
+        """How many connectors of the last painted picture are stretched by more than they tolerate."""
+        return self._overstretched
+
+    def _bars_top(self) -> float:
+        return CAPTION_HEIGHT if self._caption else 10.0
+
+    def _fitting(self, versions: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
+        """The first of these legends that fits into one row, else the last."""
+        for chips in versions:
+            rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
+            if len(rows) <= 1 and self.width() >= NARROW:
+                return chips
+        return versions[-1]
+
+    def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
+        """What the labels at the bottom say, and where (pixels)."""
+        found = []
+        if self._faults:
+            count = len(self._faults)
+            found = [Chip((self.palette_.fault,), tr_n("{count} fault", "{count} faults", count))]
+        if self.overstretched:
+            words = tr_n(
+                "{count} connector stretched too far", "{count} connectors stretched too far", self.overstretched
+            )
+            found.append(Chip((self.palette_.fault,), words))
+        found += self._grip_chips()
+        chips = found
+        if self._areas is not None:
+            areas, mm = self._areas, self.mm_per_unit
+            versions = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
+            chips = self._fitting(versions, metrics)
+        return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
+
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
+        if self._design is None:
+            if self._target is not None:
+                paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
+            return
+        nodes = self._design.nodes(self._phi)
+        field = self._design.deployment.field
+        panels = transform.to_pixels(self._design.panels(nodes))
+        trimmed = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
+        palette = self.palette_
+        if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
+            palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
+        artwork = self._painted_artwork(painter)
+        if artwork is not None:
+            palette = replace(palette, panel_even=PAPER, panel_odd=PAPER, panel_line=palette.muted)
+        paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
+        if artwork is not None:
+            paint_artwork(painter, artwork, self._phi, panels, trimmed, transform)
+        self._paint_voids(painter, transform, nodes)
+        if self._target is not None:
+            self._paint_comparison(painter, transform)
+        self._paint_stretch(painter, transform, nodes)
+        self._paint_labels(painter, transform, nodes)
+        self._paint_grips(painter, transform)
+        self._paint_faults(painter, transform)
+        self.voids.paint(painter, self.palette_)
+
+    def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
+        """The artwork, unless it belongs to another design, hides an overlay, or cannot be drawn as lines."""
+        shown = self._artwork
+        if shown is None or shown.sheet.design is not self._design or Overlay.RATIOS in self._overlays:
+            return None
+        return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
+
+    def _paint_voids(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
+        """Colours of voids: by their ratio, by their area."""
+        self._scales = []
+        design = self._design
+        if design is None:
+            return
+        field = design.deployment.field
+        if Overlay.RATIOS in self._overlays:
+            self._scales.append(ratio_scale(field.ratio, self.palette_))
+            paint_heat(painter, transform.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
+        if Overlay.OPENINGS in self._overlays:
+            voids, mm2 = design.voids(nodes), self.mm_per_unit**2
+            self._scales.append(opening_scale(self._rigid.largest_opening * mm2, self.palette_))
+            areas = quad_areas(voids).ravel() * mm2
+            paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
+
+    def _paint_stretch(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
+        """Connectors by how much they are stretched at this angle."""
+        self._overstretched = 0
+        if Overlay.STRETCH not in self._overlays or self._cut is None or self._design is None:
+            return
+        from kirigami_studio.mechanics.closing import TOLERATED_STRETCH
+
+        self._scales.append(stretch_scale(TOLERATED_STRETCH, self.palette_))
+        pixels = transform.to_pixels(nodes[self._cut.node])
+        stretch = self._cut.stretch_at(self._phi)
+        self._overstretched = int(np.sum(stretch > TOLERATED_STRETCH))
+        paint_stretch(painter, pixels, stretch, TOLERATED_STRETCH, self._scales[-1], self.palette_)
+
+    @property
+    def grips(self) -> Gripping | None:
+        """The grips that are drawn, if any: those of the design as cut that is shown."""
+        state = self._grips
+        shown = Overlay.GRIPS in self._overlays and self._cut is not None and state.sheet is self._cut
+        return state.found if shown else None
+
+    def _grip_chips(self) -> list[Chip]:
+        """What the legend says of grips: how many panels to hold and to pull, or why none are marked."""
+        state, palette, found = self._grips, self.palette_, self.grips
+        if Overlay.GRIPS not in self._overlays:
+            return []
+        if found is None:
+            if state.busy:
+                return [Chip((), tr("Looking for where to hold and pull …"))]
+            return [Chip((palette.fault,), state.problem)] if state.problem else []
+        chips = [
+            Chip((palette.text,), tr_n("hold {count} panel", "hold {count} panels", len(found.held))),
+            Chip((palette.good,), tr_n("pull {count} panel", "pull {count} panels", len(found.moved))),
+        ]
+        return chips if found.follows else [*chips, Chip((palette.fault,), tr("does not follow all the way"))]
+
+    def _paint_grips(self, painter: QPainter, transform: ViewTransform) -> None:
+        """Pins on the panels to hold and to pull, and the way that the latter go next."""
+        found, design, cut = self.grips, self._design, self._cut
+        if found is None or design is None or cut is None:
+            return
+        places = grip_places(design, found.held, found.moved, self._phi, cut.as_cut.reached)
+        shown = GripPlaces(transform.to_pixels(places.held), transform.to_pixels(places.moved), places.way)
+        # Pixels count downwards.
+        paint_grips(painter, shown, places.way * (transform.scale, -transform.scale), self.palette_)
+
+    def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
+        """Numbers of panels and voids where they fit, and sizes of the smallest parts."""
+        design = self._design
+        if design is None:
+            return
+        field, panels, voids = design.deployment.field, design.panels(nodes), design.voids(nodes)
+        rows, columns = field.rows, field.columns
+        if Overlay.PANEL_NUMBERS in self._overlays:
+            grid = transform.to_pixels(panels).reshape(rows + 1, columns + 1, 4, 2)
+            paint_numbers(painter, grid.mean(axis=2), room_in(grid), self.palette_, framed=False)
+        if Overlay.VOID_NUMBERS in self._overlays:
+            tiles = transform.to_pixels(heat_tiles(panels, rows, columns))
+            paint_numbers(painter, transform.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
+        lengths: list[tuple[float, FloatArray]] = []
+        if self._areas is not None:
+            gap = transform.to_pixels(self._areas.gap.ends)
+            if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
+                lengths.append((self._areas.gap.greatest, gap))
+        if Overlay.SMALL_PARTS in self._overlays:
+            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._rigid.small]
+        occupied: list[QRectF] = []
+        for length, ends in lengths:
+            paint_dimension(
+                painter,
+                ends,
+                tr("{length_mm:.2f} mm", length_mm=length * self.mm_per_unit),
+                self.palette_,
+                occupied,
+            )
+
+    def _paint_comparison(self, painter: QPainter, transform: ViewTransform) -> None:
+        self._areas = None
+        if self._design is None or self._target is None:
+            return
+        nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
+        if Overlay.MISMATCH in self._overlays and nearness > 0.0:
+            self._areas = design_mismatch(self._design, self._target, self._phi)
+            painter.setOpacity(min(1.0, 2.0 * nearness))
+            paint_mismatch(painter, self._areas, transform, self.palette_)
+            painter.setOpacity(1.0)
+        if Overlay.TARGET in self._overlays:
+            painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
+            paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
+            painter.setOpacity(1.0)
+            self._paint_second(painter, transform)
+
+    def _paint_second(self, painter: QPainter, transform: ViewTransform) -> None:
+        """The second target near its angle."""
+        nearness = 0.0 if self._second is None else 1.0 - abs(self._phi - self._second[0]) / COMPARED_WITHIN
+        if self._second is not None and nearness > 0.0:
+            painter.setOpacity(min(1.0, 2.0 * nearness))
+            paint_target_line(painter, transform.to_pixels(self._second[1]), self.palette_, dashed=True)
+            painter.setOpacity(1.0)
+
+    def _paint_faults(self, painter: QPainter, transform: ViewTransform) -> None:
+        self._faults = ()
+        if Overlay.FAULTS not in self._overlays:
+            return
+        self._faults = self.find_faults()
+        for fault in self._faults:
+            paint_fault(painter, transform.to_pixels(np.array(fault.where)), fault.kind, self.palette_)
+
+    def paint_notes(self, painter: QPainter) -> None:
+        if self._design is None:
+            if self._target is not None:
+                paint_caption(painter, "  ".join(self._hint[1:]), self.width(), self.palette_)
+            return
+        labels = self.legend(painter.fontMetrics())
+        paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)
+        if self._caption:
+            paint_caption(painter, self._caption, self.width(), self.palette_)
+        paint_colour_bars(painter, self._scales, self.width() - 10.0, self._bars_top(), self.palette_)
+        self.voids.paint_label(painter, self.palette_)
+
+
+class FaultTour(QObject):
+    """Watches one view for clicks on faults; the view still gets every click."""
+
+    phi_wanted = Signal(float)  #: radians, the angle at which the fault can be seen
+    status = Signal(str)
+
+    def __init__(self, view: LayoutView) -> None:
+        super().__init__(view)
+        self._view = view
+        self._place = -1
+        self._pressed: QPointF | None = None
+        view.installEventFilter(self)
+
+    def step(self, forth: int) -> None:
+        """Go to the next fault, or to the one before; after the last one comes the first."""
+        found = self._view.find_faults()
+        if not found:
+            self.status.emit(tr("No faults: no inverted panels, and the sheet does not touch itself."))
+            return
+        self._place = (self._place + forth) % len(found) if self._place >= 0 else (0 if forth > 0 else len(found) - 1)
+        self.visit(found[self._place])
+        self.status.emit(numbered_fault(found[self._place].kind, self._place + 1, len(found)))
+
+    def visit(self, fault: Fault) -> None:
+        """Show one fault, at the angle at which it is seen."""
+        if fault.phi is not None:
+            self.phi_wanted.emit(fault.phi)
+        self._view.zoom_to(fault.where, CLOSE_UP)
+
+    def forget(self) -> None:
+        """Another design: begin with its first fault."""
+        self._place = -1
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if isinstance(event, QMouseEvent) and event.button() is Qt.MouseButton.LeftButton:
+            if event.type() == QEvent.Type.MouseButtonPress:
+                self._pressed = event.position()
+            elif event.type() == QEvent.Type.MouseButtonRelease and self._pressed is not None:
+                moved = (event.position() - self._pressed).manhattanLength()
+                fault = self._view.fault_at(event.position()) if moved < STILL else None
+                self._pressed = None
+                if fault is not None:
+                    self.visit(fault)
+                    self.status.emit(tr(FAULT_SENTENCES[fault.kind]))
+        return False
+
+
+def numbered_fault(kind: FaultKind, number: int, count: int) -> str:
+    """One of all faults, for the status line; ``number`` counts from 1."""
+    if kind is FaultKind.INVERTED:
+        return tr("Fault {number} of {count}: inverted or collapsed panel.", number=number, count=count)
+    if kind is FaultKind.CONTACT:
+        return tr("Fault {number} of {count}: first contact during deployment.", number=number, count=count)
+    return tr("Fault {number} of {count}: the sheet overlaps itself here.", number=number, count=count)

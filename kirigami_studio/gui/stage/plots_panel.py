@@ -1,0 +1,311 @@
+"""Curves of one design over the deployment angle: match, area, porosity, size, gaps; force and energy as cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.stage.curves import Curves
+from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+
+if TYPE_CHECKING:
+    from kirigami_studio.foundation.arrays import FloatArray
+    from kirigami_studio.gui.widgets.chart import Chart
+    from kirigami_studio.mechanics.closing import Closing
+    from kirigami_studio.studio.as_cut import SimulatedSheet
+
+#: Height of a chart that is alone (pixels), and with which all are shown; with less they are shown one at a time.
+CHART_HEIGHT, ALL_CHARTS_HEIGHT = 132, 528
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One chart: its button's text, its tooltip, its unit, and what it draws of a reading and the mm of a cell."""
+
+    text: str
+    tip: str
+    unit: str
+    series: tuple[tuple[str, Callable[[Reading, float], float]], ...]
+    from_zero: bool = False
+
+
+def _rows() -> tuple[_Row, ...]:
+    return (
+        _Row(tr("Match"), tr("Match of the whole sheet with the target at each angle, in its best pose, %"), "%", (
+            ("sIoU", lambda reading, mm: 100.0 * reading.siou),
+            (tr("exact IoU"), lambda reading, mm: 100.0 * reading.iou),
+        )),
+        _Row(tr("Area"), tr("Area inside the sheet's outline, voids included, mm²"), "mm²", (
+            (tr("area"), lambda reading, mm: reading.area * mm * mm),
+        )),
+        _Row(tr("Porosity"), tr("Share of the area inside the sheet's outline that is voids, %"), "%", (
+            (tr("porosity"), lambda reading, mm: 100.0 * reading.porosity),
+        ), True),
+        _Row(tr("Size"), tr("Width and height of the sheet as shown, mm"), "mm", (
+            (tr("width"), lambda reading, mm: reading.width * mm),
+            (tr("height"), lambda reading, mm: reading.height * mm),
+        )),
+        _Row(tr("Gap"), tr("Narrowest gap between parts of the outline, mm; 0 means contact"), "mm", (
+            (tr("gap"), lambda reading, mm: reading.gap * mm),
+        ), True),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _CutRow:
+    """One chart of the sheet as cut: its button's text, name and tooltip, its unit, and what it draws of a closing."""
+
+    text: str
+    name: str
+    tip: str
+    unit: str
+    take: Callable[[Closing], FloatArray]
+
+
+def _cut_rows() -> tuple[_CutRow, ...]:
+    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
+    force = tr("Force at the edge of a panel that holds the sheet at each angle as cut, N")
+    return (
+        _CutRow(tr("Force"), tr("force"), force, "N", lambda found: found.path.force / found.sheet.network.panel_size),
+        _CutRow(
+            tr("Energy"),
+            tr("energy"),
+            tr("Energy in the connectors at each angle as cut, mJ"),
+            "mJ",
+            lambda found: found.path.energy,
+        ),
+    )
+
+
+class PlotsPanel(QWidget):
+    """Charts below each other where there is room, else one of them; nothing is drawn before the first curve comes.
+
+    Making a chart takes 30 ms and drawing its curve with its axes 15 ms, so that of charts which are new, or whose
+    curves grow, one comes in each turn of the event loop.
+    """
+
+    phi_wanted = Signal(float)  #: radians
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._palette: Palette = LIGHT
+        self._curves: Curves | None = None
+        self._width_mm = 100.0
+        self._phi, self._target, self._pointed = math.pi, 0.0, -1.0
+        self._rows, self._cut_rows = _rows(), _cut_rows()
+        self._closing: Closing | None = None
+        self.charts: list[Chart] = []
+        self.cut_charts: list[Chart] = []  #: of the sheet as cut
+        self._stale: list[int] = []  # charts whose curves are to be drawn
+        self._turn = QTimer(self, singleShot=True, interval=0)
+        self._turn.timeout.connect(self._go_on)
+        self.setObjectName("plain")
+        self.setAccessibleName(tr("Plots by deployment angle"))
+        self.empty_message = QLabel()
+        self.empty_message.setObjectName("muted")
+        self.empty_message.setWordWrap(True)
+        self.empty_message.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(2)
+        self._add_choice()
+        self._column.addWidget(self.empty_message, 1)
+        self.setMinimumSize(200, CHART_HEIGHT + 34)
+        self.show_curves(None)
+
+    def _add_choice(self) -> None:
+        self.choice = QWidget()
+        self.choice.setObjectName("plain")
+        row = QHBoxLayout(self.choice)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(2)
+        self.buttons = QButtonGroup(self)
+        rows = [*((row.text, row.tip) for row in self._rows), *((row.text, row.tip) for row in self._cut_rows)]
+        for number, (text, tip) in enumerate(rows):
+            button = QToolButton()
+            button.setText(text)
+            button.setToolTip(tip)
+            button.setAccessibleName(tip)
+            button.setCheckable(True)
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+            self.buttons.addButton(button, number)
+            row.addWidget(button)
+        self.buttons.button(0).setChecked(True)
+        self.buttons.idToggled.connect(lambda _number, _on: self._share_room())
+        self._column.addWidget(self.choice)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every angle has been read and is seen."""
+        return self._curves is not None and self._curves.complete and not self._turn.isActive()
+
+    def show_curves(self, curves: Curves | None) -> None:
+        """Draw what is known so far; None when nothing is."""
+        growing = self._curves is not None and not self._curves.complete
+        self._curves = curves
+        known = bool(curves is not None and curves.readings)
+        if known and (growing or not self._built):
+            self._stale = [*self._stale, *(row for row in range(len(self._rows)) if row not in self._stale)]
+            self._turn.start()
+        else:
+            self._stale.clear()
+            self._turn.stop()
+            self._draw()
+        self._arrange()
+
+    def show_as_cut(self, sheet: SimulatedSheet | None) -> None:
+        """Draw what the sheet does as cut; None where that is not known."""
+        before, self._closing = self._closing, None if sheet is None else sheet.closing
+        if self._built and before is not self._closing:
+            self._draw_as_cut()
+            self._share_room()
+
+    def _draw_as_cut(self) -> None:
+        from kirigami_studio.gui.widgets.chart import Series
+
+        found = self._closing
+        if found is None:
+            return
+        for row, chart in zip(self._cut_rows, self.cut_charts, strict=True):
+            chart.set_series(Series(np.degrees(found.phi), (row.take(found),)))
+            chart.read_out(self._angle)
+
+    @property
+    def _all_charts(self) -> list[Chart]:
+        return [*self.charts, *self.cut_charts]
+
+    @property
+    def _built(self) -> bool:
+        return len(self._all_charts) == len(self._rows) + len(self._cut_rows)
+
+    def _go_on(self) -> None:
+        """Make one chart, or redraw one."""
+        if not self._built:
+            self._build()
+            if self._built:
+                self._draw_as_cut()
+            self._turn.start()
+            return
+        if self._stale:
+            number = self._stale.pop(0)
+            self._draw_chart(number)
+            self.charts[number].read_out(self._angle)
+        if self._stale:
+            self._turn.start()
+        else:
+            self._arrange()
+
+    def _arrange(self) -> None:
+        """Show the charts, or say why there are none."""
+        curves = self._curves
+        shown = self._built and curves is not None and bool(curves.readings)
+        waiting = tr("Measuring the design at {count} angles …", count=ANGLES)
+        self.empty_message.setText("" if shown else waiting if curves is not None else tr("No design yet."))
+        self.empty_message.setVisible(not shown)
+        self._share_room()
+
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Set the width of the flat sheet, mm."""
+        if width_mm != self._width_mm:
+            self._width_mm = width_mm
+            self._draw()
+
+    def set_phi(self, phi: float) -> None:
+        """Another angle is shown, radians."""
+        self._phi = phi
+        for chart in self._all_charts:
+            chart.set_phi(phi)
+        self._read_out()
+
+    def set_target(self, phi: float) -> None:
+        """Mark the target angle, radians."""
+        self._target = phi
+        for chart in self._all_charts:
+            chart.set_target(phi)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw the charts to come in other colours."""
+        self._palette = palette
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._share_room()
+
+    def _build(self) -> None:
+        from kirigami_studio.gui.widgets.chart import Chart  # the worker has imported what it draws with
+
+        if len(self.charts) < len(self._rows):
+            row = self._rows[len(self.charts)]
+            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
+            self._add(chart, row.tip)
+            self.charts.append(chart)
+        else:
+            line = self._cut_rows[len(self.cut_charts)]
+            chart = Chart(line.text, line.unit, (line.name,))
+            self._add(chart, line.tip)
+            self.cut_charts.append(chart)
+
+    def _add(self, chart: Chart, tip: str) -> None:
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=tip))
+        chart.set_palette(self._palette)
+        chart.phi_wanted.connect(self.phi_wanted)
+        chart.pointed.connect(self._point)
+        chart.set_phi(self._phi)
+        chart.set_target(self._target)
+        chart.hide()
+        self._column.addWidget(chart, 1)
+
+    def _share_room(self) -> None:
+        """All charts where they fit; one of them, and the choice, where they do not."""
+        everything = self.height() >= ALL_CHARTS_HEIGHT
+        self.choice.setVisible(not everything)
+        known = self._built and self._curves is not None and bool(self._curves.readings)
+        closed = self._closing is not None
+        for number in range(len(self._rows), len(self._rows) + len(self._cut_rows)):
+            self.buttons.button(number).setEnabled(closed)
+            if not closed and number == self.buttons.checkedId():
+                self.buttons.button(0).setChecked(True)
+        last = len(self.charts) - 1 + (len(self.cut_charts) if closed else 0)
+        for number, chart in enumerate(self._all_charts):
+            there = known and (closed or number < len(self._rows))
+            chart.setVisible(there and (everything or number == self.buttons.checkedId()))
+            chart.show_angles(not everything or number == last)
+
+    def _draw(self) -> None:
+        if self._curves is not None and self._built:
+            for number in range(len(self.charts)):
+                self._draw_chart(number)
+            self._read_out()
+
+    def _draw_chart(self, number: int) -> None:
+        from kirigami_studio.gui.widgets.chart import Series
+
+        if self._curves is None:
+            return
+        readings, mm = self._curves.readings, self._curves.cell_share * self._width_mm
+        degrees = np.degrees([reading.phi for reading in readings])
+        values = [np.array([take(reading, mm) for reading in readings]) for _, take in self._rows[number].series]
+        self.charts[number].set_series(Series(degrees, tuple(values)))
+
+    def _point(self, phi: float) -> None:
+        self._pointed = phi
+        self._read_out()
+
+    def _read_out(self) -> None:
+        """Say the numbers where the mouse points, or where the sheet is, at the nearest angle that was read."""
+        for chart in self.charts if self._closing is None else self._all_charts:
+            chart.read_out(self._angle)
+
+    @property
+    def _angle(self) -> float:
+        return self._pointed if self._pointed >= 0.0 else self._phi

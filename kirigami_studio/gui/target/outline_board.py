@@ -1,0 +1,245 @@
+"""A drawing board in a dialog of its own, with the tools of the target's board: for outlines beside the target."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QPoint, QPointF, QSize, Qt, Signal
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.target.arrangements import ARRANGEMENTS
+from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
+from kirigami_studio.gui.target.sketch_context import Change
+from kirigami_studio.gui.target.target_view import TargetView, Tool
+from kirigami_studio.gui.widgets.card import ToolButton, muted_label
+from kirigami_studio.outlines.drawing import Drawing
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import Placed
+
+SIZE = QSize(680, 560)
+#: Keys of the tools, as on the target's board.
+KEYS = {
+    "N": Tool.POINTS,
+    "V": Tool.POSE,
+    "D": Tool.FREEHAND,
+    "P": Tool.POLYGON,
+    "R": Tool.RECTANGLE,
+    "O": Tool.ELLIPSE,
+    "G": Tool.REGULAR,
+}
+#: Outlines of more points than this, such as circles, are not laid on the board: nobody drags 720 points.
+MOST_POINTS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class BoardWords:
+    """What a board says.
+
+    Attributes
+    ----------
+    title : str
+        Of the dialog.
+    empty, ready : str
+        While nothing is drawn, and of a shape that can be taken.
+    take, taken : str
+        The button that takes the shape, and what that means.
+    """
+
+    title: str
+    empty: str
+    ready: str
+    take: str
+    taken: str
+
+
+SECOND_WORDS = BoardWords(
+    mark("Draw the second target"),
+    mark("Draw what the sheet should also show on its way. Size and rotation do not matter."),
+    mark("It can be the second target; size and rotation do not matter."),
+    mark("&Use as second target"),
+    mark("The next designs pass this shape on their way."),
+)
+
+
+class OutlineBoard(QDialog):
+    """Draws one outline; steps on the board are undone here, taking the shape is one step of the project."""
+
+    taken = Signal(Outline)
+
+    def __init__(self, parent: QWidget, words: BoardWords, view: TargetView | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr(words.title))
+        self.setModal(False)
+        self.resize(SIZE)
+        self._words = words
+        self._steps = [Drawing()]
+        self._at = 0
+        self.view = TargetView() if view is None else view
+        self.view.setAcceptDrops(False)
+        self.view.setToolTip("")
+        self.tools = DrawingToolBar(self.view.context)
+        for part in (self.tools.mirror, self.tools.done_button):
+            part.hide()
+        self.undo = ToolButton("undoBoard", "undo", tr("Undo on this board (Ctrl+Z)."))
+        self.redo = ToolButton("redoBoard", "redo", tr("Redo on this board (Ctrl+Shift+Z)."))
+        self.about = QLabel(tr(words.empty))
+        self.about.setWordWrap(True)
+        self.loose = LooseRow(self.view.context)
+        self.hint = muted_label()
+        self.take = QPushButton(tr(words.take))
+        self.take.setObjectName("primary")
+        self.take.setToolTip(tr(words.taken))
+        self.take.setAutoDefault(False)
+        self.cancel = QPushButton(tr("Cancel"))
+        self.cancel.setToolTip(tr("Leave everything as it is (Esc)."))
+        self.cancel.setAutoDefault(False)
+        self._lay_out()
+        self._connect()
+        self.set_tool(Tool.POSE)
+        self.view.set_editing(True)
+        self._show()
+
+    def _lay_out(self) -> None:
+        column, tools, below = QVBoxLayout(self), QHBoxLayout(), QHBoxLayout()
+        column.setContentsMargins(14, 14, 14, 14)
+        column.setSpacing(10)
+        tools.setSpacing(2)
+        tools.addWidget(self.tools, 1)
+        tools.addWidget(self.undo)
+        tools.addWidget(self.redo)
+        column.addLayout(tools)
+        column.addWidget(self.tools.options, 0, Qt.AlignmentFlag.AlignLeft)
+        column.addWidget(self.view, 1)
+        column.addWidget(self.hint)
+        column.addWidget(self.about)
+        column.addWidget(self.loose)
+        below.addStretch(1)
+        below.addWidget(self.cancel)
+        below.addWidget(self.take)
+        column.addLayout(below)
+
+    def _connect(self) -> None:
+        context = self.view.context
+        context.changed.connect(self._change)
+        context.selection_changed.connect(self._show_selection)
+        self.view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.view.customContextMenuRequested.connect(self._open_menu)
+        for one in ARRANGEMENTS:
+            if one.key:
+                QShortcut(QKeySequence(one.key), self).activated.connect(partial(context.arrange, one.id))
+        self.view.hint.connect(self.hint.setText)
+        self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
+        self.view.editing_left.connect(self.reject)
+        self.tools.tool_wanted.connect(self.set_tool)
+        self.tools.grid_switched.connect(self._snap)
+        self.undo.clicked.connect(lambda: self._step(-1))
+        self.redo.clicked.connect(lambda: self._step(1))
+        self.take.clicked.connect(self._take)
+        self.cancel.clicked.connect(self.reject)
+        for key, tool in KEYS.items():
+            QShortcut(QKeySequence(key), self).activated.connect(partial(self._take_tool, tool))
+        QShortcut(QKeySequence(QKeySequence.StandardKey.Undo), self).activated.connect(lambda: self._step(-1))
+        QShortcut(QKeySequence("Ctrl+Shift+Z"), self).activated.connect(lambda: self._step(1))
+
+    def begin(self, outline: Outline | None) -> None:
+        """Open with an outline where its points can be dragged, else with the empty board."""
+        placed = None if outline is None or len(outline.points) > MOST_POINTS else Placed.on_board(outline)
+        if placed is not None:
+            self.view.context.remember(placed)
+        self._steps, self._at = [Drawing(() if placed is None else (placed,))], 0
+        self._show()
+        self.view.set_editing(True)
+        self.set_tool(Tool.POLYGON if placed is None else Tool.POINTS)
+
+    @property
+    def placed(self) -> Placed | None:
+        """The outline that the objects on the board make."""
+        drawing = self._steps[self._at]
+        return drawing.united().target if drawing.objects else None
+
+    def set_tool(self, tool: Tool) -> None:
+        """Change what the pointer does."""
+        tool = Tool.POSE if tool is Tool.LOOK else tool
+        self.tools.show_tool(tool)
+        self.view.set_tool(tool)
+
+    def _take_tool(self, tool: Tool) -> None:
+        if self.tools.buttons[tool].isEnabled():
+            self.set_tool(tool)
+
+    def _snap(self, on: bool) -> None:
+        self.view.context.snapping = on
+        self.view.update()
+
+    def _change(self, change: Change) -> None:
+        """Carry out a gesture, or say why it is impossible."""
+        context = self.view.context
+        try:
+            made = change.make()
+            drawing = made if isinstance(made, Drawing) else context.drawing.with_active(made)
+            targets = (drawing.united().target,) if drawing.objects else ()
+        except KirigamiError as error:
+            self.say(str(error), wrong=True)
+            return
+        for each in (*drawing.objects, *targets):
+            context.remember(each)
+        self._steps = [*self._steps[: self._at + 1], drawing]
+        self._at += 1
+        self._show()
+        context.select(drawing.selected)
+
+    def _open_menu(self, place: QPoint) -> None:
+        """The menu of the right button: what can be done with the object there."""
+        self.view.select_at(QPointF(place))
+        self.tools.arrange.menu().popup(self.view.mapToGlobal(place))
+
+    def _show_selection(self) -> None:
+        self.tools.options.pose.show_drawing(self.view.context.drawing)
+        self.loose.setVisible(bool(self.view.context.loose))
+
+    def _step(self, by: int) -> None:
+        """Undo or redo one gesture."""
+        if 0 <= self._at + by < len(self._steps):
+            self._at += by
+            self._show()
+
+    def _show(self) -> None:
+        """Show the shape, and whether it can be taken."""
+        placed = self.placed
+        objects = tuple(each.outline for each in self._steps[self._at].objects)
+        if placed is not None:
+            self.view.context.remember(placed)
+        self.view.show_outline(None if placed is None else placed.outline, None, objects)
+        self.tools.show_target(placed is not None)
+        self._show_selection()
+        self.undo.setEnabled(self._at > 0)
+        self.redo.setEnabled(self._at + 1 < len(self._steps))
+        refusal = None if placed is None else self.refusal(placed.outline)
+        self.take.setEnabled(placed is not None and refusal is None)
+        if placed is None:
+            self.say(tr(self._words.empty))
+        else:
+            self.say(refusal or self.ready(placed.outline), wrong=refusal is not None)
+
+    def refusal(self, outline: Outline) -> str | None:
+        """Why a shape cannot be taken, one sentence; None where it can."""
+        return None
+
+    def ready(self, outline: Outline) -> str:
+        """What is said of a shape that can be taken."""
+        return tr(self._words.ready)
+
+    def say(self, sentence: str, wrong: bool = False) -> None:
+        """Show a sentence below the board."""
+        self.about.setObjectName("warning" if wrong else "muted")
+        self.about.style().polish(self.about)
+        self.about.setText(sentence)
+
+    def _take(self) -> None:
+        if self.placed is not None:
+            self.taken.emit(self.placed.outline)
+            self.accept()

@@ -1,0 +1,122 @@
+"""The drawing with its parts, where a click chooses a part or leaves it out, and the outline that is made of them."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.target.part_items import paint_part, paint_result, part_path
+from kirigami_studio.gui.widgets.paths import area_path
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+from kirigami_studio.outlines.merging import Merged
+from kirigami_studio.studio.parts import PartsRead, bounds_of, part_at
+
+MARGIN = 16.0
+#: Pixels around a line within which a click means it.
+REACH = 8.0
+
+
+class PartView(QWidget):
+    """Draws chosen parts filled, the others pale, the result in the target's colour."""
+
+    clicked = Signal(int)  #: number of a part
+    pointed = Signal(int)  #: number of the part under the pointer, 0 for none
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("partView")
+        self.setAccessibleName(tr("Drawing with its parts"))
+        self.setMouseTracking(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.palette_: Palette = LIGHT
+        self._read: PartsRead | None = None
+        self._chosen: frozenset[int] = frozenset()
+        self._current = 0
+        self._stroke = 0.0
+        self._result: Merged | None = None
+        self._stale = False
+
+    def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(520, 380)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(240, 160)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self.palette_ = palette
+        self.update()
+
+    def show_drawing(self, read: PartsRead) -> None:
+        """Show another drawing."""
+        self._read, self._result, self._current = read, None, 0
+        self.update()
+
+    def show_choice(self, chosen: frozenset[int], stroke: float) -> None:
+        """Mark the chosen parts; ``stroke`` is the width of lines without one, source units, 0 for thin lines."""
+        self._chosen, self._stroke, self._stale = chosen, stroke, True
+        self.update()
+
+    def show_result(self, result: Merged | None) -> None:
+        """Show what the chosen parts become."""
+        self._result, self._stale = result, False
+        self.update()
+
+    def mark(self, number: int) -> None:
+        """Bring one part forward, 0 for none."""
+        if number != self._current:
+            self._current = number
+            self.update()
+
+    @property
+    def transform(self) -> ViewTransform:
+        """From the source to pixels; the result is inside, too."""
+        left, bottom, right, top = bounds_of(self._read) if self._read is not None else (0.0, 0.0, 1.0, 1.0)
+        if self._result is not None:
+            one, two, three, four = self._result.shape.bounds
+            left, bottom, right, top = min(left, one), min(bottom, two), max(right, three), max(top, four)
+        return ViewTransform.fitting(Bounds(left, bottom, right, top), QRectF(self.rect()), MARGIN)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QColor(self.palette_.border))
+        painter.setBrush(QColor(self.palette_.canvas))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0)
+        if self._read is None:
+            return
+        transform = self.transform
+        for chosen in (False, True):
+            for part, sketch in zip(self._read.source.parts, self._read.sketches, strict=True):
+                if (part.number in self._chosen) is chosen:
+                    path = part_path(sketch, transform, part.is_closed)
+                    width = (part.pen.width or self._stroke) * transform.scale if self._stroke else 0.0
+                    current = part.number == self._current
+                    paint_part(
+                        painter, path, self.palette_, closed=part.is_closed, chosen=chosen, current=current, pen=width
+                    )
+        if self._result is not None and self._chosen:
+            bridges = [area_path(bridge, transform) for bridge in self._result.bridges]
+            paint_result(painter, area_path(self._result.shape, transform), bridges, self.palette_, stale=self._stale)
+
+    def _part_below(self, place: QPointF) -> int:
+        if self._read is None:
+            return 0
+        transform = self.transform
+        return part_at(self._read, transform.to_world(place), REACH / transform.scale)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        number = self._part_below(event.position())
+        self.setCursor(Qt.CursorShape.PointingHandCursor if number else Qt.CursorShape.ArrowCursor)
+        self.pointed.emit(number)
+
+    def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
+        self.pointed.emit(0)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        number = self._part_below(event.position())
+        if event.button() == Qt.MouseButton.LeftButton and number:
+            self.clicked.emit(number)

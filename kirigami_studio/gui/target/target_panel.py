@@ -1,0 +1,432 @@
+"""The target beside its start: file, library, board, size, simplify and smooth, a traced picture's threshold."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QMouseEvent
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QStyle,
+    QStyleOptionSlider,
+    QWidget,
+)
+
+from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.run.start_tile import StartTile
+from kirigami_studio.gui.target.arrangements import EVERY
+from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
+from kirigami_studio.gui.target.opened_size_row import OpenedSizeRow
+from kirigami_studio.gui.target.target_view import TargetView, Tool
+from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, muted_label
+from kirigami_studio.gui.widgets.number_field import LengthField, number_field
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.placed import LARGEST_MM, Placed
+from kirigami_studio.outlines.reach import reach_of, reach_texts
+from kirigami_studio.studio.targets import Picture
+
+#: Slider steps from nothing to most.
+REFINE_STEPS = 100
+#: Slider steps from black to white; the ends would leave no shape.
+GREY_LEVELS = 200
+#: Name, caption, accessible name, tooltip.
+SLIDERS = (
+    (
+        "simplify",
+        mark("S&implify"),
+        mark("Simplify the target"),
+        mark("Remove points; further right keeps fewer corners"),
+    ),
+    (
+        "smooth",
+        mark("S&mooth"),
+        mark("Smooth the target"),
+        mark("Round corners and smooth edges; the area stays the same"),
+    ),
+)
+#: Tool button name, icon, tooltip, whether it stays down.
+BUTTONS = (
+    ("openTarget", "open", mark("Open a target file (Ctrl+O). PNG, JPG, BMP, SVG, DXF or JSON."), False),
+    ("library", "library", mark("Choose a silhouette from the library (Ctrl+L)."), False),
+    ("edit", "edit", mark("Draw and edit the target (E). Shapes, points, add and subtract."), True),
+    ("clearTarget", "clear", mark("Clear the target. Undo restores it."), False),
+)
+#: Said when the editor is left.
+DONE_HINT = mark("Press Generate (Ctrl+G) to design a sheet for this target.")
+
+
+class TargetPanel(Card):
+    """The target view with its tools and the reader's notes."""
+
+    open_wanted = Signal()
+    wants_silhouette = Signal()
+    clear_wanted = Signal()
+    editing_changed = Signal(bool)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(tr("Target"), parent)
+        self.view = TargetView()
+        self.editing = False
+        self._reach_texts = ("", "")
+        self.tools = DrawingToolBar(self.view.context)
+        self.refine = RefineBar()
+        self.header.addWidget(self.tools.options)
+        self.buttons = {tool.value: button for tool, button in self.tools.buttons.items()}
+        for name, icon, tip, checkable in BUTTONS:
+            self.buttons[name] = ToolButton(name, icon, tr(tip), checkable)
+            self.header.addWidget(self.buttons[name])
+        self.facts = ElidedLabel()
+        self.size_ = QLabel()
+        self.size_.setObjectName("muted")
+        line = QHBoxLayout()
+        line.addWidget(self.facts, 1)
+        line.addWidget(self.size_)
+        self.notes = muted_label()
+        self.notes.setObjectName("warning")
+        self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.reach = ElidedLabel()
+        self.reach.setObjectName("warning")
+        self.reach.setAccessibleName(tr("Details that the grid may miss"))
+        self.reach.setVisible(False)
+        self.start_refusal = ElidedLabel()
+        self.start_refusal.setObjectName("warning")
+        self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
+        self.start_refusal.setVisible(False)
+        self.threshold = ThresholdBar()
+        self.body.addWidget(self.tools)
+        self.start = StartTile()
+        boards = QHBoxLayout()
+        boards.setSpacing(8)
+        boards.addWidget(self.start)
+        boards.addWidget(self.view, 1)
+        self.body.addLayout(boards, 1)
+        self.body.addLayout(line)
+        self.opened = OpenedSizeRow()
+        self.body.addWidget(self.opened)
+        self.body.addWidget(self.start_refusal)
+        self.body.addWidget(self.reach)
+        self.body.addWidget(self.refine)
+        self.body.addWidget(self.threshold)
+        self.body.addWidget(self.notes)
+        self.loose = LooseRow(self.view.context)
+        self.body.addWidget(self.loose)
+        self.view.context.selection_changed.connect(self._show_selection)
+        self.buttons["openTarget"].clicked.connect(self.open_wanted)
+        self.buttons["library"].clicked.connect(self.wants_silhouette)
+        self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
+        self.buttons["edit"].clicked.connect(self.set_editing)
+        self.tools.tool_wanted.connect(self.set_tool)
+        self.tools.grid_switched.connect(self.set_snapping)
+        self.tools.done.connect(lambda: self.set_editing(False))
+        self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
+        self.view.editing_left.connect(lambda: self.set_editing(False))
+        self.set_editing(False)
+        self.show_target(None)
+
+    def set_tool(self, tool: Tool) -> None:
+        """Change what clicks on the target do; every tool but looking opens the editor, which stays with one."""
+        if tool is not Tool.LOOK:
+            self.set_editing(True)
+        elif self.editing:
+            tool = Tool.POSE
+        self.tools.show_tool(tool)
+        self.view.set_tool(tool)
+        if tool is Tool.TEXT:  # so that typing comes first, then the box
+            self.tools.options.text.setFocus()
+            self.tools.options.text.selectAll()
+
+    def set_editing(self, on: bool) -> None:
+        """Show the tools and the board, or the target alone."""
+        opens = on and not self.editing
+        self.buttons["edit"].setChecked(on)
+        for part in (self.tools, self.refine):
+            part.setVisible(on)
+        self.start.setVisible(not on)
+        self.opened.fold(on)
+        if on != self.editing:
+            self.editing = on
+            self._show_reach_text()
+            self.view.set_editing(on)
+            self.editing_changed.emit(on)
+            if not on and self.view.outline is not None:
+                self.view.hint.emit(tr(DONE_HINT))
+        self._show_selection()
+        if opens or not on:
+            self.set_tool(Tool.POSE if on else Tool.LOOK)
+
+    def set_snapping(self, on: bool) -> None:
+        """Show the grid and snap to it, or neither."""
+        self.view.context.snapping = on
+        self.tools.grid.setChecked(on)
+        self.view.update()
+
+    def show_target(
+        self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()
+    ) -> None:
+        """Show the document's target, and the threshold when it was traced from a picture."""
+        self.threshold.setVisible(picture is not None)
+        if picture is not None:
+            self.threshold.show_levels(picture.threshold, picture.automatic)
+        elsewhere = outline is None or self.view.context.recall(outline) is None
+        if elsewhere:
+            self.set_tool(Tool.LOOK)
+        under = self.view.underlay
+        retraced = picture is not None and under is not None and under.path == picture.path
+        self.view.show_outline(outline, picture, objects)
+        if elsewhere and not retraced:  # the axes go through the middle of what is drawn on
+            self.view.context.set_axis(self.view.context.mirror.axis)
+        self.tools.show_target(outline is not None)
+        self.refine.show_placed(self.view.context.placed)
+        self._show_selection()
+        self.buttons["clearTarget"].setEnabled(outline is not None)
+        self.facts.setVisible(outline is not None)
+        self.size_.setVisible(outline is not None)
+        notes = outline.notes if outline is not None else ()
+        self.notes.setText(notes[0] if len(notes) == 1 else "\n".join(f"• {note}" for note in notes[:3]))
+        self.notes.setToolTip("\n".join(notes))
+        self.notes.setVisible(bool(notes))
+        if outline is not None:
+            self.facts.setText(tr(outline.name))
+            self.size_.setText(measured(outline))
+
+    def arrangements(self) -> frozenset[str]:
+        """What can be done with the selected objects while the board is open."""
+        context = self.view.context
+        return frozenset(name for name in EVERY if self.editing and context.can_arrange(name))
+
+    def _show_selection(self) -> None:
+        self.tools.options.pose.show_drawing(self.view.context.drawing)
+        self.loose.setVisible(self.editing and bool(self.view.context.loose))
+
+    def show_reach(self, grid: tuple[int, int]) -> None:
+        """Mark on the drawing, and say, what a grid (rows, columns) can hardly show of the target."""
+        placed = self.view.context.placed
+        reach = None if placed is None else reach_of(placed.outline, grid)
+        self.view.show_reach(reach)
+        known = placed is not None and placed.outline.unit == "mm"
+        self._reach_texts = ("", "")
+        if placed is not None and reach is not None:
+            self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
+        self._show_reach_text()
+
+    def show_start_refusal(self, sentence: str) -> None:
+        """Say why the next run would refuse the start; nothing where it would not, or that is not known."""
+        self.start_refusal.setText(sentence, tr("The start folds on this grid"))
+        self.start_refusal.setVisible(bool(sentence))
+
+    def _show_reach_text(self) -> None:
+        whole, brief = self._reach_texts
+        self.reach.setText(whole if self.editing else brief)
+        self.reach.setToolTip(whole)
+        self.reach.setVisible(bool(whole))
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(250, 195)
+
+
+def measured(outline: Outline) -> str:
+    """Source size when it has a unit, else the number of corners."""
+    if outline.size is None or not outline.unit:
+        return tr_n("{count} point", "{count} points", len(outline.points))
+    width, height = outline.size
+    return tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} {unit}", width=width, height=height, unit=outline.unit)
+
+
+class RefineBar(QWidget):
+    """Two sliders with a live preview, two lengths in mm."""
+
+    previewed = Signal(str, float)  #: name of the slider, strength 0..1
+    refined = Signal(str, float)
+    size_wanted = Signal(float, float)  #: width and height, mm
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        self._ratio = 1.0
+        self._size = (0.0, 0.0)
+        self.sliders: dict[str, QSlider] = {}
+        for name, caption, accessible, tip in SLIDERS:
+            slider = JumpSlider()
+            slider.setObjectName("threshold")
+            slider.setRange(0, REFINE_STEPS)
+            slider.setPageStep(REFINE_STEPS // 10)
+            slider.setAccessibleName(tr(accessible))
+            slider.setToolTip(tr(tip))
+            slider.setMinimumWidth(60)
+            slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
+            slider.sliderReleased.connect(lambda name=name: self._settle(name))
+            self.sliders[name] = slider
+            row.addWidget(_caption(tr(caption), slider))
+            row.addWidget(slider, 1)
+        self.width_ = _length(
+            tr("Target width"), tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        )
+        self.height_ = _length(
+            tr("Target height"), tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        )
+        for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
+            row.addWidget(_caption(caption, field))
+            row.addWidget(field)
+        self.proportions = ToolButton(
+            "keepProportions", "chain", tr("Keep proportions. Off: change width and height separately."), True
+        )
+        self.proportions.setChecked(True)
+        row.addWidget(self.proportions)
+        self.width_.valueChanged.connect(self._take_width)
+        self.height_.valueChanged.connect(self._take_height)
+
+    def _take_width(self, width: float) -> None:
+        self.size_wanted.emit(width, width / self._ratio if self.proportions.isChecked() else self._size[1])
+
+    def _take_height(self, height: float) -> None:
+        self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
+
+    def show_placed(self, placed: Placed | None) -> None:
+        """Show the target's size on the board."""
+        self.setEnabled(placed is not None)
+        if placed is None:
+            return
+        width, height = self._size = placed.size
+        self._ratio = width / height
+        for field, value in ((self.width_, width), (self.height_, height)):
+            with QSignalBlocker(field):
+                field.setValue(value)
+
+    def restart(self) -> None:
+        """The sliders stand for another target: nothing is simplified or smoothed yet."""
+        for slider in self.sliders.values():
+            with QSignalBlocker(slider):
+                slider.setValue(0)
+
+    def _slide(self, name: str, value: int) -> None:
+        for other, slider in self.sliders.items():
+            if other != name:
+                with QSignalBlocker(slider):
+                    slider.setValue(0)
+        if self.sliders[name].isSliderDown():
+            self.previewed.emit(name, value / REFINE_STEPS)
+        else:
+            self.refined.emit(name, value / REFINE_STEPS)
+
+    def _settle(self, name: str) -> None:
+        self.refined.emit(name, self.sliders[name].value() / REFINE_STEPS)
+
+
+class JumpSlider(QSlider):
+    """Goes to the pointer at once and stays down until the button is let go, so that a click shows before it counts."""
+
+    def __init__(self) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self._offset = 0.0
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if event.button() is not Qt.MouseButton.LeftButton:
+            event.ignore()
+            return
+        option = QStyleOptionSlider()
+        self.initStyleOption(option)
+        handle = self.style().subControlRect(
+            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, self
+        )
+        on_handle = handle.contains(event.position().toPoint())
+        self._offset = event.position().x() - handle.left() if on_handle else 0.5 * handle.width()
+        self.setSliderDown(True)
+        if not on_handle:
+            self.setValue(self._value_at(event.position().x(), handle.width()))
+        event.accept()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self.isSliderDown():
+            option = QStyleOptionSlider()
+            self.initStyleOption(option)
+            width = self.style().pixelMetric(QStyle.PixelMetric.PM_SliderLength, option, self)
+            self.setValue(self._value_at(event.position().x(), width))
+            event.accept()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self.isSliderDown() and event.button() is Qt.MouseButton.LeftButton:
+            self.setSliderDown(False)
+            event.accept()
+
+    def _value_at(self, x: float, handle: int) -> int:
+        return QStyle.sliderValueFromPosition(
+            self.minimum(), self.maximum(), round(x - self._offset), max(self.width() - handle, 1)
+        )
+
+
+class ThresholdBar(QWidget):
+    """Shown for targets that came from a picture; grey levels run from 0 (black) to 1 (white)."""
+
+    changed = Signal(float)  #: grey level 0..1
+    automatic_wanted = Signal()
+    edited = Signal()  #: the drag is over
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        caption = QLabel(tr("&Threshold"))
+        caption.setObjectName("muted")
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName("threshold")
+        self.slider.setRange(1, GREY_LEVELS - 1)
+        self.slider.setPageStep(GREY_LEVELS // 20)
+        self.slider.setAccessibleName(tr("Threshold between shape and background, from black to white"))
+        self.slider.setToolTip(
+            tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
+        )
+        self.number = QLabel()
+        self.number.setObjectName("muted")
+        self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
+        self.automatic = QPushButton(tr("Auto"))
+        self.automatic.setObjectName("small")
+        self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.automatic.setToolTip(tr("Reset to the automatic threshold"))
+        caption.setBuddy(self.slider)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(caption)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.number)
+        row.addWidget(self.automatic)
+        self.slider.valueChanged.connect(self._take_level)
+        self.slider.sliderReleased.connect(self.edited)
+        self.automatic.clicked.connect(self.automatic_wanted)
+
+    def show_levels(self, threshold: float, automatic: float) -> None:
+        """Show the level that holds, 0..1; a slider that is being dragged is left where it is."""
+        if not self.slider.isSliderDown():
+            with QSignalBlocker(self.slider):
+                self.slider.setValue(round(GREY_LEVELS * threshold))
+            self.number.setText(tr("{percent:.1f} %", percent=100 * threshold))
+        self.automatic.setEnabled(threshold != automatic)
+
+    def _take_level(self, value: int) -> None:
+        self.number.setText(tr("{percent:.1f} %", percent=100 * value / GREY_LEVELS))
+        self.changed.emit(value / GREY_LEVELS)
+        if not self.slider.isSliderDown():
+            self.edited.emit()
+
+
+def _caption(text: str, buddy: QWidget) -> QLabel:
+    label = QLabel(text)
+    label.setObjectName("muted")
+    label.setBuddy(buddy)
+    return label
+
+
+def _length(name: str, tip: str) -> LengthField:
+    field = LengthField()
+    field.setRange(0.1, LARGEST_MM)
+    field.setDecimals(1)
+    field.setSuffix(tr(" mm"))
+    number_field(field)
+    field.setKeyboardTracking(False)
+    field.setAccessibleName(name)
+    field.setToolTip(tip)
+    return field

@@ -1,0 +1,406 @@
+"""The target: read from a file, traced, drawn, cleared; and the start outline that is read. Each becomes an edit."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from PySide6.QtCore import QObject, Signal
+
+from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.foundation.steps import Steps
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.run.target_reader import next_run
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import PART_READERS
+from kirigami_studio.outlines.starts import StartShape
+from kirigami_studio.project import edits
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.studio.parts import (
+    DesignRead,
+    PartsRead,
+    reading_parts,
+    reading_second,
+    reading_source,
+    reading_start,
+)
+from kirigami_studio.studio.targets import (
+    PICTURES,
+    Picture,
+    TargetRead,
+    checking_start,
+    making_start,
+    reading_target,
+    tracing,
+)
+
+if TYPE_CHECKING:
+    from kirigami_studio.outlines.read_image import Traced
+
+T = TypeVar("T")
+#: Outlines whose picture is remembered, so that undo brings its threshold back too.
+CAPACITY = 256
+
+
+class PictureTracer(QObject):
+    """Traces one picture at a time; while it does, only the latest threshold is kept."""
+
+    traced = Signal(Outline)
+    refused = Signal(str)
+    settled = Signal()  #: the drag is over and its last threshold is traced
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self.pictures: OrderedDict[Outline, Picture] = OrderedDict()
+        self._job: LatestJob[Traced] = LatestJob(session.queue)
+        self._wanted: Picture | None = None
+        self._drag_over = False
+
+    def remember(self, outline: Outline, picture: Picture) -> None:
+        """Keep where an outline came from."""
+        self.pictures[outline] = picture
+        self.pictures.move_to_end(outline)
+        while len(self.pictures) > CAPACITY:
+            self.pictures.popitem(last=False)
+
+    def picture_of(self, outline: Outline | None) -> Picture | None:
+        """The picture behind an outline, None when it was drawn, chosen from the library or read as lines."""
+        return None if outline is None else self.pictures.get(outline)
+
+    def retrace(self, picture: Picture, threshold: float | None) -> None:
+        """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
+        self._wanted = replace(picture, threshold=picture.automatic if threshold is None else threshold)
+        if not self._job.busy:
+            self._start(self._wanted)
+
+    def end_drag(self) -> None:
+        """The slider was let go; its last threshold may still be on its way."""
+        self._drag_over = True
+        self._settle()
+
+    def stop(self) -> None:
+        """Forget what is still being traced: the target is another one now."""
+        self._wanted, self._drag_over = None, False
+        self._job.stop()
+
+    def _start(self, picture: Picture) -> None:
+        callbacks: JobCallbacks[Traced] = JobCallbacks(
+            partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
+        )
+        self._job.start(tr("tracing {name}", name=picture.path.name), partial(tracing, picture), callbacks)
+
+    def _take(self, picture: Picture, traced: Traced) -> None:
+        self.remember(traced.outline, replace(picture, traced=traced))
+        self.traced.emit(traced.outline)
+
+    def _fail(self, picture: Picture, sentence: str, trace: str) -> None:
+        self.refused.emit(sentence)
+        self._go_on(picture)
+
+    def _go_on(self, done: Picture) -> None:
+        """Trace again when the slider has moved on in the meantime."""
+        if self._wanted is not None and self._wanted != done:
+            self._start(self._wanted)
+        else:
+            self._settle()
+
+    def _settle(self) -> None:
+        if self._drag_over and not self._job.busy:
+            self._drag_over = False
+            self.settled.emit()
+
+
+class Occasion(Enum):
+    """Why a target is read: the program starts with it, a person wants it, or other parts of the present one."""
+
+    START = "start"
+    WANTED = "wanted"
+    AGAIN = "again"
+
+
+class TargetReader(QObject):
+    """Reads one target at a time and registers the picture or drawing that it came from.
+
+    A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
+    """
+
+    read = Signal(Outline, Occasion)
+    choice_wanted = Signal(PartsRead)
+    design_read = Signal(Document, str)  #: that a cut file came from, and the file
+    failed = Signal(str, str)  #: sentence, trace
+
+    def __init__(self, session: Session, tracer: PictureTracer, parent: QObject) -> None:
+        super().__init__(parent)
+        self._tracer = tracer
+        self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
+        self.drawings: OrderedDict[Outline, str] = OrderedDict()
+        self._asked = ("", Occasion.WANTED)
+        self.source = ""  #: of the target that was read last
+
+    def start(self, source: str, occasion: Occasion) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._start(source, occasion, partial(reading_source, source))
+
+    def choose_again(self, outline: Outline) -> None:
+        """Read the drawing again that an outline came from, and ask for its parts."""
+        source = self.drawing_of(outline)
+        if source:
+            self._start(source, Occasion.AGAIN, partial(reading_parts, source))
+
+    def drawing_of(self, outline: Outline | None) -> str:
+        """The drawing that an outline was read from, "" for none."""
+        return "" if outline is None else self.drawings.get(outline, "")
+
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
+        source, occasion = self._asked
+        if usual and Path(source).suffix.lower() in PICTURES:
+            self._start(source, occasion, partial(reading_target, source))
+            return
+        self._finish(*self._asked, TargetRead(outline))
+
+    def _start(self, source: str, occasion: Occasion, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
+        callbacks = JobCallbacks(partial(self._take, source, occasion), on_failed=self.failed.emit)
+        self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
+
+    def stop(self) -> None:
+        """Forget what is still being read: something else took its place."""
+        self._job.stop()
+
+    def _take(self, source: str, occasion: Occasion, found: TargetRead | PartsRead | DesignRead) -> None:
+        if isinstance(found, PartsRead):
+            self._asked = (source, occasion)
+            self.choice_wanted.emit(found)
+        elif isinstance(found, DesignRead):
+            self.design_read.emit(found.document, source)
+        else:
+            self._finish(source, occasion, found)
+
+    def _finish(self, source: str, occasion: Occasion, found: TargetRead) -> None:
+        if Path(source).suffix.lower() in PART_READERS:
+            self.drawings[found.outline] = source
+            while len(self.drawings) > CAPACITY:
+                self.drawings.popitem(last=False)
+        if found.picture is not None:
+            self._tracer.remember(found.outline, found.picture)
+        self.source = source
+        self.read.emit(found.outline, occasion)
+
+
+class Wish(Generic[T]):
+    """Reads one thing at a time that is chosen by a name, a file or a drawing; the newest wins.
+
+    Why one was refused is said until another one is read, or chosen elsewhere.
+    """
+
+    def __init__(self, session: Session, take: Callable[[T], None]) -> None:
+        self._session, self._take = session, take
+        self._job = LatestJob[T](session.queue)
+        self._refusal: Message | None = None
+
+    def start(self, name: str, steps: Steps[T]) -> None:
+        """Read it in the worker; ``name`` follows the word "while" in messages."""
+        self.stop()
+        self._job.start(name, steps, JobCallbacks(self._take, on_failed=self._refuse))
+
+    def stop(self) -> None:
+        """Forget what is still being read, and why the last one was refused: something else took its place."""
+        self._job.stop()
+        if self._refusal is not None:
+            self._session.withdraw(self._refusal)
+            self._refusal = None
+
+    def _refuse(self, sentence: str, trace: str) -> None:
+        self._refusal = Message(sentence, Tone.ERROR, trace)
+        self._session.report_failure(sentence, trace)
+
+
+class StartReader(QObject):
+    """Reads the outline that sheets are to have while they are flat; a shape that cannot be one changes nothing."""
+
+    checked = Signal(Outline, str)  #: a shape that is being drawn, and why the next run would refuse it, or ""
+    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._wish = Wish[StartShape | PartsRead](session, self._take)
+        self._check = LatestJob[str](session.queue)
+
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+
+    def check(self, outline: Outline) -> None:
+        """Find out whether the next run would refuse a shape that is being drawn."""
+        document = self._session.document
+        steps = partial(checking_start, outline, document.settings, next_run(document))
+        callbacks: JobCallbacks[str] = JobCallbacks(partial(self.checked.emit, outline))
+        self._check.start(tr("checking the start"), steps, callbacks)
+
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts, the usual one or another."""
+        self.draw(outline)
+
+    def draw(self, outline: Outline) -> None:
+        """Take a shape that was drawn."""
+        self._wish.start(tr("reading the start"), partial(making_start, outline))
+
+    def stop(self) -> None:
+        """Forget what is still being read: another start was chosen."""
+        self._wish.stop()
+
+    def _take(self, found: StartShape | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self.choice_wanted.emit(found)
+            return
+        self._session.apply(edits.set_settings(self._session.document, start=found))
+        self._session.history.end_drag()
+        self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=found.name))
+
+
+class SecondReader(QObject):
+    """Reads the second target; it is shown at the angle, and with the weight, of the one before."""
+
+    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self._wish = Wish[TargetRead | PartsRead](session, self._take_read)
+
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
+
+    def _take_read(self, found: TargetRead | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self.choice_wanted.emit(found)
+        else:
+            self.take(found.outline)
+
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts, the usual one or another."""
+        self.take(outline)
+
+    def take(self, outline: Outline) -> None:
+        """Take a shape that was read or drawn."""
+        self.stop()
+        session, settings = self._session, self._session.document.settings
+        session.apply(edits.set_settings(session.document, second=second_for(settings, outline)))
+        session.history.end_drag()
+        session.set_status(tr("Sheets pass {name} on their way. Press Generate (Ctrl+G).", name=outline.name))
+
+    def stop(self) -> None:
+        """Forget what is still being read: another second target was chosen, or none."""
+        self._wish.stop()
+
+
+def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
+    """A second target as the settings have it, with another outline; the first is shown at the usual angle, or halfway
+    to the target's where the sheet does not come so far.
+    """
+    if settings.second is not None:
+        return replace(settings.second, outline=outline)
+    phi = USUAL_PHI if settings.phi < USUAL_PHI else 0.5 * (settings.phi + math.pi)
+    return SecondTarget(outline, phi, USUAL_WEIGHT)
+
+
+class Targeting(QObject):
+    """Reads and traces targets in the worker; every gesture on the target passes here."""
+
+    replaced = Signal(Edit)  #: all work for the old target is pointless now
+    adjusted = Signal(Edit)  #: by a step of a threshold's drag
+    begun = Signal(Document)  #: that the history is to start from
+    source_read = Signal(str)  #: where a target was read from
+    question_wanted = Signal(Outline)  #: it would take the place of what was drawn by hand
+
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
+        self.tracer = PictureTracer(session, self)
+        self.reader = TargetReader(session, self.tracer, self)
+        self.reader.read.connect(self._take_read)
+        self.reader.failed.connect(session.report_failure)
+        self.tracer.traced.connect(self._take_traced)
+        self.tracer.refused.connect(session.set_status)
+        self.tracer.settled.connect(session.history.end_drag)
+
+    def remember_sources(self, earlier: Targeting) -> None:
+        """Know the pictures and drawings that the targets of an earlier window were read from."""
+        self.tracer.pictures.update(earlier.tracer.pictures)
+        self.reader.drawings.update(earlier.reader.drawings)
+
+    def stop(self) -> None:
+        """Forget what is still being read or traced."""
+        self.reader.stop()
+        self.tracer.stop()
+
+    def open(self, source: str, occasion: Occasion = Occasion.WANTED) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self._session.set_status(tr("Reading {name} …", name=Path(source).name))
+        self.reader.start(source, occasion)
+
+    def choose_parts(self) -> None:
+        """Ask again for the parts of the drawing that the target was read from."""
+        target = self._session.document.target
+        if target is not None:
+            self.reader.choose_again(target)
+
+    def start_with(self, source: str) -> None:
+        """Read the first target; in an untouched project it is where the history starts, no change to be undone."""
+        self.open(source, Occasion.START)
+
+    def change_threshold(self, threshold: float | None) -> None:
+        """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
+        picture = self.tracer.picture_of(self._session.document.target)
+        if picture is not None:
+            self.tracer.retrace(picture, threshold)
+
+    def reshape(self, edit: Edit) -> None:
+        """Take an edit of the target that was made by drawing."""
+        self.replaced.emit(edit)
+        self._session.set_status(tr("Done: {label}.", label=edit.label))
+
+    def clear(self) -> None:
+        """Start over with an empty target."""
+        document = self._session.document
+        if document.target is not None:
+            self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
+            self._session.set_status(tr("Target cleared. Undo restores it."))
+
+    def _take_traced(self, outline: Outline) -> None:
+        self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
+        self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
+
+    def _take_read(self, outline: Outline, occasion: Occasion) -> None:
+        document, history = self._session.document, self._session.history
+        untouched = document.target is None and self._session.path is None and not history.steps
+        if occasion is Occasion.START and untouched:
+            self.begun.emit(replace(document, target=outline))
+            self.source_read.emit(self.reader.source)
+            said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
+            self._session.set_status(said)
+        elif document.drawing or (document.drawn_by_hand and occasion is not Occasion.AGAIN):
+            self._session.set_status(tr("Read {name}. Nothing has changed yet.", name=tr(outline.name)))
+            self.question_wanted.emit(outline)
+        else:
+            self.set_target(outline)
+
+    def set_target(self, outline: Outline) -> None:
+        """Take a target that was read in the place of the present one."""
+        self.replaced.emit(edits.set_target(self._session.document, outline))
+        self.source_read.emit(self.reader.source)
+        said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
+        self._session.set_status(said)

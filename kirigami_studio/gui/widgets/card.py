@@ -1,0 +1,192 @@
+"""The framed box that every panel of the window sits in."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QObject, QSize, Qt
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import (
+    QAbstractSpinBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QLayout,
+    QScrollArea,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.fitted_text import fits, fitted, shortened
+from kirigami_studio.gui.widgets.number_field import number_field
+from kirigami_studio.gui.widgets.theme import Palette
+
+TOOL_ICON = QSize(18, 18)
+INSET = 12
+
+
+class Card(QFrame):
+    """A titled box: a header row, then whatever is added to :attr:`body`."""
+
+    def __init__(self, title: str, parent: QWidget | None = None, right_inset: int = INSET) -> None:
+        super().__init__(parent)
+        self.setObjectName("card")
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(INSET, 8, right_inset, INSET)
+        outer.setSpacing(8)
+        self.header = QHBoxLayout()
+        self.header.setSpacing(4)
+        self.title = QLabel(title)
+        self.title.setObjectName("cardTitle")
+        self.title.setMinimumHeight(30)
+        self.header.addWidget(self.title, 1)
+        self.body = QVBoxLayout()
+        self.body.setSpacing(8)
+        outer.addLayout(self.header)
+        outer.addLayout(self.body, 1)
+
+
+class ToolButton(QToolButton):
+    """A flat button with one of the program's icons, in the colours of the theme once that is known."""
+
+    def __init__(self, name: str, icon: str, tip: str, checkable: bool = False) -> None:
+        super().__init__()
+        self._icon_name = icon
+        self._palette: Palette | None = None
+        self.setObjectName(name)
+        self.setToolTip(tip)
+        self.setAccessibleName(tip.split(".")[0])
+        self.setCheckable(checkable)
+        self.setIconSize(TOOL_ICON)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+
+    def show_icon(self, name: str) -> None:
+        """Show another icon."""
+        self._icon_name = name
+        if self._palette is not None:
+            self.setIcon(icons.icon(name, self._palette))
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self.show_icon(self._icon_name)
+
+
+class ElidedLabel(QLabel):
+    """One muted line, shorter or with an ellipsis where it does not fit; the tooltip has it whole."""
+
+    def __init__(self, cut_off: Qt.TextElideMode = Qt.TextElideMode.ElideMiddle) -> None:
+        super().__init__()
+        self.setObjectName("muted")
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._cut_off = cut_off
+        self._shorter: tuple[str, ...] = ()
+
+    def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
+        """Set a text, and ``shorter`` versions of which the first that fits is shown."""
+        self._shorter = shorter
+        super().setText(shortened(text))
+        self.setToolTip(self.text())
+
+    def drawn_text(self) -> str:
+        """What is shown at the present width."""
+        room = self.contentsRect().width()
+        return fitted(self.fontMetrics(), (self.text(), *self._shorter), room, self._cut_off)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        painter = QPainter(self)
+        painter.setPen(self.palette().color(self.foregroundRole()))
+        painter.drawText(
+            self.contentsRect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
+        )
+        painter.end()
+
+
+class FittingLabel(QLabel):
+    """Shows the longest of several texts that fits, or none."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("muted")
+        self._texts: tuple[str, ...] = ()
+
+    def set_texts(self, *texts: str) -> None:
+        """The texts to choose from, longest first."""
+        self._texts = texts
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(0, super().minimumSizeHint().height())
+
+    def fit(self, width: int) -> bool:
+        """Show the longest text that fits into ``width`` pixels; whether any does."""
+        chosen = next((text for text in self._texts if fits(self.fontMetrics(), text, width)), "")
+        self.setText(chosen)
+        self.setVisible(bool(chosen))
+        return bool(chosen)
+
+
+class ScrolledWhenShort(QScrollArea):
+    """As high as its content where that fits, scrolled where it does not."""
+
+    def __init__(self, content: QWidget, least: int) -> None:
+        super().__init__()
+        self._least = least
+        self._content = content
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        self.setWidget(content)
+        content.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
+
+    def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return self._content.sizeHint()
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(self._content.minimumSizeHint().width(), min(self._least, self.sizeHint().height()))
+
+
+def compact(box: QAbstractSpinBox, width: int = 62) -> None:
+    """Let a number field be as narrow as its column instead of as wide as its largest number."""
+    box.setMinimumWidth(width)
+    number_field(box)
+    box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+
+
+def captioned(text: str, buddy: QWidget, content: QWidget | QLayout) -> QVBoxLayout:
+    """A small caption above a control; ``buddy`` gets the focus when its mnemonic is pressed."""
+    caption = QLabel(text)
+    caption.setObjectName("muted")
+    caption.setBuddy(buddy)
+    column = QVBoxLayout()
+    column.setSpacing(3)
+    column.addWidget(caption)
+    if isinstance(content, QWidget):
+        column.addWidget(content)
+    else:
+        column.addLayout(content)
+    return column
+
+
+def muted_label() -> QLabel:
+    """A muted label that wraps."""
+    label = QLabel()
+    label.setObjectName("muted")
+    label.setWordWrap(True)
+    return label
+
+
+def own_markup(label: QLabel) -> None:
+    """Show a label's text as HTML: for text of the program's own, never for a name, a path or a message.
+
+    Every other label and every tooltip of the application is plain text: ``studio.qss`` says so.
+    """
+    label.setProperty("markup", True)
+    label.setTextFormat(Qt.TextFormat.RichText)

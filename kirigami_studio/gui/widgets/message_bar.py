@@ -1,0 +1,223 @@
+"""Messages that do not stop the work: one line, details on demand, none lost.
+
+The bar lies over the window's tool bar, where the project's name stands otherwise, and a long message hangs down over
+the page: nothing on the page moves when one comes or goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QRect, Qt, Signal
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPlainTextEdit,
+    QPushButton,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.card import ToolButton
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+
+#: Lines of details that are shown without scrolling.
+MOST_LINES = 9
+
+
+class MessageBar(QFrame):
+    """Shows the newest message; earlier ones stay a click away until they are closed.
+
+    Its owner says where it lies, by :meth:`lay_over`, whenever that changes or ``content_changed`` is told.
+    """
+
+    content_changed = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("messageBar")
+        self._palette: Palette = LIGHT
+        self._messages: list[Message] = []
+        self._at = 0
+        self.icon = QLabel()
+        self.sentence = QLabel()
+        self.sentence.setWordWrap(True)
+        self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.details = QPushButton(tr("Details"))
+        self.details.setObjectName("link")
+        self.details.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.details.setCheckable(True)
+        self.copy = ToolButton("copyMessage", "copy", tr("Copy the message and its details."))
+        self.previous = ToolButton("previousMessage", "previous", tr("Previous message."))
+        self.position = QLabel()
+        self.position.setObjectName("muted")
+        self.next = ToolButton("nextMessage", "next", tr("Next message."))
+        self.close_button = ToolButton("closeMessage", "close", tr("Close this message."))
+        self.close_all_button = QPushButton(tr("Close all"))
+        self.close_all_button.setObjectName("link")
+        self.close_all_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.close_all_button.setToolTip(tr("Close all messages."))
+        self.trace = QPlainTextEdit()
+        self.trace.setReadOnly(True)
+        self.trace.setAccessibleName(tr("Message details"))
+        self._line = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._buttons = QHBoxLayout()
+        self._actions = QHBoxLayout()
+        self._actions.setSpacing(6)
+        self._lay_out()
+        self.details.toggled.connect(self._show_details)
+        self.copy.clicked.connect(self._copy)
+        self.previous.clicked.connect(lambda: self._go(self._at - 1))
+        self.next.clicked.connect(lambda: self._go(self._at + 1))
+        self.close_button.clicked.connect(self.close_message)
+        self.close_all_button.clicked.connect(lambda: self.dismiss(*Tone))
+        self.hide()
+
+    def _lay_out(self) -> None:
+        words = QHBoxLayout()
+        words.setSpacing(8)
+        words.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
+        words.addWidget(self.sentence, 1)
+        self._buttons.setSpacing(8)
+        self._buttons.addStretch(1)
+        self._buttons.addLayout(self._actions)
+        for part in (
+            self.details,
+            self.previous,
+            self.position,
+            self.next,
+            self.close_all_button,
+            self.copy,
+            self.close_button,
+        ):
+            self._buttons.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
+        self._line.setSpacing(8)
+        self._line.addLayout(words, 1)
+        self._line.addLayout(self._buttons)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(12, 5, 6, 5)
+        column.setSpacing(4)
+        column.addLayout(self._line)
+        column.addWidget(self.trace)
+        self.trace.hide()
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """All open messages, oldest first."""
+        return tuple(self._messages)
+
+    def add(self, message: Message) -> None:
+        """Show a message; an equal one that is still open is not repeated."""
+        if message in self._messages:
+            self._go(self._messages.index(message))
+            return
+        # A hint or a success has had its say once something newer comes; errors and warnings stay.
+        self._messages = [one for one in self._messages if one.tone in (Tone.ERROR, Tone.WARNING)]
+        self._messages.append(message)
+        self._go(len(self._messages) - 1)
+
+    def close_message(self) -> None:
+        """Close the message that is shown."""
+        if self._messages:
+            del self._messages[self._at]
+        self._go(min(self._at, len(self._messages) - 1))
+
+    def dismiss(self, *tones: Tone) -> None:
+        """Close all messages of these tones."""
+        self._messages = [one for one in self._messages if one.tone not in tones]
+        self._go(len(self._messages) - 1)
+
+    def drop(self, message: Message) -> None:
+        """Close one message, wherever it stands; one that is closed already stays so."""
+        if message in self._messages:
+            self._messages.remove(message)
+            self._go(len(self._messages) - 1)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._go(self._at)
+
+    def lay_over(self, room: QRect) -> None:
+        """Lie over this part of the parent, from its top down as far as the message needs.
+
+        Buttons stand beside the sentence, or below it where that takes less height.
+        """
+        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        buttons = self._buttons.sizeHint()
+        # Room for the sentence below nothing but the icon, and what of it the buttons would take.
+        words = room.width() - self.icon.sizeHint().width() - 4 * self._line.spacing()
+        beside = self.sentence.heightForWidth(words - buttons.width() - self._line.spacing())
+        below = self.sentence.heightForWidth(words) + self._line.spacing() + buttons.height()
+        direction = across if max(beside, buttons.height()) <= below else down
+        if direction is not self._line.direction():
+            self._line.setDirection(direction)
+        layout = self.layout()
+        needed = 0 if layout is None else layout.totalHeightForWidth(room.width())
+        self.setGeometry(room.x(), room.y(), room.width(), max(needed, room.height()))
+
+    def event(self, event: QEvent) -> bool:
+        """A layout that has changed may need another height."""
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.content_changed.emit()
+        return super().event(event)
+
+    def _go(self, index: int) -> None:
+        self.setVisible(bool(self._messages))
+        self.raise_()
+        if not self._messages:
+            self._at = 0
+            return
+        self._at = min(max(index, 0), len(self._messages) - 1)
+        message = self._messages[self._at]
+        self.sentence.setText(message.sentence)
+        self.trace.setPlainText(message.details)
+        self.details.setVisible(bool(message.details))
+        self.details.setChecked(False)
+        several = len(self._messages) > 1
+        for part in (self.previous, self.position, self.next, self.close_all_button):
+            part.setVisible(several)
+        self.position.setText(tr("{at} of {count}", at=self._at + 1, count=len(self._messages)))
+        self.previous.setEnabled(self._at > 0)
+        self.next.setEnabled(self._at < len(self._messages) - 1)
+        colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
+        self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
+        self._show_actions(message)
+        self.setProperty("tone", message.tone.value)
+        self.style().unpolish(self)
+        self.style().polish(self)
+
+    def _show_actions(self, message: Message) -> None:
+        while (item := self._actions.takeAt(0)) is not None:
+            button = item.widget()
+            if button is not None:
+                button.hide()
+                button.deleteLater()
+        for label, act in message.actions:
+            choice = QPushButton(label)
+            choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            choice.clicked.connect(lambda _=False, act=act: self._act(act, message))
+            self._actions.addWidget(choice)
+
+    def _act(self, act: Callable[[], None], message: Message) -> None:
+        if message in self._messages:
+            self._messages.remove(message)
+        self._go(len(self._messages) - 1)
+        act()
+
+    def _show_details(self, shown: bool) -> None:
+        lines = min(max(self.trace.blockCount(), 2), MOST_LINES)
+        self.trace.setFixedHeight(lines * self.trace.fontMetrics().lineSpacing() + 18)
+        self.trace.setVisible(shown)
+
+    def _copy(self) -> None:
+        message = self._messages[self._at]
+        QGuiApplication.clipboard().setText(f"{message.sentence}\n\n{message.details}".strip())

@@ -1,0 +1,96 @@
+"""The Edit menu: undo and redo, the clipboard, the target."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtGui import QGuiApplication
+
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.session.command import Command, WindowState, Wording
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.window.main_window import MainWindow
+
+
+def commands(window: MainWindow) -> tuple[Command, ...]:
+    """Return the commands of the Edit menu."""
+    controller, picturing, menu = window.controller, window.picturing, tr("&Edit")
+    return (
+        Command(
+            "undo",
+            menu,
+            tr("&Undo"),
+            tr("Undo"),
+            controller.undo,
+            shortcuts=("Ctrl+Z",),
+            icon="undo",
+            enabled_when=lambda now: now.undo_label is not None,
+            worded=_undo_wording,
+        ),
+        Command(
+            "redo",
+            menu,
+            tr("&Redo"),
+            tr("Redo"),
+            controller.redo,
+            shortcuts=("Ctrl+Y", "Ctrl+Shift+Z"),
+            icon="redo",
+            enabled_when=lambda now: now.redo_label is not None,
+            worded=_redo_wording,
+        ),
+        Command(
+            "history",
+            menu,
+            tr("&History …"),
+            tr("List all steps and jump to one"),
+            window.dialogs.show_history,
+            shortcuts=("Ctrl+Shift+H",),
+        ),
+        Command(
+            "paste",
+            menu,
+            tr("&Paste target"),
+            tr("Paste a picture, SVG or path as the target"),
+            lambda: window.pasting.take(QGuiApplication.clipboard().mimeData()),
+            shortcuts=("Ctrl+V",),
+            gap=True,
+        ),
+        Command(
+            "copy_picture",
+            menu,
+            tr("&Copy picture"),
+            tr("Copy a picture of the active view"),
+            lambda: picturing.copy(picturing.view_at_work()),
+            shortcuts=("Ctrl+Shift+C",),
+        ),
+        Command(
+            "copy_cuts",
+            menu,
+            tr("Copy cuts as S&VG"),
+            tr("Copy the cut plan as SVG in mm"),
+            picturing.copy_cuts,
+            shortcuts=("Ctrl+Alt+C",),
+        ),
+        Command(
+            "clear",
+            menu,
+            tr("Clear tar&get"),
+            tr("Remove the target"),
+            controller.targeting.clear,
+            icon="clear",
+            enabled_when=lambda now: now.has_target,
+        ),
+    )
+
+
+def _undo_wording(now: WindowState) -> Wording:
+    if now.undo_label is None:
+        return Wording(tr("&Undo"), tr("Undo"), "undo")
+    return Wording(tr("&Undo: {step}", step=now.undo_label), tr("Undo: {step}", step=now.undo_label), "undo")
+
+
+def _redo_wording(now: WindowState) -> Wording:
+    if now.redo_label is None:
+        return Wording(tr("&Redo"), tr("Redo"), "redo")
+    return Wording(tr("&Redo: {step}", step=now.redo_label), tr("Redo: {step}", step=now.redo_label), "redo")

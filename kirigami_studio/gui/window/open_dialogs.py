@@ -1,0 +1,272 @@
+"""The dialogs of a window: opened on demand, kept, and closed with it.  None of them blocks the window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QRect, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QWidget
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets import theme
+from kirigami_studio.gui.widgets.number_field import leave_wheel
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.studio.making import Exported
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.gallery.label_editor import LabelEditor
+    from kirigami_studio.gui.make.export_report import ExportReport
+    from kirigami_studio.gui.make.material_editor import MaterialEditor
+    from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
+    from kirigami_studio.gui.target.outline_board import OutlineBoard
+    from kirigami_studio.gui.target.part_picker import PartPicker
+    from kirigami_studio.gui.target.silhouette_picker import SilhouettePicker
+    from kirigami_studio.gui.target.start_board import StartBoard
+    from kirigami_studio.gui.window.about import AboutWindow
+    from kirigami_studio.gui.window.guide import GuideWindow
+    from kirigami_studio.gui.window.history_list import HistoryList
+    from kirigami_studio.gui.window.main_window import MainWindow
+    from kirigami_studio.gui.window.pairs import PairGallery
+    from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
+    from kirigami_studio.outlines.outline import Outline
+    from kirigami_studio.studio.parts import PartsRead, Purpose
+
+
+class Dialogs(QObject):
+    """Opens each dialog of one window; its module is imported when it is first wanted."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self.guide: GuideWindow | None = None
+        self.picker: SilhouettePicker | None = None
+        self.report: ExportReport | None = None
+        self.materials: MaterialEditor | None = None
+        self.history: HistoryList | None = None
+        self.shortcuts: ShortcutSheet | None = None
+        self.about: AboutWindow | None = None
+        self.start_board: StartBoard | None = None
+        self.second_board: OutlineBoard | None = None
+        self.pairs: PairGallery | None = None
+        self.parts: PartPicker | None = None
+        self._take_parts: Callable[[Outline, bool], None] = controller.targeting.reader.take_chosen
+        self.artwork: ArtworkEditor | None = None
+        self.label: LabelEditor | None = None
+
+    def show_materials(self) -> None:
+        """Open the material editor, or bring it to the front."""
+        from kirigami_studio.gui.make.material_editor import MaterialEditor
+
+        key = self._controller.document.fabrication.material
+        if self.materials is None:
+            self.materials = MaterialEditor(self._window, key)
+            self.materials.materials_changed.connect(self.reload_materials)
+            self.materials.coupon_wanted.connect(self._window.files.export_coupon)
+        self.materials.choose(key)
+        bring_to_front(self.materials)
+
+    def reload_materials(self) -> None:
+        """The materials on disk have changed."""
+        self._window.fabrication.reload_materials()
+        self._controller.replan()
+
+    def show_report(self, exported: Exported) -> None:
+        """Show what two readers found in a written cut file, in the place of an earlier report."""
+        from kirigami_studio.gui.make.export_report import ExportReport
+
+        self.close_report()
+        if not exported.verifications:
+            return
+        self.report = ExportReport(self._window, exported.verifications, self._window.palette_, exported.verdict)
+        self.report.folder_wanted.connect(show_in_folder)
+        self.report.show()
+
+    def close_report(self) -> None:
+        """Close the report, if there is one."""
+        if self.report is not None:
+            self.report.close()
+            self.report.deleteLater()
+            self.report = None
+
+    def show_history(self) -> None:
+        """Open the list of all steps, or bring it to the front."""
+        from kirigami_studio.gui.window.history_list import HistoryList
+
+        if self.history is None:
+            self.history = HistoryList(self._window)
+            self.history.step_wanted.connect(self._controller.go_to)
+            self._controller.session.document_changed.connect(self._update_history)
+        self.history.show()
+        self._update_history()
+        bring_to_front(self.history)
+
+    def _update_history(self) -> None:
+        if self.history is not None and self.history.isVisible():
+            self.history.show_history(self._controller.history, self._window.palette_)
+
+    def show_library(self) -> None:
+        """Open the popup with the library's silhouettes, for the target."""
+        self._pick_silhouette(self._controller.targeting.open, self._window.target.buttons["library"])
+
+    def show_start_library(self, below: QWidget) -> None:
+        """Open it for the start outline, below what was clicked."""
+        self._pick_silhouette(self._controller.start.open, below)
+
+    def show_start_board(self) -> None:
+        """Open the board that the start is drawn on, with the present start."""
+        from kirigami_studio.gui.target.start_board import StartBoard
+
+        if self.start_board is None:
+            self.start_board = StartBoard(self._window)
+            self.start_board.taken.connect(self._controller.start.draw)
+            self.start_board.check_wanted.connect(self._controller.start.check)
+            self._controller.start.checked.connect(self.start_board.show_check)
+            self._colour(self.start_board)
+        self.start_board.begin(self._controller.document.settings.start.outline)
+        bring_to_front(self.start_board)
+
+    def show_second_library(self, below: QWidget) -> None:
+        """Open the popup with the library's silhouettes for the second target, below what was clicked."""
+        self._pick_silhouette(self._controller.second.open, below)
+
+    def show_second_board(self) -> None:
+        """Open the board that the second target is drawn on, with the present one."""
+        from kirigami_studio.gui.target.outline_board import SECOND_WORDS, OutlineBoard
+
+        if self.second_board is None:
+            self.second_board = OutlineBoard(self._window, SECOND_WORDS)
+            self.second_board.taken.connect(self._controller.second.take)
+            self._colour(self.second_board)
+        second = self._controller.document.settings.second
+        self.second_board.begin(None if second is None else second.outline)
+        bring_to_front(self.second_board)
+
+    def show_pairs(self) -> None:
+        """Open the gallery of pairs, or bring it to the front."""
+        from kirigami_studio.gui.window.pairs import PairGallery
+
+        if self.pairs is None:
+            self.pairs = PairGallery(self._window, self._controller.queue)
+            self.pairs.chosen.connect(self._window.files.open_pair)
+        self._colour(self.pairs)
+        self.pairs.read()
+        bring_to_front(self.pairs)
+
+    def show_parts(self, purpose: Purpose, take: Callable[[Outline, bool], None], read: PartsRead) -> None:
+        """Ask which parts of a drawing are the target, the start or the second target."""
+        from kirigami_studio.gui.target.part_picker import PartPicker
+
+        if self.parts is None:
+            session = self._controller.session
+            self.parts = PartPicker(self._window, self._controller.queue)
+            self.parts.taken.connect(lambda outline, usual: self._take_parts(outline, usual))
+            self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
+        self._take_parts = take
+        self.parts.begin(read, purpose)
+        self._colour(self.parts)
+        bring_to_front(self.parts)
+
+    def show_artwork(self) -> None:
+        """Open the window that lays a picture on the sheet, or bring it to the front."""
+        from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
+
+        if self.artwork is None:
+            keeper = self._controller.artwork
+            self.artwork = ArtworkEditor(self._window)
+            self.artwork.picture_wanted.connect(self._window.files.ask_artwork)
+            self.artwork.removed.connect(keeper.remove)
+            self.artwork.second_wanted.connect(self._window.files.ask_second_artwork)
+            self.artwork.second_removed.connect(keeper.remove_second)
+            self.artwork.stripes_wanted.connect(keeper.share)
+            self.artwork.changed.connect(lambda changes: keeper.place(**changes))
+            self.artwork.edited.connect(self._controller.end_drag)
+            self.artwork.export_wanted.connect(self._window.files.export_artwork)
+            self._controller.session.document_changed.connect(self._update_artwork)
+            self._controller.session.display.stage_changed.connect(self._update_artwork)
+        self._update_artwork()
+        bring_to_front(self.artwork)
+
+    def _update_artwork(self) -> None:
+        if self.artwork is not None:
+            self.artwork.show_artwork(self._controller.document.artwork, self._controller.stage is not None)
+
+    def _colour(self, dialog: QWidget) -> None:
+        """Give the parts of a new dialog the colours of the theme."""
+        for part in theme.themed((dialog, *dialog.findChildren(QWidget))):
+            part.set_palette(self._window.palette_)
+
+    def _pick_silhouette(self, take: Callable[[str], None], below: QWidget) -> None:
+        from kirigami_studio.gui.target.silhouette_picker import SilhouettePicker
+
+        self.picker = SilhouettePicker(self._window, self._window.palette_)
+        self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.picker.chosen.connect(take)
+        self.picker.show_below(below)
+
+    def show_label(self, candidate: Candidate | None, beside: QRect) -> None:
+        """Open the name and the note of a design beside a place on the screen."""
+        from kirigami_studio.gui.gallery.label_editor import LabelEditor
+
+        label = self._controller.labels.of(candidate)
+        if label is None:
+            return
+        self.label = LabelEditor(self._window, label, partial(self._controller.labels.set, label))
+        self.label.destroyed.connect(self._forget_label)
+        self.label.show_beside(beside)
+
+    def _forget_label(self) -> None:
+        self.label = None
+
+    def show_guide(self) -> None:
+        """Open the guide, or bring it to the front."""
+        from kirigami_studio.gui.window.guide import GuideWindow
+
+        if self.guide is None:
+            self.guide = GuideWindow(self._window)
+        bring_to_front(self.guide)
+
+    def show_shortcuts(self) -> None:
+        """Open the sheet of keys and gestures, or bring it to the front."""
+        from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
+
+        if self.shortcuts is None:
+            self.shortcuts = ShortcutSheet(self._window, self._window.commands.records)
+        bring_to_front(self.shortcuts)
+        self.shortcuts.search.setFocus()
+
+    def show_about(self) -> None:
+        """Open the window with version and licences, or bring it to the front."""
+        from kirigami_studio.gui.window.about import AboutWindow
+
+        if self.about is None:
+            self.about = AboutWindow(self._window)
+        bring_to_front(self.about)
+
+    def close(self) -> None:
+        """The window is closing, and its dialogs with it."""
+        self.close_report()
+        asking = (self.start_board, self.second_board, self.parts)
+        read = (self.guide, self.history, self.shortcuts, self.about)
+        for dialog in (self.materials, *read, *asking, self.pairs, self.artwork):
+            if dialog is not None:
+                dialog.close()
+
+
+def bring_to_front(dialog: QWidget) -> None:
+    """Show a dialog over the others and give it the keyboard."""
+    leave_wheel(dialog)
+    dialog.show()
+    dialog.raise_()
+    dialog.activateWindow()
+
+
+def show_in_folder(path: Path) -> None:
+    """Let the desktop show the folder that a written file lies in, or a written folder itself."""
+    folder = path if path.is_dir() else path.parent
+    QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))

@@ -1,0 +1,497 @@
+"""The chosen design, large: layout, cuts or comparison, with overlays, plots and the deployment."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.gallery.compare_page import ComparePage
+from kirigami_studio.gui.gallery.gallery_model import described
+from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
+from kirigami_studio.gui.make.verdict_bar import VerdictBar
+from kirigami_studio.gui.session.overlays import USUAL, Overlay
+from kirigami_studio.gui.session.session import Entry
+from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutState
+from kirigami_studio.gui.stage.as_cut_line import AsCutLine
+from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
+from kirigami_studio.gui.stage.empty_stage import EmptyStage
+from kirigami_studio.gui.stage.ends_line import EndsLine
+from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, LayoutView
+from kirigami_studio.gui.stage.plots_panel import PlotsPanel
+from kirigami_studio.gui.stage.void_bar import VoidBar
+from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.two_states import TwoStates
+
+#: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
+WIDE = 640
+#: A stage lower than this (pixels) leaves room to the drawing: one line for the worst problem, none for the slider's
+#: ends.
+LOW = 630
+#: Pixels between the title and the numbers at least.
+GAP = 12
+OVERLAYS = (
+    (Overlay.TARGET, "target", mark("Show the target's outline (T).")),
+    (
+        Overlay.MISMATCH,
+        "mismatch",
+        mark("Show missing and extra area near the target angle (M). Orange stripes: missing; dark stripes: extra."),
+    ),
+    (Overlay.FAULTS, "fault", mark("Mark inverted panels and contacts (F).")),
+)
+BEFORE = mark("Before polish: show the design as generated (B).")
+NEVER_POLISHED = mark("Before polish (B). Nothing to compare: polishing has not changed this design.")
+NEVER_SAMPLED = mark("Before polish (B). Nothing to compare: the model did not generate this design.")
+TRIM = mark("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
+UNTRIM = mark("Trim to target (Ctrl+T). Press again to untrim.")
+TRIMMING = mark("Trimming … Press again, or Esc, to stop.")
+CUTS = mark("Cuts: show the cut plan at kerf width (C).")
+PLOTS = mark("Plots: match, area, size and gaps at every angle (J).")
+
+
+class StagePanel(Card):
+    """Shows one entry of the gallery at any angle, as it is or as the generator sampled it."""
+
+    overlays_changed = Signal(frozenset)  #: of Overlay
+    before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
+    trim_wanted = Signal(bool)
+    plots_wanted = Signal(bool)
+    status = Signal(str)
+    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
+    comparing_changed = Signal(bool)  #: whether two designs are shown side by side
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(tr("Layout"), parent)
+        self._entry: Entry | None = None
+        self._sample: Entry | None = None
+        self._target: Outline | None = None
+        self._name = ""
+        self._width_mm = USUAL_WIDTH_MM
+        self._trimmable, self._trimming = True, False
+        self._as_cut = UNKNOWN
+        self._sample_allowed = True
+        self._posed_for: Outline | None = None  #: the target at whose angle the first design was shown
+        self.view = LayoutView()
+        self.tour = FaultTour(self.view)
+        self.deployment = DeploymentBar()
+        self.ends = EndsLine()
+        self.cuts = CutsPage()
+        self.as_cut = AsCutLine()
+        self.plots = PlotsPanel()
+        self.compare = ComparePage()
+        self.numbers = FittingLabel()
+        self.header.addWidget(self.numbers)
+        self.header.addSpacing(8)
+        self.cuts_switch = ToolButton("cuts", "cuts", tr(CUTS), checkable=True)
+        self.cuts_switch.toggled.connect(self._toggle_cuts)
+        self.before = ToolButton("before", "before", tr(BEFORE), checkable=True)
+        self.before.toggled.connect(self._toggle_before)
+        self.trim = ToolButton("trim", "trim", tr(TRIM), checkable=True)
+        self.trim.clicked.connect(self.trim_wanted)
+        tip = tr(
+            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
+            "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
+        )
+        self.hand = ToolButton("hand", "hand", tip, checkable=True)
+        self.hand.toggled.connect(self._toggle_hand)
+        for switch in (self.cuts_switch, self.before, self.trim, self.hand):
+            self.header.addWidget(switch)
+        self.header.addSpacing(6)
+        self._add_overlays()
+        self._add_pages()
+        self.deployment.phi_changed.connect(self.view.set_phi)
+        self.ends.phi_wanted.connect(self.deployment.set_phi)
+        self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
+        self.deployment.phi_changed.connect(self.plots.set_phi)
+        self.plots.phi_wanted.connect(self.deployment.set_phi)
+        self.tour.phi_wanted.connect(self.deployment.set_phi)
+        self.tour.status.connect(self.status)
+        self.deployment.phi_changed.connect(self.compare.set_phi)
+        self.compare.phi_changed.connect(self.deployment.set_phi)
+        self.overlays_changed.connect(self.compare.set_overlays)
+
+    def _add_overlays(self) -> None:
+        """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
+        self.toggles: dict[Overlay, ToolButton] = {}
+        for overlay, icon, tip in OVERLAYS:
+            button = ToolButton(f"show{overlay.value.capitalize()}", icon, tr(tip), checkable=True)
+            button.setChecked(True)
+            button.toggled.connect(self._update_overlays)
+            self.toggles[overlay] = button
+            self.header.addWidget(button)
+        self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
+        self.overlays_button = ToolButton("overlays", "overlays", tr("Overlays on the layout."))
+        self.overlays_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.overlay_menu = QMenu(self.overlays_button)
+        self.overlay_menu.setToolTipsVisible(True)
+        self.overlays_button.setMenu(self.overlay_menu)
+        self.header.addWidget(self.overlays_button)
+        for button in self.cuts.toggles.values():
+            self.header.addWidget(button)
+            button.hide()
+        self.plots_switch = ToolButton("plots", "plots", tr(PLOTS), checkable=True)
+        self.plots_switch.toggled.connect(self._toggle_plots)
+        self.header.addWidget(self.plots_switch)
+        self.whole = ToolButton("fit", "fit", tr("Fit view (0)."))
+        self.whole.clicked.connect(self.fit)
+        self.header.addWidget(self.whole)
+        for button in (self.whole, *self.toggles.values()):
+            button.hide()  # until it is known that there is room: they must not make the stage wider than its share
+
+    def _add_pages(self) -> None:
+        self._layout_page = layout = QWidget()
+        layout.setObjectName("plain")
+        column = QVBoxLayout(layout)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        self.split = QSplitter(Qt.Orientation.Vertical)
+        self.split.setChildrenCollapsible(False)
+        self.split.addWidget(self.view)
+        self.split.addWidget(self.plots)
+        self.split.setStretchFactor(0, 1)
+        self.plots.hide()
+        self.empty = EmptyStage()
+        self.empty.hide()
+        column.addWidget(self.empty, 1)
+        column.addWidget(self.split, 1)
+        self.voids = VoidBar()
+        self.voids.hide()
+        column.addWidget(self.voids)
+        column.addWidget(self.deployment)
+        column.addWidget(self.ends)
+        column.addWidget(self.as_cut)
+        self.pages = QStackedWidget()
+        self.pages.addWidget(layout)
+        self.pages.addWidget(self.cuts)
+        self.pages.addWidget(self.compare)
+        self.body.addWidget(self.pages, 1)
+        self.verdict = VerdictBar()
+        self.body.addWidget(self.verdict)
+
+    def set_hint(self, icon: str, headline: str, hint: str) -> None:
+        """Say what to do while there is no design."""
+        self.view.set_hint(icon, headline, hint)
+        self.empty.say(headline, hint)
+
+    def show_run(self, target: Outline | None) -> None:
+        """Show the target until the first design of a run comes; the sample must not hide that."""
+        self._sample_allowed, self._target = False, target
+        self.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        self._show_waiting()
+
+    def show_idle(self) -> None:
+        """No design is on its way."""
+        self._sample_allowed = True
+        self._show_waiting()
+
+    def _show_waiting(self) -> None:
+        self.place_sample()
+        if self._entry is None:
+            self._show()
+
+    def place_sample(self) -> None:
+        """Show the sample while there is no design, if it is there and allowed."""
+        shown = self._sample_allowed and self._entry is None and self.empty.ready
+        pages: tuple[QWidget, QWidget] = (self.split, self.empty)
+        leaving, coming = pages if shown else pages[::-1]
+        focused = self.window().focusWidget()
+        held = focused is not None and (leaving is focused or leaving.isAncestorOf(focused))
+        coming.show()
+        if held:  # else Qt would hand it to the next button
+            (self.empty if shown else self.view).setFocus()
+        leaving.hide()
+
+    @property
+    def showing_cuts(self) -> bool:
+        """Whether the cut plan is shown instead of the layout."""
+        return self.cuts_switch.isChecked()
+
+    @property
+    def comparing(self) -> bool:
+        """Whether two designs are shown side by side."""
+        return self.pages.currentWidget() is self.compare
+
+    @property
+    def player(self) -> DeploymentBar | CutBar:
+        """What Space plays now."""
+        return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
+
+    def fit(self) -> None:
+        """Show everything of what is in sight."""
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).fit()
+
+    def zoom(self, factor: float) -> None:
+        """Enlarge what is in sight."""
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
+
+    def set_comparing(self, on: bool) -> None:
+        """Show two designs side by side, or one alone."""
+        if on != self.comparing:
+            self.cuts_switch.setChecked(False)
+            self._turn_to(self.compare if on else self._layout_page)
+
+    def _toggle_cuts(self, on: bool) -> None:
+        self._turn_to(self.cuts if on else self._layout_page)
+
+    def _turn_to(self, page: QWidget) -> None:
+        compared = self.comparing
+        for bar in (self.deployment, self.cuts.bar, self.compare.bar):
+            bar.play.setChecked(False)
+        self.pages.setCurrentWidget(page)
+        cuts = page is self.cuts
+        for button in (self.before, self.hand, self.plots_switch):
+            button.setVisible(page is self._layout_page)
+        for button in (self.overlays_button, *self.toggles.values()):
+            button.setVisible(not cuts)
+        for button in self.cuts.toggles.values():
+            button.setVisible(cuts)
+        (self.cuts.view if cuts else self.compare.left.view if self.comparing else self.view).setFocus()
+        self.show_title()
+        self.switches_changed.emit()
+        if compared != self.comparing:
+            self.comparing_changed.emit(self.comparing)
+
+    def _toggle_hand(self, on: bool) -> None:
+        self.voids.setVisible(on)
+        self.view.voids.switch(on)
+        self.view.setFocus()
+        self.switches_changed.emit()
+
+    def set_editable(self, editable: bool) -> None:
+        """Whether there is a design that may be changed by hand now."""
+        self.hand.setEnabled(editable and not self.showing_cuts)
+
+    @property
+    def showing_before(self) -> bool:
+        """Whether the design is shown as the generator sampled it."""
+        return self._sample is not None and self.before.isChecked()
+
+    def show_entry(self, entry: Entry | None, target: Outline | None, name: str) -> None:
+        """Show another design; the angle stays, or starts at the target angle for the first one."""
+        first = entry is not None and self.view.design is None and target != self._posed_for
+        self._entry, self._target, self._name, self._sample = entry, target, name, None
+        self.place_sample()
+        self.tour.forget()
+        self.deployment.set_ready(entry is not None)
+        self._set_switches()
+        self._show()
+        if entry is not None and first:
+            self.view.fit()
+            self.deployment.set_phi(entry.design.phi_target)
+            self._posed_for = target
+        if self.before.isChecked():
+            self.before_wanted.emit(True)
+
+    def show_sample(self, candidate: Candidate, sample: Entry) -> None:
+        """Show how the design on the stage was sampled, if that is still wanted."""
+        if self.before.isChecked() and self._entry is not None and self._entry.candidate == candidate:
+            self._sample = sample
+            self._show()
+
+    def show_as_cut(self, state: AsCutState) -> None:
+        """Show what is known of the design as cut."""
+        self._as_cut = state
+        self._tell_as_cut()
+
+    def _tell_as_cut(self) -> None:
+        """The sample of a design is not cut: nothing is said of it."""
+        state = UNKNOWN if self._sample is not None else self._as_cut
+        jam = 0.0 if state.sheet is None else state.sheet.as_cut.jam_phi
+        self.as_cut.show_state(state)
+        self.view.show_as_cut(state.sheet)
+        self.plots.show_as_cut(state.sheet)
+        if (jam or None) != self.deployment.slider.jam:
+            self.deployment.set_jam(jam or None)
+            self.switches_changed.emit()
+
+    def show_trimming(self, busy: bool) -> None:
+        """The design is being trimmed, or no longer."""
+        self._trimming = busy
+        self._set_switches()
+
+    def set_trimmable(self, trimmable: bool) -> None:
+        """Whether a design may be trimmed now."""
+        self._trimmable = trimmable
+        self._set_switches()
+
+    def set_name(self, name: str) -> None:
+        """The same design is called otherwise now."""
+        if name != self._name:
+            self._name = name
+            self.show_title()
+
+    def _toggle_before(self, on: bool) -> None:
+        self._sample = None
+        self._show()
+        self.before_wanted.emit(on)
+        self.switches_changed.emit()
+
+    def _set_switches(self) -> None:
+        candidate = None if self._entry is None else self._entry.candidate
+        comparable = candidate is not None and candidate.sampled_sheet is not None
+        trimmed = candidate is not None and candidate.trim is not None
+        self.before.setEnabled(comparable)
+        never = NEVER_SAMPLED if candidate is not None and candidate.polished else NEVER_POLISHED
+        self.before.setToolTip(tr(BEFORE if comparable or candidate is None else never))
+        with QSignalBlocker(self.before):
+            self.before.setChecked(comparable and self.before.isChecked())
+        self.trim.setEnabled(candidate is not None and self._target is not None and self._trimmable)
+        self.trim.setToolTip(tr(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM))
+        self.trim.setChecked(trimmed or self._trimming)
+        self.switches_changed.emit()
+
+    def _show_ends(self) -> None:
+        """Say what the design starts as and what it opens into, on a sheet as wide as it is cut."""
+        entry, target = self._sample or self._entry, self._target
+        if entry is None or target is None:
+            self.ends.show_states(None)
+        else:
+            self.ends.show_states(TwoStates.of(entry.candidate, entry.design, target, self._width_mm))
+
+    def _show(self) -> None:
+        """Show the present design, or its sample."""
+        entry = self._entry
+        self.show_title()
+        self._show_ends()
+        if entry is None:  # while designs are on their way, the target that they are for
+            self.view.show_design(None, None, None if self._sample_allowed else self._target)
+            return
+        shown = self._sample or entry
+        # Contacts and the second target's pose are known of the sheet that was scored; the one that was fitted for
+        # trimming is free of contacts.
+        whole, second = shown.candidate.final_sheet == shown.candidate.sheet, shown.candidate.second
+        score = shown.candidate.score if whole else None
+        contact = None if score is None else score.contact
+        self.view.show_design(shown.design, score, self._target, second if whole else None)
+        self.deployment.set_marks(
+            shown.design.phi_target,
+            None if contact is None else contact.phi,
+            None if second is None else second.target.phi,
+        )
+        self.plots.set_target(shown.design.phi_target)
+        self._tell_as_cut()
+
+    def show_title(self) -> None:
+        """Show what the header says of the design or of its cuts."""
+        entry, name = self._entry, self._name
+        self.title.setText(tr("Layout") if entry is None or not name else tr("Design {name}", name=name))
+        self.numbers.set_texts(*self._texts())
+        self.numbers.setToolTip("" if entry is None else described(entry.candidate, name))
+        self._fit_numbers()
+
+    def _texts(self) -> tuple[str, ...]:
+        """What the header says, longest first."""
+        if self.showing_cuts:
+            return self.cuts.summary
+        if self.comparing:
+            return self.compare.summary
+        sample = None if self._sample is None else self._sample.candidate
+        return () if self._entry is None else score_texts(self._entry.candidate, sample, self._width_mm)
+
+    def _fit_numbers(self) -> None:
+        """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
+        optional = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
+        switches = (
+            self.cuts.toggles.values()
+            if self.showing_cuts
+            else (self.before, self.hand, self.overlays_button, self.plots_switch)
+        )
+        buttons = [self.cuts_switch, self.trim, *switches, *optional, self.whole]
+        used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
+        room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
+        for button in (self.whole, *optional):  # keys, menus and the double-click stay
+            fits = room + GAP >= 2 * self.header.spacing()
+            button.setVisible(fits)
+            room += 0 if fits else button.sizeHint().width() + self.header.spacing()
+        fitted = self.numbers.fit(room)
+        texts = self._texts()
+        special = self._sample is not None or (self._entry is not None and self._entry.candidate.trim is not None)
+        self.view.set_caption(texts[0] if special and texts and not fitted else "")
+
+    def set_sheet_width(self, width_mm: float) -> None:
+        """Set the width of the flat sheet, mm."""
+        self._width_mm = width_mm
+        self.view.set_sheet_width(width_mm)
+        self.plots.set_sheet_width(width_mm)
+        self.show_title()
+        self._show_ends()
+
+    def _toggle_plots(self, on: bool) -> None:
+        self.plots.setVisible(on)
+        self._place_plots()
+        self.plots_wanted.emit(on)
+        self.switches_changed.emit()
+
+    def _place_plots(self) -> None:
+        """At the side of the layout in a wide stage, below it in a narrow one."""
+        side = Qt.Orientation.Horizontal if self.width() >= WIDE else Qt.Orientation.Vertical
+        if self.split.orientation() is not side:
+            self.split.setOrientation(side)
+            size = self.split.size()
+            length, share = (size.width(), 0.38) if side is Qt.Orientation.Horizontal else (size.height(), 0.4)
+            self.split.setSizes([round((1.0 - share) * length), round(share * length)])
+
+    def restore(self, settings: QSettings) -> None:
+        """Play, and show plots, as the last time."""
+        self.deployment.restore(settings)
+        sizes = settings.value("plotsSplit")
+        if isinstance(sizes, QByteArray):
+            self.split.restoreState(sizes)
+        self.plots_switch.setChecked(settings.value("plots") == "yes")
+
+    def remember(self, settings: QSettings) -> None:
+        """Keep how it is played and whether plots are shown for the next time."""
+        self.deployment.remember(settings)
+        settings.setValue("plots", "yes" if self.plots_switch.isChecked() else "no")
+        settings.setValue("plotsSplit", self.split.saveState())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        self._fit_numbers()
+        super().resizeEvent(event)
+        self._place_plots()
+        for part in (self.verdict, self.ends):
+            part.set_low(self.height() < LOW)
+        self.body.activate()
+
+    def set_overlay(self, overlay: Overlay, on: bool) -> None:
+        """Draw something over the layout, or no longer."""
+        if overlay in self.toggles:
+            self.toggles[overlay].setChecked(on)
+        elif on != (overlay in self._other_overlays):
+            self._other_overlays ^= {overlay}
+            self._update_overlays()
+
+    def _update_overlays(self) -> None:
+        chosen = frozenset(overlay for overlay, button in self.toggles.items() if button.isChecked())
+        chosen |= self._other_overlays
+        self.view.set_overlays(chosen)
+        self.overlays_changed.emit(chosen)
+
+
+def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float) -> tuple[str, ...]:
+    """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first."""
+    score, trim = candidate.score, candidate.trim
+    whole = tr("{percent:.1f} %", percent=100 * score.iou_exact)
+    if sample is not None:
+        before = tr("{percent:.1f} %", percent=100 * sample.score.iou_exact)
+        long = tr("before polish: match {before}  ·  after: {match}", before=before, match=whole)
+        return long, tr("before {before}  ·  after {match}", before=before, match=whole)
+    if trim is not None:
+        trimmed = tr("{percent:.1f} %", percent=100 * trim.iou)
+        long = tr("match {trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
+        return long, tr("{trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
+    match, variation = 100 * score.iou_exact, 100 * score.evenness.area_cv
+    smallest_mm = score.evenness.least_feature_mm(width_mm)
+    return (
+        tr(
+            "match {match:.1f} %   panels ±{variation:.0f} %   smallest {smallest_mm:.1f} mm",
+            match=match,
+            variation=variation,
+            smallest_mm=smallest_mm,
+        ),
+        tr("match {match:.1f} %   panels ±{variation:.0f} %", match=match, variation=variation),
+        tr("match {match:.1f} %", match=match),
+    )

@@ -1,0 +1,172 @@
+"""Saving the project, and asking before unsaved changes would be lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.studio.projects import ChangedOnDisk
+
+if TYPE_CHECKING:
+    from kirigami_studio.gui.window.main_window import MainWindow
+
+
+@dataclass(frozen=True, slots=True)
+class Replacement:
+    """How the user is asked before another project replaces this one.
+
+    Attributes
+    ----------
+    question : str
+        Asked while there are unsaved changes.
+    proceed : str
+        The button that goes on without saving.
+    """
+
+    question: str
+    proceed: str
+
+
+NEW_PROJECT = Replacement(
+    mark("This project has unsaved changes. Save before you start a new project?"),
+    mark("Start a new project without saving"),
+)
+OTHER_PROJECT = Replacement(
+    mark("This project has unsaved changes. Save before you open another project?"),
+    mark("Open another project without saving"),
+)
+SAMPLE = Replacement(
+    mark("This project has unsaved changes. Save before you open the sample project?"),
+    mark("Open the sample project without saving"),
+)
+PAIR = Replacement(
+    mark("This project has unsaved changes. Save before you open an example?"),
+    mark("Open the example without saving"),
+)
+RECOVERED = Replacement(
+    mark("This project has unsaved changes. Save before you recover another project?"),
+    mark("Recover another project without saving"),
+)
+
+
+class UnsavedWork(QObject):
+    """Saves the project of one window, and asks in its message bar before it is replaced or the window closes."""
+
+    def __init__(self, window: MainWindow, controller: Controller) -> None:
+        super().__init__(window)
+        self._window = window
+        self._controller = controller
+        self._discarded = False  # the user closes without saving
+        self._quit_when_saved = False
+        self._questions: list[Message] = []
+        controller.session.document_changed.connect(self._drop_questions)
+        controller.saved.connect(self._close_when_saved)
+        controller.filing.projects.save_failed.connect(self._stay)
+        controller.filing.projects.changed_on_disk.connect(self._ask_about_file)
+
+    def save(self) -> bool:
+        """Save where the project is; ask when it has no place yet.  False if the user cancelled."""
+        if self._controller.path is None:
+            return self.save_as()
+        self._controller.save(self._controller.path)
+        return True
+
+    def save_as(self) -> bool:
+        """Save in a place of the user's choice; False if the user cancelled."""
+        path = self._window.file_dialogs.save(f"{self.name}.kiri")
+        if path is not None:
+            self._controller.save(path)
+        return path is not None
+
+    @property
+    def name(self) -> str:
+        """What files of the project are called."""
+        if self._controller.path is not None:
+            return self._controller.path.stem
+        target = self._controller.document.target
+        return target.name if target is not None else "untitled"
+
+    def guard(self, replacement: Replacement, then: Callable[[], None]) -> None:
+        """Do something that replaces the project; with unsaved changes ask first."""
+        if self._controller.hand.postpones(lambda: self.guard(replacement, then)):
+            return
+        if not self._controller.history.unsaved:
+            then()
+            return
+        actions = ((tr("Save first"), self._save_first), (tr(replacement.proceed), then))
+        self._ask(Message(tr(replacement.question), Tone.WARNING, actions=actions))
+
+    def may_close(self) -> bool:
+        """Whether the window may close now; asks when work would be lost."""
+        if self._controller.hand.postpones(self._window.close):
+            return False
+        if self._discarded or not self._controller.history.unsaved:
+            return True
+        sentence = tr("This project has unsaved changes. Save before you quit?")
+        actions = ((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit))
+        self._ask(Message(sentence, Tone.WARNING, actions=actions))
+        return False
+
+    def _ask(self, question: Message) -> None:
+        self._questions.append(question)
+        self._window.messages.add(question)
+
+    def _drop_questions(self) -> None:
+        """Close the questions that are still open once there are no unsaved changes."""
+        if not self._controller.history.unsaved:
+            for question in self._questions:
+                self._window.messages.drop(question)
+            self._questions.clear()
+
+    def _ask_about_file(self, changed: ChangedOnDisk) -> None:
+        """Somebody else wrote the project's file after it was read or written here: ask what is to become of it."""
+        session, projects = self._controller.session, self._controller.filing.projects
+        project = session.project
+
+        def overwrite() -> None:
+            if session.project == project:
+                projects.overwrite(changed)
+
+        sentence = tr(
+            "{name} was changed on disk after you opened or saved it here, perhaps in another window. Overwrite it, "
+            "or save a copy of your version?",
+            name=changed.path.name,
+        )
+        actions = (
+            (tr("Overwrite"), overwrite),
+            (tr("Save a copy …"), self._save_copy),
+            (tr("Cancel"), lambda: session.set_status(tr("Not saved."))),
+        )
+        self._ask(Message(sentence, Tone.WARNING, actions=actions))
+
+    def _save_copy(self) -> None:
+        path = self._window.file_dialogs.save(tr("{name} copy.kiri", name=self.name))
+        if path is not None:
+            self._controller.save(path)
+
+    def _save_first(self) -> None:
+        self.save()
+
+    def _save_and_quit(self) -> None:
+        self._quit_when_saved = True
+        if not self.save():
+            self._quit_when_saved = False
+
+    def _close_when_saved(self) -> None:
+        if self._quit_when_saved:
+            self._quit_when_saved = False
+            self._window.close()  # which asks again if the work went on while the file was written
+
+    def _stay(self) -> None:
+        """The project could not be saved, so do not quit after a later save either."""
+        self._quit_when_saved = False
+
+    def _quit(self) -> None:
+        self._discarded = True
+        self._window.close()

@@ -1,0 +1,7 @@
+"""Research beside the product: the paper's experiments, training, other people's judges, pictures of the program.
+
+``problem`` gives targets, a simulator and a score to other generators; ``baselines`` are the solvers and generators
+that the paper compares with; ``training`` makes weights; ``benchmark`` makes figures and tables; ``demonstrations``
+play the window for pictures; ``cli`` runs all of them.  The product finds their commands by name and never imports
+them; a frozen program has none of them.
+"""

@@ -1,0 +1,126 @@
+"""The parts of the report about solvers: Table 1, several runs or samples a target, and sizes of the grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
+from kirigami_studio.lab.benchmark.report.cells import Figures, beside, interval, share, spread
+
+
+def solver_section(figures: Figures, _: dict[str, bytes]) -> Iterator[str]:
+    """The paper's Table 1: solvers, fit and sample at one cap of evaluations."""
+    yield "## Table 1: solvers"
+    yield ""
+    settings = figures["settings"]
+    yield (
+        f"Grid {settings['grid'][0]} x {settings['grid'][1]}, ratios 0.1 to 10, searched as "
+        f"{'log10 of the ratio' if settings['space'] == 'log' else 'ratios'}; at most "
+        f"{settings['stopping']['evaluations']} evaluations; seeds {', '.join(map(str, figures['seeds']))}. *fit* "
+        "starts at the uniform sheet, *sample* is one sample of the bundled prior, *sample-fit* is fitted from there; "
+        "a decoding with its derivative counts as one evaluation. `kirigami-studio benchmark solvers`"
+    )
+    for family, table in figures["families"].items():
+        yield ""
+        yield f"{family.capitalize()}, {table['targets']} targets"
+        yield ""
+        yield "| | sIoU | 95 % | exact IoU | success | evaluations | s | without a feasible design |"
+        yield "|---|---|---|---|---|---|---|---|"
+        yield f"| uniform sheet | {share(table['uniform_siou'])} | | {share(table['uniform_iou'])} | | | | |"
+        for name, row in table["rows"].items():
+            paper = row["paper"] or {}
+            yield (
+                f"| {name} | {spread(row)}{beside(paper, 'siou')} | {interval(row['siou_interval'])} | "
+                f"{share(row['iou_exact'])} | {share(row['success'])}{beside(paper, 'success')} | "
+                f"{row['evaluations']:.0f}{beside(paper, 'evaluations', 1.0, 0)} | {row['seconds']:.2f} | "
+                f"{row['no_candidate'] or ''} |"
+            )
+    yield ""
+
+
+def best_of_k_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
+    """What more samples, fitted or not, and more runs of solvers give and cost."""
+    yield "## Best of K"
+    yield ""
+    yield (
+        "The best of K samples of the bundled prior, without and with a fit, and of K runs of a solver, each with its "
+        "cap of evaluations. The paper gives its numbers in words and a plot. `kirigami-studio benchmark best-of-k`"
+    )
+    for family, curves in figures["families"].items():
+        sizes = [at["k"] for at in next(iter(curves.values()))]
+        yield ""
+        yield f"{family.capitalize()}: sIoU in percent, and seconds for one target"
+        yield ""
+        yield f"| | {' | '.join(f'K = {k}' for k in sizes)} |"
+        yield "|---" * (1 + len(sizes)) + "|"
+        for method, curve in curves.items():
+            cells = (
+                f"{share(at['siou'])}{beside({'siou': at['paper_siou']} if at['paper_siou'] else {}, 'siou')}, "
+                f"{at['seconds']:.2f} s"
+                for at in curve
+            )
+            yield f"| {method} | {' | '.join(cells)} |"
+        lines = tuple(
+            Curve(method, tuple((float(at["k"]), 100.0 * at["siou"]) for at in curve))
+            for method, curve in curves.items()
+        )
+        name = f"benchmark-best-of-k-{family}.svg"
+        pictures[name] = LineChart("K", "sIoU (%)", lines, logarithmic=True).svg()
+        yield ""
+        yield f"![sIoU against K, {family}]({name})"
+    yield ""
+
+
+def grid_sweep_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
+    """Solvers, fits and samples on grids of growing size, and where marching ends."""
+    sizes = figures["sizes"]
+    yield "## Sizes of the grid"
+    yield ""
+    yield (
+        f"Means over {', '.join(figures['targets'])}; sIoU in percent, and processor seconds. {figures['paper']} "
+        "`kirigami-studio benchmark grid-sweep`"
+    )
+    yield ""
+    methods = list(dict.fromkeys(point["method"] for at in sizes for point in at["points"]))
+    yield f"| voids | uniform sheet | {' | '.join(methods)} |"
+    yield "|---" * (2 + len(methods)) + "|"
+    for at in sizes:
+        found = {point["method"]: f"{share(point['siou'])}, {point['seconds']:.2f} s" for point in at["points"]}
+        cells = " | ".join(found.get(method, "") for method in methods)
+        yield f"| {at['size']} x {at['size']} | {share(at['uniform_siou'])} | {cells} |"
+    lines = tuple(
+        Curve(
+            method,
+            tuple(
+                (float(at["size"]), point["seconds"])
+                for at in sizes
+                for point in at["points"]
+                if point["method"] == method
+            ),
+        )
+        for method in methods
+    )
+    pictures["benchmark-grid-sweep.svg"] = LineChart("voids each way", "seconds", lines, logarithmic=True).svg()
+    yield ""
+    yield "![Seconds against voids each way](benchmark-grid-sweep.svg)"
+    yield ""
+    yield (
+        "The paper's marching decoder against the exact one, on random fields: distance of corners in cells, median "
+        "and largest over fields (none: no solution at all); *wrong*, percent of fields with a corner off by 0.01 "
+        "cells or more."
+    )
+    yield ""
+    yield "| voids | off, median | off, largest | wrong | exact decoder misses Eq. 2 by |"
+    yield "|---|---|---|---|---|"
+    for at in sizes:
+        marching = at["marching"]
+        yield (
+            f"| {at['size']} x {at['size']} | {_cells(marching['error_median'])} | {_cells(marching['error_most'])} | "
+            f"{share(marching['wrong'], 0)} | {_cells(marching['local_rule_most'])} |"
+        )
+    yield ""
+
+
+def _cells(error: float | None) -> str:
+    """A distance in cells; JSON has no infinity."""
+    return "none" if error is None or error == float("inf") else f"{error:.0e}"

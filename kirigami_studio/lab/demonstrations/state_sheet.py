@@ -1,0 +1,502 @@
+"""A screenshot of every state of the window, in every size and both themes, for review.
+
+``python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states`` writes them, and a page of small ones
+for every size and theme; ``--scale 2`` draws them for a high-resolution screen.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+from PySide6.QtCore import QEvent, QPoint, Qt
+from PySide6.QtWidgets import QApplication
+
+from kirigami_studio.gui.gallery.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.gallery.gallery_selection import SortOrder
+from kirigami_studio.gui.make.cut_view import CutOverlay
+from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.language import SYSTEM, speak
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
+from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
+from kirigami_studio.project import recovery
+from kirigami_studio.project.document import Mark
+from kirigami_studio.project.recovery import Note
+
+#: ``STATE-WIDTHxHEIGHT-THEME.png``, as the state sheet names its pictures.
+NAME = re.compile(r"(?P<state>.+)-(?P<group>\d+x\d+-(?:light|dark))")
+#: Pixels: width of one small picture, and the band for its caption.
+WIDTH, CAPTION = 480, 22
+GAP = 10
+COLUMNS = 4
+PAPER, INK = "#8a94a0", "#0b0f14"
+
+
+def contact_sheets(pictures: Sequence[Path], out: Path) -> list[Path]:
+    """Write one page for every size and theme among the pictures.
+
+    Parameters
+    ----------
+    pictures : sequence of Path
+        Those that are named otherwise share a page of their own, ``others``.
+    out : Path
+        Folder of the pages.
+
+    Returns
+    -------
+    pages : list of Path
+        ``contact-GROUP.png``, in the order in which the groups first appear.
+    """
+    groups: dict[str, list[tuple[str, Path]]] = defaultdict(list)
+    for picture in pictures:
+        found = NAME.fullmatch(picture.stem)
+        group, state = (found["group"], found["state"]) if found else ("others", picture.stem)
+        groups[group].append((state, picture))
+    pages = []
+    for group, entries in groups.items():
+        page = out / f"contact-{group}.png"
+        contact_sheet(entries).save(page)
+        pages.append(page)
+    return pages
+
+
+def contact_sheet(entries: Sequence[tuple[str, Path]]) -> Image.Image:
+    """One page of captioned pictures, row by row."""
+    small = [(caption, _small(path)) for caption, path in entries]
+    height = max(picture.height for _, picture in small) + CAPTION
+    columns = min(COLUMNS, len(small))
+    rows = -(-len(small) // columns)
+    page = Image.new("RGB", (columns * (WIDTH + GAP) + GAP, rows * (height + GAP) + GAP), PAPER)
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(size=13)
+    for number, (caption, picture) in enumerate(small):
+        row, column = divmod(number, columns)
+        left, top = GAP + column * (WIDTH + GAP), GAP + row * (height + GAP)
+        draw.text((left, top + 2), caption, fill=INK, font=font)
+        page.paste(picture, (left, top + CAPTION))
+    return page
+
+
+def _small(path: Path) -> Image.Image:
+    """A picture no wider than its column, and no higher than three quarters of that."""
+    with Image.open(path) as picture:
+        shown = picture.convert("RGB")
+    shown.thumbnail((WIDTH, WIDTH * 3 // 4), Image.Resampling.LANCZOS)
+    return shown
+
+
+class StateSheet(BoardStates):
+    """Takes one window from state to state, with a screenshot of each in all sizes and themes."""
+
+    def play(self) -> list[Path]:
+        """Make all pictures and return their files."""
+        window = self.window
+        window.show()
+        self.all_sizes("empty")
+        self.first_start()
+        window.target.set_tool(Tool.POLYGON)
+        self.all_sizes("drawing")
+        self.editor()
+        self.objects()
+        self.points_and_mirror()
+        window.target.set_editing(False)
+        self.parts()
+        self.picture_target()
+        self.all_sizes("photo")
+        window.target.set_editing(True)
+        self.all_sizes("photo-editor")
+        window.target.set_editing(False)
+        self.choose_heart()
+        self.polishing()
+        self.all_sizes("designs")
+        self.lost_designs()
+        self.collection()
+        self.overlays()
+        self.plots()
+        self.before_and_after()
+        self.trimmed()
+        self.by_hand()
+        self.cuts()
+        self.exported()
+        window.stage.deployment.set_phi(math.radians(100.0))
+        self.all_sizes("half-open")
+        window.stage.deployment.set_phi(math.pi)
+        self.all_sizes("flat")
+        window.fabrication.lengths["connector_mm"].setValue(15.0)
+        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
+        self.all_sizes("refused")
+        window.commands["undo"].trigger()
+        self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
+        self.project()
+        self.messages()
+        click(window.target.buttons["library"])
+        if window.dialogs.picker is not None:
+            self.picture("library", window.dialogs.picker)
+            window.dialogs.picker.close()
+        window.dialogs.show_guide()
+        if window.dialogs.guide is not None:
+            self.picture("guide", window.dialogs.guide)
+        self.first_steps()
+        self.starts()
+        self.second_target()
+        self.german()
+        self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
+        return self.files
+
+    def first_start(self) -> None:
+        """The sample on the empty stage with the question for machine and material, and without it."""
+        first, empty = self.window.connections.first_start, self.window.stage.empty
+        first.begin()
+        self.until(lambda: empty.ready, "the sample was not read")
+        empty.stop()
+        empty.view.set_phi(math.radians(100.0))
+        self.all_sizes("first-start")
+        first.decline()
+        self.all_sizes("sample")
+
+    def german(self) -> None:
+        """The main states in a language with longer words, in a window that is started again."""
+        self.window.start_again()
+        speak("de")
+        self.window = window = create_window(LIGHT, self.window)
+        window.controller.history.mark_saved()
+        window.show()
+        window.files.open_sample()
+        self.until(window.fabrication.export.isEnabled, "the sample was not opened")
+        self.all_sizes("german-designs")
+        window.stage.cuts_switch.click()
+        self.all_sizes("german-cuts")
+        window.stage.cuts_switch.click()
+        window.target.set_editing(True)
+        self.all_sizes("german-board")
+        window.target.set_editing(False)
+        window.close()
+        speak(SYSTEM)
+
+    def first_steps(self) -> None:
+        """The tour at a control on every side, the sheet of keys, and the licences."""
+        tour, dialogs = self.window.tour, self.window.dialogs
+        tour.start()
+        for step in range(len(tour.steps)):
+            if step == 2:
+                self.all_sizes("tour")
+            else:
+                self.picture(f"tour-{step + 1}")
+            click(tour.callout.next)
+        dialogs.show_shortcuts()
+        dialogs.show_about()
+        for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
+            for palette in (DARK, LIGHT) if dialog is not None else ():
+                self.window.set_theme(palette)
+                self.picture(f"{name}-{palette.name}", dialog)
+
+    def polishing(self) -> None:
+        """A run whose designs improve, with a search after it."""
+        window = self.window
+        window.settings.search.setChecked(True)
+        window.settings.candidates.setValue(DESIGNS)
+        click(window.run.generate)
+        self.until(lambda: window.status_text.text().startswith("Polished"), "no design was polished")
+        self.all_sizes("polishing")
+        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def collection(self) -> None:
+        """Marks, filters, more designs like one, two side by side; then everything as it was."""
+        window, controller = self.window, self.window.controller
+        view, bar, before = window.gallery.view, window.gallery.bar, len(controller.document.candidates)
+        for row in (1, 2):
+            controller.marks.pin(controller.document.candidates[row])
+        controller.marks.reject(controller.document.candidates[3], None)
+        click(bar.filter)
+        for box in (bar.filters.feasible, bar.filters.rejected):
+            box.setChecked(True)
+        bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
+        bar.order.activated.emit(bar.order.currentIndex())
+        hover(view.viewport(), button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center())
+        self.all_sizes("gallery-sorted")
+        bar.filters.least.setValue(100.0)
+        self.all_sizes("gallery-nothing")
+        view.clear_wanted.emit()
+        bar.filters.rejected.setChecked(False)
+        bar.order.setCurrentIndex(0)
+        bar.order.activated.emit(0)
+        click(bar.alike)
+        self.all_sizes("gallery-alike")
+        click(bar.draw)
+        self.until(lambda: not controller.running, "the run near a design did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        self.all_sizes("gallery-more")
+        click(bar.alike)
+        self.all_designs()
+        self.side_by_side()
+        while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
+            window.commands["undo"].trigger()
+        self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+
+    def all_designs(self) -> None:
+        """The table of all designs with a renamed one and three that are marked, these compared, and nothing left."""
+        window, controller = self.window, self.window.controller
+        label = controller.document.label_of(window.gallery.view.model_.entries[0].candidate)
+        if label is not None:
+            controller.labels.set(label, LONG_NAME[:30], "The lobes are even; cut this one for the fair.")
+        window.commands["all_designs"].trigger()
+        page = window.connections.all_designs.page
+        if page is None:
+            raise SessionError("The table of all designs did not open.")
+        for key in (Qt.Key.Key_1, Qt.Key.Key_Right, Qt.Key.Key_2, Qt.Key.Key_Right, Qt.Key.Key_3):
+            press_key(page.table, key)
+        for palette in (LIGHT, DARK):
+            window.set_theme(palette)
+            for size in self.sizes("all-designs"):
+                window.resize(size)
+                page.table.viewport().repaint()
+                self.until(lambda: not page.table.cards.pending, "the cards got no pictures")
+                self.picture(f"all-designs-{size.width()}x{size.height()}-{palette.name}")
+        window.set_theme(LIGHT)
+        page.filters.least.setValue(100.0)
+        self.all_sizes("all-designs-nothing")
+        click(page.show_all)
+        press_key(page.table, Qt.Key.Key_C)
+        page.compare.bar.set_phi(math.radians(60.0))
+        self.all_sizes("all-designs-compared")
+        page.table.clear_compared()
+        window.commands["rename"].trigger()
+        if window.dialogs.label is not None:
+            self.picture("name-and-note", window.dialogs.label)
+            window.dialogs.label.close()
+        window.commands["all_designs"].trigger()
+        window.commands["undo"].trigger()
+
+    def side_by_side(self) -> None:
+        """Two designs at the target and half open, zoomed; the menu of a card."""
+        window = self.window
+        click(window.gallery.bar.compare)
+        self.all_sizes("compare")
+        window.stage.deployment.set_phi(math.radians(100.0))
+        window.stage.compare.left.view.zoom(2.0)
+        self.all_sizes("compare-half-open")
+        window.stage.deployment.set_phi(0.0)
+        click(window.stage.compare.leave)
+        window.connections.designs.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
+        menu = window.connections.designs.menu
+        if menu is not None:
+            self.picture("card-menu", menu)
+            menu.close()
+
+    def overlays(self) -> None:
+        """The heat map with the smallest parts at the target angle, openings and numbers half open."""
+        stage = self.window.stage
+        for angle, shown in (
+            (0.0, (Overlay.RATIOS, Overlay.SMALL_PARTS)),
+            (100.0, (Overlay.OPENINGS, Overlay.PANEL_NUMBERS, Overlay.VOID_NUMBERS)),
+        ):
+            stage.deployment.set_phi(math.radians(angle))
+            for overlay in shown:
+                stage.set_overlay(overlay, True)
+            self.all_sizes(f"overlay-{shown[0].value}")
+            for overlay in shown:
+                stage.set_overlay(overlay, False)
+        stage.deployment.set_phi(0.0)
+
+    def plots(self) -> None:
+        """The curves of the design, with the line at 60 degrees."""
+        stage = self.window.stage
+        click(stage.plots_switch)
+        self.until(lambda: stage.plots.complete, "the curves were not read")
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("plots")
+        click(stage.plots_switch)
+        stage.deployment.set_phi(0.0)
+
+    def before_and_after(self) -> None:
+        """The first design that polishing has changed, as it was drawn."""
+        controller, stage = self.window.controller, self.window.stage
+        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_sheet is not None]
+        if not drawn:
+            raise SessionError("Polishing changed no design.")
+        controller.choose(drawn[0])
+        click(stage.before)
+        self.until(lambda: stage.showing_before, "the drawn design was not shown")
+        self.all_sizes("before")
+        click(stage.before)
+
+    def trimmed(self) -> None:
+        """The same design trimmed, opened and flat, and whole again."""
+        controller, stage = self.window.controller, self.window.stage
+        click(stage.trim)
+        self.picture("trimming")
+        self.until(lambda: not controller.trimming.busy, "trimming did not end")
+        if controller.stage is None or controller.stage.candidate.trim is None:
+            raise SessionError("The design was not trimmed.")
+        self.until(self._planned, "no trimmed cut plan was made")
+        self.all_sizes("trimmed")
+        click(stage.cuts_switch)
+        self.all_sizes("trimmed-cuts")
+        click(stage.cuts_switch)
+        stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("trimmed-half-open")
+        stage.deployment.set_phi(math.pi)
+        self.all_sizes("trimmed-flat")
+        stage.deployment.set_phi(0.0)
+        click(stage.trim)
+        self.until(lambda: not self._planned() and self.window.fabrication.export.isEnabled(), "no whole cut plan")
+
+    def by_hand(self) -> None:
+        """Hand editing, with locked voids and a label at the pointer."""
+        window, view, controller = self.window, self.window.stage.view, self.window.controller
+        click(window.stage.hand)
+        controller.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
+        for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
+            window.stage.deployment.set_phi(math.radians(degrees))
+            view.voids.select(frozenset({(5, 5)}))
+            for size in SIZES:
+                window.resize(size)
+                for palette in (LIGHT, DARK):
+                    window.set_theme(palette)
+                    QApplication.processEvents()
+                    view.voids.point_at((6, 6))
+                    self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
+        window.set_theme(LIGHT)
+        QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
+        controller.hand.nudge(frozenset({(5, 5)}), 0.3)
+        self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
+        self.all_sizes("by-hand-changed")
+        while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:
+            window.commands["undo"].trigger()
+        click(window.stage.hand)
+
+    def cuts(self) -> None:
+        """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options and
+        the name engraved.
+        """
+        stage, fabrication = self.window.stage, self.window.fabrication
+        page, history = stage.cuts, self.window.controller.history
+        click(stage.cuts_switch)
+        self.all_sizes("cuts")
+        click(page.toggles[CutOverlay.TRAVEL])
+        page.bar.slider.setValue(page.bar.slider.maximum() // 2)
+        self.all_sizes("cuts-half")
+        click(page.toggles[CutOverlay.TRAVEL])
+        for hinges, width in ((range(30), 0.45), (range(30, 50), 0.05)):
+            page.view.gestures.select(frozenset(hinges))
+            page.hinges.width_mm.setValue(width)
+        self.until(lambda: page.problems.isVisible(), "the narrow connectors were not found")
+        self.all_sizes("cuts-connectors")
+        page.problems.setCurrentRow(0)
+        self.all_sizes("cuts-problem")
+        stage.fit()
+        while history.undo_label is not None and "connectors" in history.undo_label:
+            self.window.commands["undo"].trigger()
+        self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
+        page.view.gestures.select(frozenset())
+        click(stage.cuts_switch)
+        fabrication.options.fold.setChecked(True)
+        self.all_sizes("options")
+        click(fabrication.options.engrave)
+        self.until(lambda: page.view.shows_name, "the name was not engraved")
+        click(stage.cuts_switch)
+        self.all_sizes("cuts-name")
+        click(stage.cuts_switch)
+        self.window.commands["undo"].trigger()
+        self.until(lambda: not page.view.shows_name, "undo did not take the name off")
+        fabrication.options.fold.setChecked(False)
+
+    def exported(self) -> None:
+        """The report of a cut file and the material editor, in both themes."""
+        dialogs = self.window.dialogs
+        self.window.controller.export(self.out / "cut.dxf")
+        self.until(lambda: dialogs.report is not None, "no report was shown")
+        dialogs.show_materials()
+        for palette in (DARK, LIGHT):
+            self.window.set_theme(palette)
+            if dialogs.report is not None and dialogs.materials is not None:
+                self.picture(f"report-{palette.name}", dialogs.report)
+                self.picture(f"materials-{palette.name}", dialogs.materials)
+        if dialogs.materials is not None:
+            dialogs.materials.close()
+        dialogs.close_report()
+        while self.window.messages.messages:
+            self.window.messages.close_message()
+
+    def _planned(self) -> bool:
+        return "trimmed" in self.window.fabrication.summary.text()
+
+    def project(self) -> None:
+        """Recovered work, the submenus of files and pictures, the history with undone steps."""
+        window, dialogs = self.window, self.window.dialogs
+        filing, folder = window.controller.filing, self.out / "recovery"
+        left = folder / "left.kiri"
+        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
+        recovery.keep(window.controller.document, note, left)
+        filing.recovery.use(folder)
+        self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        self.all_sizes("recovery")
+        dict(window.messages.messages[-1].actions)["Discard"]()
+        while window.messages.messages:
+            window.messages.close_message()
+        for name in ("teapot.kiri", "session.kiri"):
+            filing.recent.take_project(self.out / name)
+        filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
+        window.recent_menu.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
+        window.commands["history"].trigger()
+        window.controller.go_to(max(0, window.controller.history.position - 2))
+        for palette in (DARK, LIGHT):
+            window.set_theme(palette)
+            for menu, name in ((window.recent_menu, "recent"), (window.picture_menu, "pictures")):
+                menu.popup(window.mapToGlobal(window.rect().topLeft()))
+                self.picture(f"menu-{name}-{palette.name}", menu)
+                menu.close()
+            if dialogs.history is not None:
+                dialogs.history.show_history(window.controller.history, palette)
+                self.picture(f"history-{palette.name}", dialogs.history)
+        window.controller.go_to(len(window.controller.history.steps))
+        if dialogs.history is not None:
+            dialogs.history.close()
+
+    def second_target(self) -> None:
+        """A run for a second target: its settings, and the best design at its angle; the board it is drawn on."""
+        window, controller = self.window, self.window.controller
+        controller.change_settings(grid=(8, 8))
+        controller.change_settings(k=2)
+        controller.change_settings(polish=5)
+        window.settings.more.setChecked(True)
+        controller.second.open("hexagon")
+        self.until(lambda: controller.document.settings.second is not None, "the second target was not read")
+        window.settings.second.angle.setValue(60.0)
+        click(window.run.generate)
+        self.until(lambda: not controller.running, "the run did not end")
+        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        window.stage.deployment.set_phi(math.radians(60.0))
+        self.all_sizes("second-target-settings")
+        window.settings.more.setChecked(False)
+        self.all_sizes("second-target")
+        window.dialogs.show_second_board()
+        if window.dialogs.second_board is not None:
+            self.picture("second-board", window.dialogs.second_board)
+            window.dialogs.second_board.close()
+
+    def messages(self) -> None:
+        """An error with details, then a question."""
+        bar = self.window.messages
+        sentence = f"{LONG_NAME}.svg crosses itself at (12.4, 88.1) mm; separate the two loops there and open it again."
+        bar.add(Message(sentence, Tone.ERROR, "first line of the trace\nsecond line of the trace"))
+        bar.details.setChecked(True)
+        self.all_sizes("error")
+        self.window.commands["new"].trigger()
+        self.all_sizes("question")
+        while bar.messages:
+            bar.close_message()
+
+
+if __name__ == "__main__":
+    sys.exit(main(kind=StateSheet))

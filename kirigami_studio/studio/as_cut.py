@@ -1,0 +1,439 @@
+"""A design as it is cut: the angle at which the sheet jams, its silhouette and IoU there, what its connectors bear.
+
+There are two ways to know.  :func:`estimate` needs the design, the material and the widths only and takes milliseconds:
+it is for all designs.  :func:`simulate` closes the sheet on the connectors of its planned cuts, step by step: it is for
+the one that is about to be cut.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.export.cut_motion import CutMotion
+from kirigami_studio.fabricate.centres import bending_lengths
+from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
+from kirigami_studio.fabricate.making_room import long_enough
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.panel_sizes import panels_in_mm
+from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.mechanics.closing import (
+    CLOSED,
+    TOLERATED_STRETCH,
+    Closing,
+    carried_on,
+    closing_steps,
+    ideal_motion,
+    silhouette,
+)
+from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, flexure_length, junctions
+from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.studio.cutting import plan_of
+
+MPA_PER_GPA = 1e3
+#: A sheet within this (radians) of being closed has closed.
+CLOSE_TO = math.radians(1.0)
+#: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
+LONGER_MM = 1e-3
+#: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
+ESTIMATE_CLOSES = math.radians(6.0)
+
+
+class Outcome(Enum):
+    """Whether a sheet comes to the angle that it is designed for, and what stops it."""
+
+    CLOSES = "closes"
+    STRETCHED = "stretched"  #: a connector would be stretched by more than it tolerates
+    TOUCHING = "touching"  #: panels run into each other
+
+
+class StrainFigure(Enum):
+    """Which of the two figures of a connector's strain is believed."""
+
+    IN_PLANE = "in_plane"  #: bent across the width, as card is
+    OUT_OF_PLANE = "out_of_plane"  #: buckled and bent across the thickness, as film is
+
+
+@dataclass(frozen=True, slots=True)
+class AsCut:
+    """What is expected of a cut sheet.
+
+    Attributes
+    ----------
+    jam_phi : float, radians
+        Angle at which it jams; 0 for a sheet that closes.
+    phi : float, radians
+        At which it is meant to show the target.
+    outcome : Outcome
+    stretch : float
+        Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not.
+    strain : float
+        Largest strain on the way to where the sheet comes to, of the figure that is believed.
+    figure : StrainFigure
+    iou, ideal_iou : float or None
+        Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
+        and without a target.
+    """
+
+    jam_phi: float
+    phi: float
+    outcome: Outcome
+    stretch: float
+    strain: float
+    figure: StrainFigure
+    iou: float | None = None
+    ideal_iou: float | None = None
+
+    @property
+    def closes(self) -> bool:
+        """Whether the sheet comes to the angle that it is meant for."""
+        return self.outcome is Outcome.CLOSES
+
+    @property
+    def reached(self) -> float:
+        """The angle (radians) nearest to ``phi`` that the sheet comes to."""
+        return self.phi if self.closes else max(self.jam_phi, self.phi)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulatedSheet:
+    """A sheet that was closed on its connectors.
+
+    Attributes
+    ----------
+    as_cut : AsCut
+    closing : Closing
+    node : (H,) int
+        Node of the lattice at which each connector is.
+    made : Deployment or None
+        The sheet that is cut where that is not quite the design.
+    """
+
+    as_cut: AsCut
+    closing: Closing
+    node: IntArray
+    made: Deployment | None = None
+
+    def stretch_at(self, phi: float) -> FloatArray:
+        """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""
+        phis = np.minimum.accumulate(self.closing.phi)
+        stretch = self.closing.stretch
+        after = int(np.clip(np.searchsorted(-phis, -phi), 1, len(phis) - 1)) if len(phis) > 1 else 0
+        before = max(after - 1, 0)
+        run = float(phis[before] - phis[after])
+        share = float(np.clip((phis[before] - phi) / run, 0.0, 1.0)) if run > 0.0 else 1.0
+        found: FloatArray = (1.0 - share) * stretch[before] + share * stretch[after]
+        return found
+
+    def motion(self, width_mm: float) -> CutMotion:
+        """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
+        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached, self.made)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Overlap:
+    """Angles (radians) that a sheet comes to, by itself and forced, and its IoU there and as designed."""
+
+    reached: float
+    iou_as_cut: float
+    forced: float
+    iou_forced: float
+    iou_ideal: float
+
+
+# the sheet as a network -----------------------------------------------------------------------------------------------
+
+
+def planned_sheet(
+    deployment: Deployment,
+    plan: CutPlan,
+    width_mm: float,
+    kept: Sequence[FloatArray | None] | None = None,
+    on_nodes: bool = False,
+    young_gpa: float | None = None,
+) -> SheetNetwork:
+    """The panels and connectors of planned cuts.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    plan : CutPlan
+        Of its cuts.
+    width_mm : float
+        Width of the flat sheet.
+    kept : sequence of (P, 2) float or None, unit cells, optional
+        What stays of every panel of a trimmed sheet.
+    on_nodes : bool
+        Whether connectors turn on their nodes whatever the plan says.
+    young_gpa : float, optional
+        Young's modulus; the material's unless given.
+    """
+    hinges, deployment = plan.hinges, plan.cut_from(deployment)
+    found = junctions(deployment, width_mm, cut_table(*deployment.sheet.grid).hinge_node)
+    if plan.options.style is ConnectorStyle.CENTRED:
+        finished = np.maximum(hinges.finished_mm, 0.0)
+        longer = np.where(hinges.removed, 0.0, _longer_by_bows(hinges.flexure_mm, finished, plan.kerf_mm))
+    else:
+        # A straight slit's connector bends over a span; arcs and bars make it longer.
+        longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
+    polygons = panels_in_mm(deployment, () if kept is None else kept, width_mm, np.zeros(2))
+    centres = None
+    if on_nodes:
+        centres = found.place
+    elif plan.centres is not None:
+        # The plan has its own origin.
+        shift = next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
+        centres = plan.centres + shift
+    connectors = cut_connectors(
+        found,
+        np.maximum(hinges.finished_mm, 0.0),
+        plan.kerf_mm,
+        centres,
+        np.where(longer > LONGER_MM, longer, 0.0),
+    )
+    young = plan.material.young_gpa if young_gpa is None else young_gpa
+    elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
+    return sheet_network(polygons_as_rows(polygons), connectors, elastic)
+
+
+def _longer_by_bows(flexure_mm: FloatArray, width_mm: FloatArray, kerf_mm: float) -> FloatArray:
+    """By how much (H,), mm, connectors bend over a longer strip than beside a straight flank; 0 where none bows."""
+    longer = flexure_mm - flexure_length(width_mm, kerf_mm)
+    bows = (width_mm > 0.0) & (flexure_mm > width_mm + kerf_mm + LONGER_MM)
+    found: FloatArray = np.where(bows, np.maximum(longer, 0.0), 0.0)
+    return found
+
+
+def _unplanned_sheet(deployment: Deployment, settings: FabricationSettings, material: Material) -> SheetNetwork:
+    """The same without a plan: untrimmed, every connector as wide as asked for and as its style would make it."""
+    table, options = cut_table(*deployment.sheet.grid), settings.options
+    kerf = material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm
+    asked = material.connector_mm if settings.connector_mm is None else settings.connector_mm
+    widths = hinge_widths(table.hinge_count, asked, dict(options.hinge_mm), options.removed)
+    found = junctions(deployment, settings.width_mm, table.hinge_node)
+    span = np.where(widths > 0.0, widths + kerf, 0.0)
+    longer = span * {
+        ConnectorStyle.ARC: 2.0 * math.tan(math.radians(HALF_ANGLES[0])) - 1.0,
+        ConnectorStyle.DOUBLE: 2.0 * BAR_SPANS[0] - 1.0,
+    }.get(options.style, 0.0)
+    centres = None
+    if options.style is ConnectorStyle.CENTRED:
+        # Sheets make room for connectors where slits are long enough.
+        lines, _ = sheet_lines(deployment, settings.width_mm)
+        slits = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
+        crowded = ~long_enough(slits[table.hinge_through], span) & (table.hinge_through != SHEET_EDGE)
+        height = np.where(crowded, 0.5 * span, 0.0)
+        longer = _longer_by_bows(bending_lengths(span, kerf, height), widths, kerf)
+        off = height / found.sine
+        centres = found.place + off[:, None] * found.along
+    connectors = cut_connectors(found, widths, kerf, centres, longer)
+    elastic = ElasticSheet(MPA_PER_GPA * material.young_gpa, material.thickness_mm)
+    return sheet_network(found.corners, connectors, elastic)
+
+
+# two ways to know -----------------------------------------------------------------------------------------------------
+
+
+def estimate(
+    deployment: Deployment, settings: FabricationSettings, phi: float, material: Material | None = None
+) -> AsCut:
+    """Estimate where a sheet jams, without planning its cuts.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    settings : FabricationSettings
+    phi : float, radians
+        At which it is meant to show the target.
+    material : Material, optional
+        Of the settings, if it is known already.
+
+    Raises
+    ------
+    FabricationError
+        No such material, or widths that make no sense.
+    """
+    chosen = material_for(settings) if material is None else material
+    sheet = _unplanned_sheet(deployment, settings, chosen)
+    found = estimate_stretch(deployment, sheet, settings.width_mm)
+    jam = found.jam_phi()
+    jam = 0.0 if jam <= ESTIMATE_CLOSES else jam
+    largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
+    blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
+    outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
+    figure = believed_figure(sheet)
+    turn = np.full(len(sheet.connectors), math.pi - (phi if outcome is Outcome.CLOSES else max(jam, phi)))
+    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
+    strain = in_plane if figure is StrainFigure.IN_PLANE else out_of_plane
+    return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure)
+
+
+def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:
+    """Strain of the least strained connector at an angle (radians), without planning the cuts: none can bear less."""
+    sheet = _unplanned_sheet(deployment, settings, material)
+    turn = np.full(len(sheet.connectors), math.pi - phi)
+    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
+    return float((in_plane if believed_figure(sheet) is StrainFigure.IN_PLANE else out_of_plane).min())
+
+
+def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, float]:
+    """Estimate where designs jam (radians, 0 for those that close); those that cannot be cut at all are left out.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material, found = material_for(settings), {}
+    for candidate in candidates:
+        try:
+            as_cut = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
+        except KirigamiError:
+            continue  # widths that make no sense on this sheet, which planning its cuts explains
+        found[candidate] = as_cut.jam_phi
+    return found
+
+
+def simulate(
+    deployment: Deployment,
+    plan: CutPlan,
+    width_mm: float,
+    phi: float,
+    target: Outline | None = None,
+    kept: Sequence[FloatArray | None] | None = None,
+) -> Generator[None, None, SimulatedSheet]:
+    """Close a sheet on the connectors of its planned cuts; yields between the steps, for others to have their turn.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    plan : CutPlan
+        Of its cuts.
+    width_mm : float
+        Width of the flat sheet.
+    phi : float, radians
+        At which it is meant to show the target.
+    target : Outline, optional
+    kept : sequence of (P, 2) float or None, unit cells, optional
+        What stays of every panel of a trimmed sheet.
+
+    Raises
+    ------
+    MechanicsError
+        Panels that do not hang together, because too many connectors were removed.
+    """
+    design, deployment = deployment, plan.cut_from(deployment)
+    sheet = planned_sheet(deployment, plan, width_mm, kept)
+    yield
+    found = yield from closing_steps(sheet)
+    jam = found.jam_phi()
+    lap = None
+    if target is not None:
+        yield
+        lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
+    table = cut_table(*deployment.sheet.grid)
+    node = table.hinge_node[plan.hinges.finished_mm > 0.0]
+    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, plan.made)
+
+
+def simulated(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> SimulatedSheet:
+    """Plan the cuts of a design and close it on their connectors, all in one go; see :func:`simulate`.
+
+    Raises
+    ------
+    FabricationError
+        A plan that cannot be made.
+    MechanicsError
+        Panels that do not hang together.
+    """
+    deployment, kept = deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
+    plan = plan_of(candidate, settings, deployment)
+    return result_of(simulate(deployment, plan, settings.width_mm, candidate.final_phi, target, kept))
+
+
+def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
+    figure = believed_figure(sheet)
+    strain = found.in_plane if figure is StrainFigure.IN_PLANE else found.out_of_plane
+    closes = jam <= phi + CLOSE_TO
+    reached = phi if closes else jam
+    worst = found.stretch.max(axis=1)
+    largest = float(worst[_until(found, phi)].max())
+    blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
+    return AsCut(
+        jam,
+        phi,
+        Outcome.CLOSES if closes else blame,
+        largest,
+        float(strain[_until(found, reached)].max()),
+        figure,
+        None if lap is None else lap.iou_as_cut,
+        None if lap is None else lap.iou_ideal,
+    )
+
+
+def _until(found: Closing, phi: float) -> slice:
+    """The steps of a closing up to an angle (radians)."""
+    return slice(max(1, int(np.sum(found.phi >= phi - CLOSE_TO))))
+
+
+def believed_figure(sheet: SheetNetwork) -> StrainFigure:
+    """A sheet thinner than its narrowest connector is wide buckles out of the plane; a thicker one cannot."""
+    thin = sheet.sheet.thickness_mm < float(sheet.connectors.width_mm.min())
+    return StrainFigure.OUT_OF_PLANE if thin else StrainFigure.IN_PLANE
+
+
+def overlap(
+    deployment: Deployment,
+    found: Closing,
+    width_mm: float,
+    phi: float,
+    jam: float,
+    target: Outline,
+    forced: bool = True,
+    design: Deployment | None = None,
+) -> Overlap:
+    """IoU with the target of the sheet as cut, where it comes to, and as designed.
+
+    Parameters
+    ----------
+    deployment : Deployment
+        The sheet that is cut.
+    found : Closing
+    width_mm : float
+    phi, jam : float, radians
+        At which the sheet is meant to show the target, and at which it jams.
+    target : Outline
+    forced : bool
+        Whether it is also measured where the sheet can be forced to; not a number if not.
+    design : Deployment, optional
+        What it was made from; the sheet that is cut unless given.
+    """
+    network = found.sheet.network
+    # A sheet that came to the last step goes on to the angle that it is meant for.
+    closed = len(found.phi) == found.asked and found.phi.min() <= CLOSED + CLOSE_TO
+    end = phi if closed else max(phi, float(found.phi.min()))
+    reached = max(end, jam)
+    motions = [carried_on(found, deployment, width_mm, reached), ideal_motion(deployment, network, width_mm, phi)]
+    if forced:
+        motions.append(carried_on(found, deployment, width_mm, end))
+    rings = [silhouette(deployment, network, width_mm, motion) for motion in motions]
+    if design is not None and design is not deployment:
+        rings[1] = design.outline(phi)
+    as_cut, ideal, *shut = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
+    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)

@@ -1,0 +1,156 @@
+"""From a design and its fabrication settings to the cut plan, and the room that its material and connectors need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.checks import Report, check_plan
+from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.engraving import engraved
+from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import FabricationError, UsageError
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.project.settings import FabricationSettings, material_for
+
+
+def plan_of(
+    candidate: Candidate,
+    settings: FabricationSettings,
+    deployment: Deployment | None = None,
+    cancel: Callable[[], bool] = lambda: False,
+    name: str = "",
+) -> CutPlan:
+    """Plan the cuts of a design; a trimmed one gets its trimmed outline.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    settings : FabricationSettings
+    deployment : Deployment, optional
+        Of the candidate's final sheet, if it is known already.
+    cancel : function
+        Asked between the steps of planning.
+    name : str
+        What the design is called, which the sheet gets engraved if the settings say so.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true.
+    FabricationError
+        No such material, or a plan that cannot be made.
+    """
+    trim = candidate.trim
+    kept = None if trim is None else trim.kept
+    plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
+    return engraved(plan, name) if settings.engrave and name else plan
+
+
+def plan_sheet(
+    deployment: Deployment,
+    settings: FabricationSettings,
+    kept: Sequence[FloatArray | None] | None = None,
+    cancel: Callable[[], bool] = lambda: False,
+) -> CutPlan:
+    """Plan the cuts of any sheet; ``kept`` is what stays of every panel of a trimmed one, as in a trim.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel``, which is asked between the steps of planning, returned true.
+    FabricationError
+        No such material, or a plan that cannot be made.
+    """
+    return plan_cuts(
+        deployment,
+        width_mm=settings.width_mm,
+        connector_mm=settings.connector_mm,
+        kerf_mm=settings.kerf_mm,
+        material=material_for(settings),
+        options=settings.options,
+        kept=kept,
+        cancel=cancel,
+    )
+
+
+def checked_plan(candidate: Candidate, settings: FabricationSettings, name: str = "") -> tuple[CutPlan, Report]:
+    """The cut plan of a design, trimmed if it is, with these settings, and what the physics check says about it.
+
+    Its name is engraved if the settings say so.
+
+    Raises
+    ------
+    FabricationError
+        The plan cannot be made, or the sheet would not survive it.
+    """
+    plan = plan_of(candidate, settings, name=name)
+    report = check_plan(plan, phi=candidate.final_phi)
+    refuse_errors(report)
+    return plan, report
+
+
+def refuse_errors(report: Report) -> None:
+    """Refuse cuts that the sheet would not survive.
+
+    Raises
+    ------
+    FabricationError
+        With the first of the errors.
+    """
+    for problem in report.problems:
+        if problem.severity is Severity.ERROR:
+            raise FabricationError("export.cannot_be_cut", reason=problem.text)
+
+
+def check_connectors(candidate: Candidate, options: CutOptions) -> None:
+    """Refuse numbers of connectors that a design does not have.
+
+    Raises
+    ------
+    UsageError
+        With the largest number that it has.
+    """
+    count = cut_table(*candidate.sheet.grid).hinge_count
+    beyond = [hinge for hinge in (*(hinge for hinge, _ in options.hinge_mm), *options.removed) if hinge >= count]
+    if beyond:
+        raise UsageError("export.no_such_connector", number=beyond[0], last=count - 1)
+
+
+#: Edges and necks that fits leave to panels, in widths of their connectors.  Connectors on shorter edges get narrower
+#: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
+#: and close with it.
+ROOM_IN_WIDTHS = 2.75
+
+
+def least_feature_mm(settings: FabricationSettings) -> float:
+    """Least panel edge and neck, between centre lines of cuts, that the settings' material allows.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material = material_for(settings)
+    return max(material.min_ligament_mm, material.min_panel_mm) + _kerf_mm(settings, material)
+
+
+def room_mm(settings: FabricationSettings) -> float:
+    """Panel edge and neck, between centre lines of cuts, that leaves connectors their full width.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material = material_for(settings)
+    connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
+    return ROOM_IN_WIDTHS * connector + _kerf_mm(settings, material)
+
+
+def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
+    return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm

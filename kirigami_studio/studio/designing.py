@@ -1,0 +1,466 @@
+"""Designing: settings -> request -> run -> designs, ranked as cut -> project; and the jobs on single designs.
+
+What a run computes is composed in ``pipeline``; here stands what window, command line and API ask it for, how its
+designs are ranked by how they do as cut, and what project they make.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import trimmed_parts
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.options import COPY_GAP_MM
+from kirigami_studio.fabricate.panel_sizes import least_panel_share
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
+from kirigami_studio.foundation.steps import Cancel
+from kirigami_studio.foundation.threads import one_blas_thread
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.symmetry import symmetry_of
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
+from kirigami_studio.pipeline.pool import Pool
+from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.pipeline.request import Request, provenance
+from kirigami_studio.pipeline.variety import distinct, look_alikes
+from kirigami_studio.polish.flat_sheet import width_in_cells
+from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
+from kirigami_studio.project.document import Document, Void
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings, material_for
+from kirigami_studio.studio import importing
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+
+#: Designs that are estimated as cut between two reports.
+ESTIMATED_AT_ONCE = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Decoded:
+    """A candidate with the exact motion of its final sheet."""
+
+    candidate: Candidate
+    deployment: Deployment
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFound:
+    """The generator that a run uses: SHA-256 of its weights."""
+
+    digest: str
+
+
+@dataclass(frozen=True, slots=True)
+class Refitted:
+    """What a fit from a design's present sheet has found.
+
+    Attributes
+    ----------
+    decoded : Decoded
+        The fitted design with its motion, trimmed if the one it began with was.
+    better : bool
+        Whether it ranks before the one it began with, both untrimmed.
+    untrimmed : str
+        Why it could not be trimmed again, "" if that was not to be done or was.
+    """
+
+    decoded: Decoded
+    better: bool
+    untrimmed: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class GridChosen:
+    """The grid that a run has chosen, and why in one sentence."""
+
+    grid: tuple[int, int]
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class FittedAgain:
+    """How many designs of all were fitted again; one of them before and after, where it became better."""
+
+    done: int
+    total: int
+    before: Candidate | None
+    after: Candidate | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KnownAsCut:
+    """What a run has found out about designs as cut, which holds as long as they are cut that way.
+
+    Attributes
+    ----------
+    sheet : FabricationSettings
+        How the designs are cut, see :func:`one_sheet`.
+    jam_phi : mapping of Candidate to float, radians
+    refusals : mapping of Candidate to Note
+    losses : mapping of Candidate to float
+        As :class:`~kirigami_studio.pipeline.rank.Ranking` has them.
+    """
+
+    sheet: FabricationSettings
+    jam_phi: Mapping[Candidate, float]
+    refusals: Mapping[Candidate, Note]
+    losses: Mapping[Candidate, float]
+
+    @classmethod
+    def of(cls, result: Result, cut: FabricationSettings) -> KnownAsCut:
+        """What is known after a run."""
+        return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses)
+
+
+#: What a run reports.
+RunReport = Event | ModelFound | GridChosen | Decoded
+#: Gets how far a run has come.
+Tell = Callable[[Progress], object]
+
+
+def never() -> bool:
+    """A cancel flag that is never raised."""
+    return False
+
+
+def request_for(
+    target: Outline,
+    wanted: DesignSettings,
+    cut: FabricationSettings,
+    *,
+    least_panel_mm: float = 0.0,
+    trim: bool = False,
+    budget_seconds: float | None = None,
+) -> Request:
+    """The run that these settings ask for, on the sheet that is cut.
+
+    Parameters
+    ----------
+    target : Outline
+    wanted : DesignSettings
+    cut : FabricationSettings
+        The sheet's width, and what its material and connectors need.
+    least_panel_mm : float
+        Least panel edge and neck that is asked for.
+    trim : bool
+        Whether the best designs are trimmed.
+    budget_seconds : float, optional
+
+    Raises
+    ------
+    KirigamiError
+        The settings do not go together.
+    """
+    return Request.of(
+        target,
+        wanted,
+        trim=trim,
+        budget_seconds=budget_seconds,
+        width_mm=cut.width_mm,
+        least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
+        room_mm=room_mm(cut),
+    )
+
+
+def run_design(
+    request: Request,
+    cut: FabricationSettings,
+    cancel: Cancel = never,
+    *,
+    as_cut: bool = True,
+    least_panel_mm: float = 0.0,
+    beside: tuple[Candidate, ...] = (),
+    only_new: bool = False,
+    pool: Pool | None = None,
+) -> Iterator[Event | GridChosen]:
+    """Choose the grid, run, and rank by how designs do as cut: the best that can be cut in this material first.
+
+    Parameters
+    ----------
+    request : Request
+        Its grid may be open.
+    cut : FabricationSettings
+        How designs are cut.
+    cancel : callable
+    as_cut : bool
+        Whether designs are ranked as cut; without it, by their figures alone.
+    least_panel_mm : float
+        Least panel edge and neck that is asked for.
+    beside : tuple of Candidate
+        Designs that stay beside those of the run, and are ranked with them.
+    only_new : bool
+        Whether the result keeps only designs that differ from those ``beside`` and from each other.
+    pool : Pool, optional
+        Of the fits; the program's own unless given.
+
+    Yields
+    ------
+    Event or GridChosen
+        Those of the pipeline, ``GridChosen`` first where that was left to the run, and at last ``Finished``.
+
+    Raises
+    ------
+    Cancelled
+        ``cancel`` returned true.
+    FabricationError
+        Designs were to be trimmed and none could be.
+    """
+    from kirigami_studio.pipeline.run import grid_choice, run, with_grid
+
+    if request.grid is None and request.near is None:
+        choice = grid_choice(request)
+        yield GridChosen(choice.grid, choice.reason)
+    request = _with_sizes(with_grid(request), cut, least_panel_mm)
+    for event in run(request, cancel, pool):
+        if not isinstance(event, Finished):
+            yield event
+            continue
+        result = event.result
+        if only_new:
+            # Comparing a thousand designs with a thousand takes a second.
+            new = distinct(result.candidates, beside)
+            result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
+        if as_cut:
+            result = yield from _ranked_as_cut(result, cut, beside, cancel)
+        if request.trim and all(one.trim is None for one in result.candidates):
+            raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
+        yield Finished(result)
+
+
+def completed(run: Iterator[object], tell: Tell) -> Result:
+    """Take all steps of a run in one go, and tell how far it comes.
+
+    Raises
+    ------
+    Cancelled
+        It ended without a result.
+    """
+    for event in run:
+        if isinstance(event, Progress):
+            tell(event)
+        elif isinstance(event, Finished):
+            return event.result
+    raise Cancelled("run.no_result")
+
+
+def ranked_as_cut(result: Result, cut: FabricationSettings, tell: Tell) -> Result:
+    """Rank the designs of a run by how they do as cut, all in one go, see :func:`run_design`."""
+    steps = _ranked_as_cut(result, cut, (), never)
+    while True:
+        try:
+            tell(next(steps))
+        except StopIteration as end:
+            found: Result = end.value
+            return found
+
+
+def _ranked_as_cut(
+    result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
+) -> Generator[Progress, None, Result]:
+    """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
+    from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
+    from kirigami_studio.studio.as_cut import jam_angles
+    from kirigami_studio.studio.verdict import looking
+
+    target = result.request.target
+    everything = replace(result, candidates=(*beside, *result.candidates))
+    progress = _looking_at(0, len(everything.candidates))
+    jams: dict[Candidate, float] = {}
+    for start in range(0, len(everything.candidates), ESTIMATED_AT_ONCE):
+        with one_blas_thread():
+            jams |= jam_angles(everything.candidates[start : start + ESTIMATED_AT_ONCE], cut)
+        yield progress
+    steps = best_as_cut(everything, jams, lambda one: looking(one, cut, target, cancel))
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            found: Result = end.value
+            break
+        if isinstance(step, Looking):
+            progress = _looking_at(step.number, step.total)
+        yield progress
+    stay = {id(one) for one in beside}
+    return replace(found, candidates=tuple(one for one in found.candidates if id(one) not in stay))
+
+
+def _looking_at(number: int, total: int) -> Progress:
+    message = tr("Looking for a design that can be cut: {number} of {total}", number=number, total=total)
+    return Progress(number, total, message)
+
+
+def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: float) -> Request:
+    """The request with what depends on the size of its cells, once its grid is known."""
+    from kirigami_studio.pipeline.redesign import keep_for_connectors
+
+    least = least_panel_mm * width_in_cells(request.chosen_grid, request.start) / cut.width_mm
+    if not request.trim:
+        return replace(request, least_panel=least)
+    # How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
+    widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
+    return replace(request, least_panel=least, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+
+
+def generating(
+    request: Request,
+    cut: FabricationSettings,
+    beside: tuple[Candidate, ...],
+    only_new: bool,
+    cancel: Cancel,
+) -> Iterator[RunReport]:
+    """Run a design for the window: every new or improved candidate is followed by its decoded motion."""
+    importing.import_generator()
+    from kirigami_studio.generator.weights import digest_of
+
+    yield ModelFound(digest_of(request.variant))
+    for event in run_design(request, cut, cancel, beside=beside, only_new=only_new):
+        yield event
+        if isinstance(event, CandidateFound | CandidateImproved):
+            yield decoded(event.candidate)
+
+
+def facts_of(request: Request) -> dict[str, str]:
+    """Where the designs of a run come from."""
+    from kirigami_studio.generator.weights import digest_of
+
+    return provenance(request, digest_of(request.variant))
+
+
+def document_of(result: Result, cut: FabricationSettings) -> Document:
+    """The project that a run makes of its request: its designs, ranked, the best chosen."""
+    request, facts = result.request, facts_of(result.request)
+    empty = Document(request.target, request.settings, fabrication=cut)
+    return renew_candidates(empty, NewDesigns(result.candidates, facts), result.ranking.key).document
+
+
+def ranking_of(document: Document, known: KnownAsCut | None = None) -> Ranking:
+    """What the document's settings, sheet and material put first, with what is known of designs that are cut so."""
+    settings, cut = document.settings, document.fabrication
+    ranking = Ranking(settings.regular, cut.width_mm, sizes_of(cut)[0])
+    if known is None or known.sheet != one_sheet(cut):
+        return ranking
+    return replace(ranking, jam_phi=known.jam_phi, refusals=known.refusals, losses=known.losses)
+
+
+def one_sheet(cut: FabricationSettings) -> FabricationSettings:
+    """What matters of the settings to a sheet, whatever kind of file it is written to and how many times."""
+    plain, options = FabricationSettings(), replace(cut.options, copies=1, copy_gap_mm=COPY_GAP_MM)
+    return replace(
+        cut,
+        options=options,
+        profile=plain.profile,
+        dxf_version=plain.dxf_version,
+        paper=plain.paper,
+        markers=plain.markers,
+        engrave=plain.engrave,
+    )
+
+
+def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:
+    """Decode the candidates of an opened project."""
+    for candidate in candidates:
+        yield decoded(candidate)
+
+
+def decoded(candidate: Candidate) -> Decoded:
+    """A candidate with the motion of its final sheet.
+
+    What the gallery and the stage ask of every design is found out here and kept by who found it: the window does not
+    wait for it.
+    """
+    deployment = deploy(candidate.final_sheet)
+    least_panel_share(deployment)
+    symmetry_of(candidate.sheet)
+    if candidate.trim is not None:
+        trimmed_parts(deployment, candidate.trim)
+    return Decoded(candidate, deployment)
+
+
+def grouping(candidates: tuple[Candidate, ...], ranking: Ranking, cancel: Cancel) -> Iterator[tuple[int, ...]]:
+    """Find which designs look alike."""
+    yield look_alikes(candidates, ranking)
+
+
+def scoring_sample(candidate: Candidate, target: Outline, cancel: Cancel) -> Iterator[Decoded]:
+    """Score a candidate as the generator sampled it, in the pose that suits it best."""
+    from kirigami_studio.pipeline.redesign import sampled
+
+    before = sampled(candidate, target)
+    if before is not None:
+        yield decoded(before)
+
+
+def refitting(
+    candidate: Candidate,
+    target: Outline,
+    wanted: DesignSettings,
+    locked: frozenset[Void],
+    settings: FabricationSettings,
+    cancel: Cancel,
+) -> Iterator[Refitted]:
+    """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed."""
+    from kirigami_studio.pipeline.redesign import refitted
+
+    least_mm, room_mm = sizes_of(settings)
+    refit = refitted(
+        candidate,
+        target,
+        wanted.prefer,
+        locked,
+        partial(keep_for, candidate, settings),
+        cancel,
+        regular=wanted.regular,
+        free_rim=wanted.rim == "free",
+        width_mm=settings.width_mm,
+        least_feature_mm=least_mm,
+        room_mm=room_mm,
+    )
+    untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
+    yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
+
+
+def fitting_again(
+    request: Request, candidates: tuple[Candidate, ...], cancel: Cancel
+) -> Iterator[Decoded | FittedAgain]:
+    """Fit designs again by what the request prefers; a better one comes decoded before its report."""
+    from kirigami_studio.pipeline.fit_again import fit_again
+
+    for report in fit_again(request, candidates, cancel):
+        if report.after is not None:
+            yield decoded(report.after)
+        yield FittedAgain(report.done, report.total, report.before, report.after)
+
+
+def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
+    """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
+    from kirigami_studio.pipeline.redesign import trimmed
+    from kirigami_studio.polish.panel_size import least_in_cells
+
+    least_mm, _ = sizes_of(settings)
+    least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
+    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
+    if cancel():
+        raise Cancelled("trim.stopped")
+    yield decoded(found.candidate)
+
+
+def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
+    """Panel edge and neck (mm) that the material allows at least, and that leaves connectors their full width.
+
+    Zeros for a material that is not known here.
+    """
+    try:
+        return least_feature_mm(settings), room_mm(settings)
+    except KirigamiError:
+        return 0.0, 0.0
+
+
+def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+    """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
+    from kirigami_studio.pipeline.redesign import keep_for_connectors
+
+    sheet, material = candidate.sheet, material_for(settings)
+    return keep_for_connectors(sheet, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)

@@ -1,0 +1,181 @@
+"""Jobs on the parts of a drawing: find out whether there is a choice, and make one outline of chosen parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import Cancel
+from kirigami_studio.outlines.merging import Merged, Merging, merged
+from kirigami_studio.outlines.parts import SourceParts
+from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.starts import StartShape, outline_start
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.store import CUT_FILES
+from kirigami_studio.studio.targets import PICTURES, TargetRead, reading_target
+
+#: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
+DRAWN = 1.0 / 3000.0
+#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
+ISLAND, MOST_ISLANDS = 0.1, 20
+
+
+class Purpose(Enum):
+    """What chosen parts of a drawing become."""
+
+    TARGET = "target"
+    START = "start"
+    SECOND = "second"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartsRead:
+    """A drawing that holds several parts, and how they are drawn.
+
+    Attributes
+    ----------
+    source : SourceParts
+    sketches : tuple of tuple of (P, 2) float, source units
+        For each part its rings, or its lines where it encloses nothing; fewer vertices than the part itself.
+    """
+
+    source: SourceParts
+    sketches: tuple[tuple[FloatArray, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DesignRead:
+    """The project of the design that a cut file of this program carries."""
+
+    document: Document
+
+
+def reading_source(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead | DesignRead]:
+    """Read a target, the parts of a drawing that has several to choose from, or the design of a cut file."""
+    document = _design_of(source)
+    if document is not None:
+        yield DesignRead(document)
+    else:
+        yield from _reading_outline(source, cancel)
+
+
+def reading_second(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
+    """Read a second target, or the parts that it may be; of a cut file it is the target of the design there."""
+    document = _design_of(source)
+    if document is not None and document.target is not None:
+        yield TargetRead(document.target)
+    else:
+        yield from _reading_outline(source, cancel)
+
+
+def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRead]:
+    """Read a start outline, or the parts that it may be; of a cut file it is the outline of the sheet.
+
+    One that is too hollow is refused.
+    """
+    if _design_of(source) is not None:
+        yield outline_start(read_target(source))
+        return
+    for found in _reading_outline(source, cancel):
+        yield outline_start(found.outline) if isinstance(found, TargetRead) else found
+
+
+def _reading_outline(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
+    """Read an outline, or the parts of a drawing that has several to choose from."""
+    if Path(source).suffix.lower() in PART_READERS:
+        if Path(source).suffix.lower() in PICTURES:
+            if _has_islands(source):
+                yield sketched(read_parts(source))
+                return
+        elif (found := read_parts(source)).is_ambiguous:
+            yield sketched(found)
+            return
+    yield from reading_target(source, cancel)
+
+
+def _has_islands(source: str) -> bool:
+    """Whether a picture has several large shapes; one of specks is refused by its reader."""
+    from PIL import Image
+
+    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts
+
+    try:
+        with Image.open(source) as picture:
+            width, height = picture.size
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return False  # its reader says what is wrong with it
+    if width * height > MOST_PIXELS_IN_COLOUR:
+        return False  # it takes seconds to read
+    try:
+        parts = image_parts(source, in_colour=False).parts
+    except KirigamiError:
+        return False
+    areas = sorted((part.worth for part in parts), reverse=True)
+    return len(areas) > 1 and areas[1] >= ISLAND * areas[0] and areas[0] >= 0.5 * sum(areas[MOST_ISLANDS:])
+
+
+def _design_of(source: str) -> Document | None:
+    """The design that a cut file carries; None for anything else."""
+    from kirigami_studio.project import store
+
+    if Path(source).suffix.lower() not in CUT_FILES:
+        return None
+    try:
+        return store.load(Path(source))
+    except KirigamiError:
+        return None  # another program's drawing, or one that cannot be read: its reader says so
+
+
+def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:
+    """Read the parts of a drawing, whether there is a choice or not."""
+    yield sketched(read_parts(source))
+
+
+def sketched(source: SourceParts) -> PartsRead:
+    """The parts with what is drawn of them."""
+    tolerance = DRAWN * source.size
+    sketches = []
+    for part in source.parts:
+        if part.is_closed:
+            rings = shapely.get_rings(part.region.simplify(tolerance))
+            sketches.append(tuple(shapely.get_coordinates(ring) for ring in rings))
+        else:
+            lines = [shapely.linestrings(line) for line in part.lines]
+            sketches.append(tuple(shapely.get_coordinates(shapely.simplify(line, tolerance)) for line in lines))
+    return PartsRead(source, tuple(sketches))
+
+
+def merging_parts(source: SourceParts, numbers: frozenset[int], merging: Merging, cancel: Cancel) -> Iterator[Merged]:
+    """Make one outline of some parts."""
+    yield merged(source, source.of(numbers), merging)
+
+
+def part_at(read: PartsRead, place: tuple[float, float], reach: float) -> int:
+    """The number of the smallest part at a place, source units; 0 where there is none within ``reach``."""
+    point = shapely.points(place)
+    found = [
+        part
+        for part in read.source.parts
+        if (
+            shapely.intersects_xy(part.region, *place)
+            if part.is_closed
+            else any(shapely.distance(shapely.linestrings(line), point) <= reach for line in part.lines)
+        )
+    ]
+    return min(found, key=lambda part: part.worth).number if found else 0
+
+
+def bounds_of(read: PartsRead) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top of all parts with their strokes, source units."""
+    boxes = np.array([part.bounds for part in read.source.parts])
+    pen = 0.5 * max(part.pen.width for part in read.source.parts)
+    left, bottom = (boxes[:, :2].min(axis=0) - pen).tolist()
+    right, top = (boxes[:, 2:].max(axis=0) + pen).tolist()
+    return left, bottom, right, top

@@ -1,0 +1,83 @@
+"""Finished runs survive whatever ends a suite, and runs of other settings are never mixed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.foundation.errors import ExportError, KirigamiError
+from kirigami_studio.lab.benchmark.run_store import RunStore
+
+SETTINGS = {"grid": (4, 4), "evaluations": 7}
+
+
+def filled(path: Path) -> list[str]:
+    """A file with two runs; its lines."""
+    with RunStore.opened(SETTINGS, path) as store:
+        store.add(("powell", "sobol", 0, 1), {"siou": 0.5})
+        store.add(("powell", "sobol", 0, 2), {"siou": 0.75})
+    return path.read_text().splitlines()
+
+
+def test_that_finished_runs_are_read_again(tmp_path: Path) -> None:
+    path = tmp_path / "folder" / "runs.jsonl"
+    assert [json.loads(line).get("siou") for line in filled(path)] == [None, 0.5, 0.75]
+    with RunStore.opened(SETTINGS, path) as store:
+        assert store.records == {("powell", "sobol", 0, 1): {"siou": 0.5}, ("powell", "sobol", 0, 2): {"siou": 0.75}}
+        store.add(("swarm", "sobol", 0, 1), {"siou": 1.0})
+    assert len(path.read_text().splitlines()) == 4
+
+
+@pytest.mark.parametrize("cut", [1, 2, 20])
+def test_that_a_half_written_line_is_dropped_and_written_again(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "runs.jsonl"
+    lines = filled(path)
+    path.write_bytes(path.read_bytes()[:-cut])
+    with RunStore.opened(SETTINGS, path) as store:
+        assert list(store.records) == [("powell", "sobol", 0, 1)]
+        store.add(("powell", "sobol", 0, 2), {"siou": 0.75})
+    assert path.read_text().splitlines() == lines
+
+
+def test_that_nothing_but_a_half_written_first_line_is_a_fresh_start(tmp_path: Path) -> None:
+    path = tmp_path / "runs.jsonl"
+    path.write_text('{"sett')
+    with RunStore.opened(SETTINGS, path) as store:
+        assert store.records == {}
+    assert json.loads(path.read_text()) == {"settings": {"grid": [4, 4], "evaluations": 7}}
+
+
+def test_that_runs_of_other_settings_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "runs.jsonl"
+    before = filled(path)
+    with pytest.raises(KirigamiError) as caught, RunStore.opened({**SETTINGS, "evaluations": 8}, path):
+        pass
+    assert caught.value.code == "benchmark.runs_differ"
+    assert path.read_text().splitlines() == before
+
+
+@pytest.mark.parametrize(
+    "content", ["[]\n", "{}\n", "nonsense\n", '{"settings": {"grid": [4, 4], "evaluations": 7}}\n3\n']
+)
+def test_that_a_file_of_something_else_is_refused_and_kept(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "runs.jsonl"
+    path.write_text(content)
+    with pytest.raises(KirigamiError) as caught, RunStore.opened(SETTINGS, path):
+        pass
+    assert caught.value.code == "benchmark.runs_unreadable"
+    assert path.read_text() == content
+
+
+def test_that_two_suites_do_not_write_one_folder(tmp_path: Path) -> None:
+    path = tmp_path / "runs.jsonl"
+    with RunStore.opened(SETTINGS, path), pytest.raises(ExportError) as caught, RunStore.opened(SETTINGS, path):
+        pass
+    assert caught.value.code == "file.folder_in_use"
+
+
+def test_that_a_store_without_a_file_keeps_runs_for_the_process() -> None:
+    with RunStore.opened(SETTINGS) as store:
+        store.add(("fit", 1), {"siou": 0.5})
+        assert store.records == {("fit", 1): {"siou": 0.5}}

@@ -1,0 +1,72 @@
+"""Training the baselines: resumed runs, the log, the command."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from command_line import answer
+
+from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.lab.baselines.stored import KINDS, load_generator
+from kirigami_studio.lab.training.train_baseline import BaselineSettings, train_baseline, trained_baseline
+from kirigami_studio.lab.training.validation import baseline_validator
+
+pytestmark = pytest.mark.torch
+CPU = torch.device("cpu")
+
+
+def tiny(kind: str) -> BaselineSettings:
+    network = {"rows": 4, "columns": 4, "latent": 8, "mask": 32, "channels": [8, 16]}
+    if kind == "diffusion":
+        network["residuals"] = 1
+    return BaselineSettings(kind, network, steps=6, batch=8, chunk=64)
+
+
+def train(settings: BaselineSettings, folder: Path, **options: float) -> list[dict[str, float]]:
+    return list(train_baseline(settings, folder, CPU, lambda network: {}, validate_every=3, **options))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, kind: str) -> None:
+    settings = tiny(kind)
+    records = train(settings, tmp_path / "whole")
+    assert [record["step"] for record in records] == [3.0, 6.0]
+    assert train(settings, tmp_path / "parts", seconds=0.0)[-1]["step"] < settings.steps
+    train(settings, tmp_path / "parts")
+    whole, parts = (trained_baseline(settings, tmp_path / name, CPU).state_dict() for name in ("whole", "parts"))
+    assert all(torch.equal(whole[name], parts[name]) for name in whole)
+
+
+def test_that_a_run_of_other_settings_is_not_gone_on_with(tmp_path: Path) -> None:
+    settings = tiny("cgan")
+    train(settings, tmp_path)
+    with pytest.raises(ModelError) as caught:
+        train(replace(settings, learning_rate=1e-3), tmp_path)
+    assert caught.value.code == "training.checkpoint_differs"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_that_validation_scores_every_family(kind: str, tmp_path: Path) -> None:
+    settings = tiny(kind)
+    train(settings, tmp_path)
+    figures = baseline_validator(4, CPU, steps=2)(trained_baseline(settings, tmp_path, CPU))
+    assert set(figures) == {"structured_iou", "sobol_iou", "drawn_iou"}
+    assert all(0.0 < figure <= 1.0 for figure in figures.values())
+
+
+def test_that_the_command_writes_weights_that_can_be_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("kirigami_studio.lab.cli.learning.VALIDATION_COUNT", 4)
+    small = ("--steps", 2, "--latent", 8, "--channels", "4,8", "--batch", 8)
+    record = answer(capsys, "train", "cgan", *small, "--out", tmp_path / "run", "--json")
+    assert record["record"]["step"] == 2.0
+    stored = load_generator(Path(record["files"][0]))
+    assert stored.kind == "cgan" and stored.about["settings"]["first_moment"] == 0.5
+    about = json.loads((tmp_path / "run" / "about.json").read_text())
+    assert about["settings"] == stored.about["settings"]
+    assert about["parameters"] == sum(weights.numel() for weights in stored.network.parameters())
