@@ -107,7 +107,6 @@ def released_siou(design: npt.ArrayLike, target: npt.ArrayLike) -> float:
     """
     fixed, moving = FittedMask.from_array(design, 1), FittedMask.from_array(target, 2)
 
-
     def cropped(pose: Similarity) -> float:
         return _posed_iou(moving, fixed, pose, crop=True)
 
