@@ -11,19 +11,22 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # The tests start dozens of programs: what Python compiled for one of them is kept for the others.
 unexport PYTHONDONTWRITEBYTECODE
 
-# Values and geometry; file readers and raster scores take longer and run in `make test` only.
-QUICK_TESTS := tests/architecture tests/property $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)) \
-  --ignore=tests/unit/evaluate/test_siou.py
+# Values and geometry; files that name what takes seconds to import are not even read.
+QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6' tests/property \
+  $(wildcard $(addprefix tests/unit/,foundation lattice evaluate fabricate project)))
 
-.PHONY: help setup run test test-all fuzz soak quick lint bench consumers demo states pairs pictures shapes figures notebook \
+CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
+
+.PHONY: help setup run test test-all test-durations fuzz soak quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make setup   create .venv with everything that the program and its tests need"
 	@echo "make run     open the window (without a display: play a session off-screen into out/)"
-	@echo "make test    run lint, then the tests"
-	@echo "make test-all  the same with the long tests: before a release"
+	@echo "make test    run lint, then the tests that fit into a budget of time"
+	@echo "make test-all  lint and every test: before a release"
+	@echo "make test-durations  measure every test, for the choice that make test makes: tests/durations.json"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
@@ -39,12 +42,16 @@ help:
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"
 	@echo "make site    build the documentation into build/site; works without a network once .venv is there"
-	@echo "make messages  collect all sentences for translators in resources/locale"
+	@echo "make messages  collect all sentences for translators in build/kirigami_studio.pot"
 	@echo "make package   wheel, source archive, frozen program and Debian package of this tree in dist, each tried as installed"
 	@echo "make release   the same of a commit whose version is in the changelog, with checksums"
 	@echo "make clean   remove what the other targets made, except .venv"
 
-setup: $(STAMP)
+setup: $(STAMP) $(CATALOGUES)
+
+# Catalogues as gettext reads them.
+%.mo: %.po | $(STAMP)
+	$(BIN)/pybabel -q compile -i $< -o $@
 
 # torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
@@ -70,20 +77,30 @@ run: setup
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --out out; \
 	fi
 
-# First the tests that measure time, alone; then all others in two processes of one thread each.  A process that has
-# nothing left takes tests from the other: files with few tests hold some of the longest, and would end the run alone.
+# Lint and tests both run, whichever fails; the summary of pytest stands last.  Two processes of one thread each play the
+# tests, and one that has nothing left takes tests from the other: files with few tests hold some of the longest.
 # While the types are checked, all tests are read once: pytest keeps what it compiled, and both processes begin with it.
+#: Seconds of processors that the tests of `make test` may take; tests/time_budget.py chooses.  make test BUDGET=300
+#: Two cores give 960 in eight minutes; lint and reading the tests in both processes take some 200 of them.
+BUDGET ?= 700
+#: Processes that play tests.
+PROCESSES ?= 2
+CHOICE = --budget $(BUDGET)
+PLAY := OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal
 test: setup
 	@{ sh packaging/system_libraries.sh tests; \
 	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest --collect-only -qq > /dev/null 2>&1; } & reading=$$!; \
-	  $(MAKE) --no-print-directory lint; right=$$?; wait $$reading; exit $$right
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -m clock $(LENGTH)
-	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python -m pytest -n 2 --dist worksteal -m "not clock" $(LENGTH)
+	  failed=0; $(MAKE) --no-print-directory lint || failed=1; wait $$reading; \
+	  echo "$(PLAY) $(CHOICE)"; $(PLAY) $(CHOICE) || failed=1; \
+	  test $$failed = 0 || echo "make test: lint or tests failed, see above"; exit $$failed
 
-# With the tests marked `long`: before a release, and once a week by itself.
+# Every test: before a release, and once a week by itself.
 test-all:
-	@$(MAKE) --no-print-directory test LENGTH=
-LENGTH ?= --short
+	@$(MAKE) --no-print-directory test CHOICE=
+
+# Commit what comes out when tests have become much longer or shorter.
+test-durations: setup
+	HYPOTHESIS_PROFILE=short $(PLAY) --record-durations
 
 #: Damaged files for every reader, until INPUTS are read: make fuzz INPUTS=20000 SEED=7
 INPUTS ?= 1000
@@ -102,13 +119,15 @@ soak: setup
 	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python tests/soaked_window.py \
 	  --generations $(GENERATIONS) --edits $(EDITS)
 
+#: Seconds of processors for the tests of `make quick`; to read them takes 5 more.
+QUICK_BUDGET ?= 6
 quick: setup
-	HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt -p no:benchmark \
-	  -m "not slow and not torch and not qt" $(QUICK_TESTS)
+	@HYPOTHESIS_PROFILE=quick $(BIN)/python -m pytest -p no:pytest-qt --budget $(QUICK_BUDGET) $(QUICK_TESTS)
 
 lint: setup
-	@$(BIN)/mypy --num-workers 2 & types=$$!; $(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports; rest=$$?; \
-	  wait $$types && exit $$rest
+	@$(BIN)/mypy --num-workers 2 & types=$$!; failed=0; \
+	  $(BIN)/ruff check . || failed=1; $(BIN)/ruff format --check . || failed=1; $(BIN)/lint-imports || failed=1; \
+	  wait $$types || failed=1; exit $$failed
 
 bench: setup
 	$(BIN)/python -m kirigami_studio benchmark lattice
@@ -177,8 +196,9 @@ site-serve: setup $(DOCS_STAMP)
 
 # The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup
-	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
-	  -o resources/locale/kirigami_studio.pot kirigami_studio
+	@mkdir -p build
+	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 -k mark_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
+	  -o build/kirigami_studio.pot kirigami_studio
 
 # docs/releasing.md says what has to agree.  Both make environments of their own, below build.
 package:

@@ -6,7 +6,7 @@ set -u
 [ "$(uname)" = Linux ] || exit 0
 
 # From libxcb-cursor on: what the window needs on an X display; Qt does not start if one of them is missing.
-missing=""
+missing="" files=""
 cache=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null)
 for pair in libEGL.so.1:libegl1 libGL.so.1:libgl1 libxkbcommon.so.0:libxkbcommon0 \
             libdbus-1.so.3:libdbus-1-3 libfontconfig.so.1:libfontconfig1 \
@@ -16,12 +16,12 @@ for pair in libEGL.so.1:libegl1 libGL.so.1:libgl1 libxkbcommon.so.0:libxkbcommon
             libxcb-xfixes.so.0:libxcb-xfixes0 libxcb-xkb.so.1:libxcb-xkb1 libxkbcommon-x11.so.0:libxkbcommon-x11-0; do
     case "$cache" in
         *"${pair%%:*}"*) ;;
-        *) missing="$missing ${pair##*:}" ;;
+        *) missing="$missing ${pair##*:}" files="$files ${pair%%:*}" ;;
     esac
 done
 if [ "${1:-}" = tests ]; then
     for pair in Xvfb:xvfb xdotool:xdotool; do
-        command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair##*:}"
+        command -v "${pair%%:*}" >/dev/null 2>&1 || { missing="$missing ${pair##*:}"; files="$files ${pair%%:*}"; }
     done
 fi
 [ -n "$missing" ] || exit 0
@@ -32,6 +32,11 @@ if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
     # shellcheck disable=SC2086  # a list of package names
     DEBIAN_FRONTEND=noninteractive apt-get install -yq --no-install-recommends $missing xvfb >/dev/null 2>&1 && exit 0
 fi
-echo "System packages for the window${1:+ and its $1} are missing:$missing." \
-     "On Debian or Ubuntu run: sudo apt-get install$missing xvfb"
+if command -v apt-get >/dev/null 2>&1; then
+    echo "System packages for the window${1:+ and its $1} are missing:$missing." \
+         "Run: sudo apt-get install$missing xvfb"
+else
+    echo "The window${1:+ and its $1} need files that this system lacks, and there is no apt-get to install them:$files." \
+         "Install the packages of your system that hold them; on Debian and Ubuntu they are called$missing."
+fi
 exit 0

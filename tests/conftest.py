@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,8 +13,13 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 import pytest
 from hypothesis import HealthCheck, settings
+from time_budget import DURATIONS, DurationRecorder, beyond_budget, read_durations, shared_fixtures
 
 from kirigami_studio.foundation.processes import Workers
+from tests.catalogues import compile_stale
+
+# Files, users and signals of POSIX.
+collect_ignore_glob = ["robustness/*"] if sys.platform == "win32" else []
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -27,54 +33,41 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let golden files be written anew on purpose, and a run be short."""
+    """Let golden files be written anew on purpose, and a run fit into a budget."""
     parser.addoption("--update-goldens", action="store_true", help="write golden files instead of comparing with them")
-    parser.addoption("--short", action="store_true", help="leave long tests out, and most cases of some")
+    parser.addoption(
+        "--budget", type=float, metavar="SECONDS", help="play the tests that fit into so many seconds of processors"
+    )
+    parser.addoption("--record-durations", action="store_true", help="write what every test took to --durations-file")
+    parser.addoption("--durations-file", type=Path, default=DURATIONS, help="by default tests/durations.json")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Half of the examples are enough for a short run, unless somebody has chosen."""
-    if config.getoption("short") and "HYPOTHESIS_PROFILE" not in os.environ:
+    """Compile catalogues; half of the examples are enough for a run with a budget, unless somebody has chosen."""
+    compile_stale()
+    if config.getoption("budget") is not None and "HYPOTHESIS_PROFILE" not in os.environ:
         settings.load_profile("short")
+    if config.getoption("record_durations"):
+        config.pluginmanager.register(DurationRecorder(config.getoption("durations_file")))
 
 
-def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """For ``-m clock`` alone, pass by what times nothing: importing every other file takes longer than it is worth."""
-    if config.option.markexpr != "clock" or not collection_path.match("test_*.py"):
-        return None
-    if Path(__file__).parent / "performance" in collection_path.parents:
-        return None
-    text = collection_path.read_text(encoding="utf-8")
-    return None if "mark.clock" in text or "BenchmarkFixture" in text else True
-
-
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark what times something: ``performance`` but for figures of quality, and whatever asks for a benchmark."""
-    if config.getoption("short"):
-        left_out = long_ones(items)
-        config.hook.pytest_deselected(items=list(left_out))
-        items[:] = [item for item in items if item not in left_out]
-    performance = Path(__file__).parent / "performance"
-    for item in items:
-        path = Path(item.path)
-        timed = performance in path.parents and not path.stem.endswith("_quality")
-        if timed or "benchmark" in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.clock)
+    """Leave out what a budget has no room for, once other options have chosen."""
+    budget = config.getoption("budget")
+    if budget is None:
+        return
+    durations = read_durations(config.getoption("durations_file"))
+    left_out = beyond_budget({item.nodeid: shared_fixtures(item) for item in items}, durations, budget)
+    config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left_out])
+    items[:] = [item for item in items if item.nodeid not in left_out]
 
 
-def long_ones(items: list[pytest.Item]) -> set[pytest.Item]:
-    """What ``--short`` leaves out: tests marked ``long``; ``long(but=N)`` keeps N cases, evenly spread."""
-    cases: dict[tuple[Path, str], list[pytest.Item]] = {}
-    for item in items:
-        if item.get_closest_marker("long") is not None:
-            cases.setdefault((Path(item.path), item.nodeid.partition("[")[0]), []).append(item)
-    left_out: set[pytest.Item] = set()
-    for same in cases.values():
-        mark = same[0].get_closest_marker("long")
-        kept = 0 if mark is None else int(mark.kwargs.get("but", 0))
-        stay = {case * len(same) // kept for case in range(kept)}
-        left_out |= {item for number, item in enumerate(same) if number not in stay}
-    return left_out
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say that there are more tests."""
+    if config.getoption("budget") is not None:
+        budget = config.getoption("budget")
+        terminalreporter.write_line(f"tests of {budget:.0f} processor seconds; make test-all plays them all")
 
 
 @pytest.fixture(autouse=True)

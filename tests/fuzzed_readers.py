@@ -118,7 +118,7 @@ def _drawings(reader: str) -> list[bytes]:
     from kirigami_studio.lattice.deployment import deploy
     from kirigami_studio.lattice.ratio_field import RatioField
     from kirigami_studio.project import store
-    from kirigami_studio.project.settings import FabricationSettings
+    from kirigami_studio.settings.fabrication import FabricationSettings
     from kirigami_studio.studio.cutting import plan_sheet
 
     design = deploy(RatioField.uniform(3, 3))

@@ -27,7 +27,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.project import preferences, recent, recovery, store
 from kirigami_studio.project.preferences import Preferences
 from kirigami_studio.project.recent import Recent
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import plan_sheet
 
 RESOURCES = Path(__file__).parents[1] / "resources"
@@ -50,7 +50,7 @@ def documents() -> list[Writer]:
         replace(example, fabrication=replace(example.fabrication, width_mm=100.0 + number))
         for number in range(VERSIONS)
     ]
-    note = recovery.Note("a", "", recovery.now())
+    note = recovery.RecoveryNote("a", "", recovery.now())
     return [
         lambda folder, number: store.save(versions[number], folder / "a.kiri"),
         lambda folder, number: recovery.keep(versions[number], note, folder / "b.kiri"),

@@ -1,16 +1,16 @@
-"""How long a UI freeze lasts, with what the machine took for others left out.
+"""How much is computed while the window takes no events: processor time of one turn of the event loop.
 
-A person waits when the window does not take events.  A timer of 5 ms in the watched thread notes when it fires; the
-time between two firings is one turn of the event loop.  A turn can be long for three reasons:
+A timer of 5 ms in the watched thread notes when it fires; the time between two firings is one turn of the event loop.
+The window takes no events while
 
-1. the thread itself computed;
-2. it slept, nearly always because another thread of the program held the interpreter's lock;
-3. the machine gave the processor to somebody else, to this thread's loss or to that of the thread that holds the lock.
+1. the thread itself computes: ``own``, its processor time; or
+2. it sleeps because another thread or process keeps it waiting, nearly always by holding the interpreter's lock:
+   ``kept``, the most processor time that another thread has taken in the turn, or that processes have taken whose end
+   was waited for; at most as long as this one slept.
 
-The first two are the program's doing and count as a *freeze*.  The third is the neighbours' and does not: Linux counts
-for every thread how long it was ready to run but did not (``schedstat``), and that is taken off: the watched thread's
-own loss, and of the time in which it slept the largest loss of another thread, for which it may have waited.  Where
-there is no such count, all of the time counts.  A turn never freezes the UI for less than the thread computed in it.
+Their sum is a *freeze*.  Both are processor time: whatever else the machine does makes a turn last longer and hardly
+more than that.  Linux counts for every thread how long it has run and how long it waited for a processor
+(``schedstat``); where nobody counts, ``kept`` is all the time that the thread slept.
 """
 
 from __future__ import annotations
@@ -27,14 +27,20 @@ INTERVAL_MS = 5
 #: Seconds after which the threads of the process are counted again.
 RECOUNT = 0.2
 
+#: Seconds that a thread has run, and that it was ready to run but did not.
+Counts = tuple[float, float]
+
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """The longest turn of the event loop in a while; seconds."""
+    """The turn of the event loop in a while that froze the window longest; seconds of processors."""
 
-    wall: float = 0.0
-    own: float = 0.0  #: processor time of the thread itself
-    frozen: float = 0.0
+    own: float = 0.0  #: of the thread itself
+    kept: float = 0.0  #: of the thread, or the processes, that kept it waiting
+
+    @property
+    def frozen(self) -> float:
+        return self.own + self.kept
 
 
 class ThreadWatch(QObject):
@@ -72,26 +78,29 @@ class ThreadWatch(QObject):
         self._files.clear()
 
     def _turn(self) -> None:
-        (wall, own, waited), self._now = self._now, self._clocks()
-        wall, own = self._now[0] - wall, self._now[1] - own
-        losses = {thread: delay - waited.get(thread, delay) for thread, delay in self._now[2].items()}
-        slept = max(0.0, wall - own - losses.pop(self._thread, 0.0))
-        frozen = own + slept - min(slept, max(losses.values(), default=0.0))
-        if frozen > self._worst.frozen:
-            self._worst = Turn(wall, own, frozen)
+        (wall, own, others, before), self._now = self._now, self._clocks()
+        wall, own, others = self._now[0] - wall, self._now[1] - own, self._now[2] - others
+        now = dict(self._now[3])
+        _, lost = difference(now.pop(self._thread, None), before.get(self._thread))
+        slept = max(0.0, wall - own - lost)
+        busiest = max([others, *(difference(counts, before.get(thread))[0] for thread, counts in now.items())])
+        turn = Turn(own, min(slept, busiest) if self._files else slept)
+        if turn.frozen > self._worst.frozen:
+            self._worst = turn
 
-    def _clocks(self) -> tuple[float, float, dict[int, float]]:
-        now = time.perf_counter()
+    def _clocks(self) -> tuple[float, float, float, dict[int, Counts]]:
+        now, times = time.perf_counter(), os.times()
         if now - self._recounted > RECOUNT:
             self._recount()
             self._recounted = now
-        delays = {}
+        counts = {}
         for thread, file in list(self._files.items()):
             try:
-                delays[thread] = int(os.pread(file, 100, 0).split()[1]) * 1e-9
-            except (OSError, IndexError):
+                ran, waited, _ = os.pread(file, 100, 0).split()
+                counts[thread] = int(ran) * 1e-9, int(waited) * 1e-9
+            except (OSError, ValueError):
                 os.close(self._files.pop(thread))
-        return now, time.thread_time(), delays
+        return now, time.thread_time(), times.children_user + times.children_system, counts
 
     def _recount(self) -> None:
         """Open the counters of threads that are new; there are none on other systems than Linux."""
@@ -106,13 +115,19 @@ class ThreadWatch(QObject):
                 continue
 
 
+def difference(now: Counts | None, before: Counts | None) -> Counts:
+    """Return how much two counts have grown; a thread that is new has counted from its beginning."""
+    now, before = now or (0.0, 0.0), before or (0.0, 0.0)
+    return now[0] - before[0], now[1] - before[1]
+
+
 def long_number(seconds: float) -> int:
     """A whole number whose square takes about so long, and a third of that at least."""
     number = 3**60_000
     while True:
-        began = time.perf_counter()
+        began = time.thread_time()
         _ = number * number
-        if 3.0 * (time.perf_counter() - began) >= seconds:
+        if 3.0 * (time.thread_time() - began) >= seconds:
             return number
         number *= number
 

@@ -1,15 +1,16 @@
 """One session through the real window in a process of its own, with the user-interface thread watched at every step.
 
-``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [wall, own, frozen], the longest turn of the
-event loop in it, in seconds of the machine for which limits are written (``machine_pace``).  ``--last STEP`` ends after
-that step, ``--brief`` leaves out what takes long or repeats much, ``--block SECONDS`` plays only steps that are known
-to hold the thread up.  Another session with other steps is in ``watched_tools.py``.
+``python tests/watched_session.py FOLDER`` prints one JSON object: step -> [own, kept], the longest turn of the event
+loop in it, in processor seconds (``thread_watch``) of the machine for which limits are written (``machine_pace``).
+``--last STEP`` ends after that step, ``--brief`` leaves out what takes long or repeats much, ``--block SECONDS`` plays
+only steps that are known to hold the thread up.  Another session with other steps is in ``watched_tools.py``.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -17,15 +18,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from machine_pace import slowness
+from machine_pace import window_slowness
 from PySide6.QtCore import QEventLoop, Qt, QTimer
+from PySide6.QtGui import QPaintEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from thread_watch import ThreadWatch, in_another_thread, long_number
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.run.settings_panel import POLISH
+from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_application, create_window
@@ -36,12 +38,14 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
+from kirigami_studio.settings.design import DesignSettings
 
-PATIENCE = 40.0
+#: Seconds of the clock after which a session gives up: nothing is measured by it.
+PATIENCE = 240.0
 MANY, LARGE = 64, (24, 24)
 MOST, USUAL = 256, (10, 10)
 THEME = "switch the theme"
-FULL_POLISH = max(steps for _, steps, _ in POLISH)
+FULL_POLISH = settings_of(DesignSettings)["polish"].setting.choices[-1].value
 
 
 class Places:
@@ -91,7 +95,7 @@ class WatchedSession:
         self.window.resize(FIRST)
         self.window.file_dialogs = self.places
         self.watch = ThreadWatch()
-        self.longest: dict[str, tuple[float, float, float]] = {}
+        self.longest: dict[str, tuple[float, float]] = {}
 
     @classmethod
     def prepare(cls, folder: Path) -> None:
@@ -105,8 +109,14 @@ class WatchedSession:
         self.until(self.window.isVisible)
 
     def block(self, seconds: float) -> None:
-        """Two steps that hold the thread up for so long."""
+        """Steps that hold the thread up for so long, and one that does nothing."""
+        self.step("nothing", lambda: None)
         self.step("computing in the handler of a timer", lambda: QTimer.singleShot(0, lambda: spin(seconds)))
+        slow = SlowlyPainted(self.window, seconds)
+        self.step("painting", slow.show, lambda: slow.painted)
+        slow.close()
+        compute = f"import time\nwhile time.process_time() < {seconds}: pass"
+        self.step("waiting for a process", lambda: subprocess.run([sys.executable, "-c", compute], check=True))
         number = long_number(seconds)
         self.step("another thread keeps the lock", lambda: in_another_thread(number))
 
@@ -219,12 +229,14 @@ class WatchedSession:
             act()
             acted.append(True)
 
+        before = window_slowness()
         self.watch.begin()
         QTimer.singleShot(0, self.window, carry_out)
         self.until(lambda: bool(acted) and (happened is bool or happened()))
         self.let_live(self.rest)
         turn = self.watch.end()
-        self.longest[name] = (turn.wall, turn.own, turn.frozen)
+        pace = 0.5 * (before + window_slowness())
+        self.longest[name] = (turn.own / pace, turn.kept / pace)
         if name == self.last:
             raise LastStepDone
 
@@ -295,10 +307,23 @@ class WatchedSession:
             QApplication.processEvents()
 
 
+class SlowlyPainted(QWidget):
+    """Takes so many processor seconds to paint."""
+
+    def __init__(self, parent: QWidget, seconds: float) -> None:
+        super().__init__(parent)
+        self.resize(50, 50)
+        self.seconds, self.painted = seconds, False
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        spin(self.seconds)
+        self.painted = True
+
+
 def spin(seconds: float) -> None:
-    """Compute."""
-    end = time.perf_counter() + seconds
-    while time.perf_counter() < end:
+    """Compute for so many processor seconds."""
+    end = time.thread_time() + seconds
+    while time.thread_time() < end:
         pass
 
 
@@ -323,7 +348,6 @@ def main(kind: type[WatchedSession]) -> int:
     if not chosen.block:
         kind.prepare(chosen.folder)
     create_application(["kirigami-studio"])
-    paces = [slowness()]
     session = kind(chosen.folder)
     session.last, session.brief = chosen.last, chosen.brief
     try:
@@ -339,9 +363,7 @@ def main(kind: type[WatchedSession]) -> int:
         window: QWidget = session.window
         session.window.controller.history.mark_saved()
         window.close()
-    paces.append(slowness())
-    pace = sum(paces) / len(paces)
-    sys.stdout.write(json.dumps({step: [part / pace for part in turn] for step, turn in session.longest.items()}))
+    sys.stdout.write(json.dumps(session.longest))
     return 0
 
 

@@ -49,7 +49,7 @@ class CheckedFile:
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin: units, duplicates, gaps, pieces, ligaments.
+    """Read a DXF of any origin or a cut SVG of this program: units, duplicates, gaps, pieces, ligaments.
 
     Parameters
     ----------

@@ -13,14 +13,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon
 
-from kirigami_studio.api.choices import checked_choices
+from kirigami_studio.api.choices import (
+    checked_choices,
+    connector_widths,
+    connectors,
+    cut_choices,
+    explicit_signature,
+)
 from kirigami_studio.api.pictures import cuts_picture, states_picture
 from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
@@ -35,7 +41,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.registry import export, find_exporter
 from kirigami_studio.export.verification import Verification
-from kirigami_studio.fabricate.checks import Report
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError
@@ -48,8 +54,9 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import cleaned_name
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings, with_choices
 from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
 from kirigami_studio.studio.cutting import check_connectors, refuse_errors
 from kirigami_studio.studio.making import (
@@ -377,23 +384,9 @@ class Design:
     def plan_cuts(
         self,
         *,
-        material: str | None = None,
-        width_mm: float | None = None,
-        connector_mm: float | None = None,
-        kerf_mm: float | None = None,
-        style: str | None = None,
-        order: str | None = None,
-        tabs: int | None = None,
-        tab_mm: float | None = None,
-        copies: int | None = None,
-        copy_gap_mm: float | None = None,
         hinge_mm: Mapping[int, float] | None = None,
         removed: Sequence[int] | None = None,
-        engrave: bool | None = None,
-        profile: str | None = None,
-        dxf_version: str | None = None,
-        paper: str | None = None,
-        markers: bool | None = None,
+        **choices: Unpack[CutChange],
     ) -> Cuts:
         """Plan the cuts in a material; what is left out is as the project has it.
 
@@ -441,8 +434,14 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        given = {name: value for name, value in locals().items() if name != "self"}
+        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        if hinge_mm is not None:
+            given["hinge_mm"] = connector_widths(hinge_mm)
+        if removed is not None:
+            given["removed"] = connectors(removed)
         return _plan_cuts(self, {name: value for name, value in given.items() if value is not None})
+
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -550,7 +549,7 @@ def _design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: flo
         outline = Outline.from_points(deployment.outline(phi), "own silhouette")
     else:
         outline = load_target(target).outline
-    settings = DesignSettings(deployment.sheet.grid, phi, auto_grid=False)
+    settings = DesignSettings(deployment.sheet.grid, auto_grid=False, phi=phi)
     found = Candidate(deployment.sheet, evaluate(deployment, outline, phi), 0, 0, origin=Origin.EDITED)
     document = Document(outline, settings, (found,), 0)
     return Design(set_label(document, 0, cleaned_name(name), "").document if name else document)
@@ -608,7 +607,7 @@ class Cuts:
         return self._planned.plan
 
     @property
-    def report(self) -> Report:
+    def report(self) -> PlanReport:
         """What the check of the plan found."""
         return self._planned.report
 
@@ -774,7 +773,7 @@ def _plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
         No such material or choice, or cuts that cannot be planned.
     """
     document = design.document
-    request = CutRequest.of(document, with_choices(document.fabrication, checked_choices(given)))
+    request = CutRequest.of(document, with_choices(document.fabrication, given))
     check_connectors(request.candidate, request.settings.options)
     return Cuts(design, request, planned(request))
 

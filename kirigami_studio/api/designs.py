@@ -9,11 +9,11 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 import numpy as np
 
-from kirigami_studio.api.choices import checked_choices, number
+from kirigami_studio.api.choices import checked_choices, cut_choices, design_choices, explicit_signature, number
 from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Card, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
@@ -24,10 +24,10 @@ from kirigami_studio.foundation.errors import GridError, ProjectError, UsageErro
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.design import DesignChange, chosen_settings
+from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
@@ -174,23 +174,12 @@ def material_names() -> tuple[str, ...]:
 def design(
     target: TargetLike,
     *,
-    k: int = 32,
     grid: str | tuple[int, int] = "auto",
-    phi: float = 0.0,
-    seed: int = 0,
-    symmetry: str = "auto",
-    regular: float | None = None,
-    rim: str = "free",
     start: TargetLike = "rectangle",
     start_weight: float = USUAL_START_WEIGHT,
     also: TargetLike | None = None,
     also_phi: float | None = None,
     also_weight: float | None = None,
-    variant: str = "balanced",
-    steps: int = 4,
-    polish: bool = True,
-    prefer: str = "balanced",
-    search: int = 0,
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
@@ -200,6 +189,7 @@ def design(
     style: str | None = None,
     least_panel_mm: float = 0.0,
     progress: bool | Callable[[Progress], object] = False,
+    **choices: Unpack[DesignChange],
 ) -> Designs:
     """Design sheets that open into a target: sampled, fitted, ranked, best first.
 
@@ -232,8 +222,8 @@ def design(
         Generator that samples.
     steps : int
         Sampling steps.
-    polish : bool
-        Whether every design is fitted on the exact geometry.
+    polish : bool or int
+        Whether every design is fitted on the exact geometry, or in how many steps.
     prefer : str
         ``accuracy``, ``balanced``, ``regularity`` or ``calm``, among nearly equal matches.
     search : int
@@ -264,24 +254,12 @@ def design(
         "kerf_mm": kerf_mm,
         "style": style,
     }
-    given = {name: value for name, value in cuts.items() if value is not None}
-    fabrication = with_choices(FabricationSettings(material=default_material().key), checked_choices(given))
+    given = {name: value for name, value in checked_choices(cuts, cut_choices(), "design").items() if value is not None}
+    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
     least = number("least_panel_mm", least_panel_mm)
-    chosen = _grid(grid)
-    wanted = DesignSettings(
-        **({} if chosen is None else {"grid": chosen}),
-        auto_grid=chosen is None,
-        phi=number("phi", phi),
-        k=number("k", k, whole=True),
-        seed=number("seed", seed, whole=True),
-        variant=variant,
-        steps=number("steps", steps, whole=True),
-        polish=POLISH_STEPS if polish else 0,
-        prefer=prefer,
-        search=number("search", search, whole=True),
-        symmetry=symmetry,
-        rim=rim,
-        regular=REGULAR.get(prefer, REGULAR["balanced"]) if regular is None else number("regular", regular),
+    wanted = chosen_settings(
+        _grid(grid),
+        checked_choices({**choices}, design_choices(), "design"),
         start=_start(start, number("start_weight", start_weight)),
         second=_second(also, also_phi, also_weight),
     )
@@ -295,6 +273,9 @@ def design(
     finally:
         line.end()
     return Designs(document_of(result, fabrication), result)
+
+
+design.__signature__ = explicit_signature(design, design_choices())  # type: ignore[attr-defined]
 
 
 def _grid(grid: object) -> tuple[int, int] | None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.log import quiet_libraries
 
 #: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
 WORKER_FLAG = "--worker"
@@ -21,6 +22,8 @@ WORKER_FLAG = "--worker"
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one sub-command; returns the exit code (argparse itself exits with 2 on unknown words)."""
     _replace_missing_streams()
+    if argv is None:
+        quiet_libraries()
     words = list(sys.argv[1:] if argv is None else argv)
     if words == [WORKER_FLAG]:
         from kirigami_studio.pipeline.worker import serve

@@ -10,7 +10,7 @@ from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.paper import page_notes
@@ -102,9 +102,9 @@ def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
     stored = None if document.artwork is None else document.artwork.first
     changes: dict[str, Any] = {}
     if arguments.on is not None:
-        changes["state"] = State(arguments.on)
+        changes["state"] = SheetState(arguments.on)
     if arguments.place is not None:
-        changes["fitting"] = Fitting(arguments.place)
+        changes["fitting"] = PictureFit(arguments.place)
     if arguments.scale is not None:
         changes["scale"] = arguments.scale
     if arguments.turn_deg is not None:

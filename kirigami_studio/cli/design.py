@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
-from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto
+from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.export.picture import write_png
@@ -31,12 +31,13 @@ from kirigami_studio.pipeline.auto_grid import chosen_for
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, REGULAR, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.settings.design import DesignChoices, chosen_settings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
 from kirigami_studio.studio.making import CutRequest, Output, closed, export_job, judged, planned, written
@@ -45,37 +46,23 @@ from kirigami_studio.studio.verdict import Verdict, refused
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
-    grid = parse_grid_or_auto(arguments.grid)
-    start = replace(start_shape(arguments.start), weight=arguments.start_weight)
     fabrication = material_settings(arguments)
     check_name(arguments.name, run_labels(0, 1)[0].code)
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
         check_folder(Path(arguments.out))
     line = ProgressLine()
     used: set[str] = set()
 
-    wanted = DesignSettings(
-        **({} if grid is None else {"grid": grid}),
-        auto_grid=grid is None,
-        phi=arguments.phi,
-        k=arguments.k,
-        seed=arguments.seed,
-        variant=arguments.variant,
-        steps=arguments.steps,
-        polish=POLISH_STEPS if arguments.polish else 0,
-        prefer=arguments.prefer,
-        search=arguments.search,
-        symmetry=arguments.symmetry,
-        rim=arguments.rim,
-        regular=regular,
-        start=start,
+    wanted = chosen_settings(
+        parse_grid_or_auto(arguments.grid),
+        setting_values(arguments, DesignChoices),
+        start=replace(start_shape(arguments.start), weight=arguments.start_weight),
         second=second_target(arguments),
     )
 
     def job_for(target: Outline) -> Job:
-        least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget}
+        least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
         request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
         as_cut, files = arguments.material is not None, arguments.out is not None
         return Job(request, fabrication, least, as_cut, files, arguments.name or "")

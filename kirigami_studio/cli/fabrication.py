@@ -26,8 +26,8 @@ from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings, with_choices
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import simulated
 from kirigami_studio.studio.cutting import check_connectors, refuse_errors
 from kirigami_studio.studio.designing import request_for
@@ -62,7 +62,6 @@ def export(arguments: argparse.Namespace) -> int:
         check_name(arguments.name, document.label.code)
         document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
-    settings = replace(settings, markers=settings.markers or arguments.markers)
     request = CutRequest.of(document, settings)
     check_connectors(request.candidate, settings.options)
     try:
@@ -272,7 +271,6 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    given.pop("markers", None)  # a flag: without it, the project's choice stays
     return with_choices(saved, given)
 
 

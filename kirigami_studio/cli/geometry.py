@@ -223,7 +223,7 @@ def siou(arguments: argparse.Namespace) -> int:
 def target_angle(phi: float) -> float:
     """Accept a target angle in [0, pi)."""
     if not 0.0 <= phi < math.pi:
-        raise AngleError("settings.angle_out_of_range", value=phi)
+        raise AngleError("request.angle_out_of_range", value=phi)
     return phi
 
 

@@ -25,8 +25,8 @@ from kirigami_studio.mechanics.gripping import Gripping, find_grips, grips
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
 from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, believed_figure, overlap, planned_sheet
 from kirigami_studio.studio.cutting import plan_sheet
 

@@ -1,16 +1,125 @@
-"""Values of options: text -> grid, angle or number; numbers are refused in the way of ``argparse``."""
+"""Options made of settings, and values of options: text -> grid, angle or number, refused as ``argparse`` does."""
 
 from __future__ import annotations
 
 import argparse
 import math
 import re
+from collections.abc import Callable, Sequence
+from enum import Enum
+from functools import partial
+from typing import Any
 
-from kirigami_studio.fabricate.options import AS_MANY_AS_FIT
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
 from kirigami_studio.foundation.processes import Workers
+from kirigami_studio.foundation.settings import NamedSetting, SpecialValue, settings_of
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.labels import Label, cleaned_name, reads_as_code
+
+#: Names and keywords of an ``add_argument`` call.
+Option = tuple[tuple[str, ...], dict[str, Any]]
+
+
+def option(*names: str, **settings: Any) -> Option:
+    """One ``add_argument`` call."""
+    return names, settings
+
+
+def setting_options(kind: type, *names: str, over: object = None) -> tuple[Option, ...]:
+    """The options of those settings of a dataclass that have one.
+
+    Parameters
+    ----------
+    kind : type
+    *names : str
+        Of the settings; all without any.
+    over : object, optional
+        An instance with the usual values, where options change what a project has and are None unless given.
+    """
+    wanted = [one for name, one in settings_of(kind).items() if name in names or not names]
+    return tuple(_setting_option(one, over) for one in wanted if one.setting.option)
+
+
+def setting_values(arguments: argparse.Namespace, kind: type) -> dict[str, Any]:
+    """What was chosen for the settings of a dataclass that have an option, by name."""
+    return {name: getattr(arguments, name) for name, one in settings_of(kind).items() if one.setting.option}
+
+
+def _setting_option(one: NamedSetting, over: object) -> Option:
+    setting = one.setting
+    usual = one.default if over is None else getattr(over, one.name)
+    given = over is None and not setting.open_unless_given
+    keywords: dict[str, Any] = {"dest": one.name, "default": usual if given else None}
+    if one.kind is bool:
+        keywords["action"] = argparse.BooleanOptionalAction if over is not None or one.default else "store_true"
+    elif setting.switched:
+        keywords["action"] = _Switch
+    elif issubclass(one.kind, Enum):
+        keywords["choices"] = [choice.value for choice in one.kind]
+    elif one.kind is not str:
+        keywords["type"] = _reader(one)
+    if setting.metavar:
+        keywords["metavar"] = setting.metavar
+    if setting.alone is not None:
+        keywords |= {"nargs": "?", "const": setting.alone}
+    return option(setting.option, **keywords, help=_help(one, usual, over is not None).replace("%", "%%"))
+
+
+def _help(one: NamedSetting, usual: object, project: bool) -> str:
+    """What an option means, in one clause, and what holds without it."""
+    text = one.setting.help
+    if not text:
+        sentences = one.setting.about.format_map(one.numbers).removesuffix(".").split(". ")
+        text = "; ".join(sentence[:1].lower() + sentence[1:] for sentence in sentences)
+    if "(default" in text or (usual is False and not project):
+        return text
+    note = f"default: the project's, or {_word(one, usual)}" if project else f"default {_word(one, usual)}"
+    return f"{text[:-1]}; {note})" if text.endswith(")") else f"{text} ({note})"
+
+
+def _word(one: NamedSetting, value: object) -> str:
+    """A value as it is typed behind its option."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if one.setting.special is not None and value == one.setting.special.value and one.setting.special.word:
+        return one.setting.special.word
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _reader(one: NamedSetting) -> Callable[[str], object]:
+    """Reads a number for a setting; what else it has to be, the setting says itself."""
+    setting = one.setting
+    if one.kind is int:
+        return partial(_whole_or_word, setting.special) if setting.special is not None else whole
+    if setting.unit == "°":
+        return angle
+    if setting.least == 0.0:
+        return positive if setting.above_least else share if setting.most == 1.0 else amount
+    return number
+
+
+def _whole_or_word(special: SpecialValue, text: str) -> int:
+    if special.word and text.strip().casefold() == special.word:
+        return special.value
+    return count(text) if special.word else whole(text)
+
+
+class _Switch(argparse.BooleanOptionalAction):
+    """``--polish`` and ``--no-polish`` of a number: its default, or 0."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, default: int, help: str) -> None:
+        super().__init__(option_strings, dest, None, help=help)
+        self.default = default
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,
+    ) -> None:
+        off = option_string is not None and option_string.startswith("--no-")
+        setattr(namespace, self.dest, 0 if off else self.default)
 
 
 def parse_grid(text: str) -> tuple[int, int]:
@@ -118,11 +227,6 @@ def count(text: str) -> int:
 def workers(arguments: argparse.Namespace) -> Workers:
     """Who does the pieces of a command, by ``--processes`` and ``--scheduler``."""
     return Workers(arguments.processes, arguments.scheduler)
-
-
-def copies(text: str) -> int:
-    """A number of copies from 1 on; 0 for ``fit``."""
-    return AS_MANY_AS_FIT if text.strip().casefold() == "fit" else count(text)
 
 
 def name(text: str) -> str:

@@ -11,16 +11,25 @@ from importlib.util import find_spec
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.option_types import amount, angle, copies, count, name, number, positive, share, whole
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOrder
+from kirigami_studio.cli.option_types import (
+    Option,
+    amount,
+    count,
+    name,
+    number,
+    option,
+    positive,
+    setting_options,
+    share,
+    whole,
+)
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.starts import USUAL_WEIGHT
-from kirigami_studio.pipeline.request import RIMS
-from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import SYMMETRIES
-
-Option = tuple[tuple[str, ...], dict[str, Any]]
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.settings.design import DesignChoices
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,44 +54,13 @@ class SubCommand:
     examples: tuple[str, ...]
 
 
-def option(*names: str, **settings: Any) -> Option:
-    """One ``add_argument`` call."""
-    return names, settings
-
-
 JSON = option("--json", action="store_true", help="print JSON on standard output, nothing else")
-PHI = option(
-    "--phi", type=angle, default=0.0, metavar="ANGLE",
-    help="deployment angle in radians (0.5, pi/3) or degrees (30deg); pi is the flat sheet, default 0",
-)  # fmt: skip
-WIDTHS = (
-    option("--width-mm", type=positive, default=None, help="width of the flat sheet (default: the project's, or 100)"),
-    option("--material", default=None, help="material, see 'kirigami-studio materials'"),
-    option("--connector-mm", type=positive, default=None, help="finished connector width (default: the material's)"),
-    option("--kerf-mm", type=number, default=None, help="full width of the cut (default: the material's)"),
-)
-STYLE = option(
-    "--style",
-    choices=[style.value for style in ConnectorStyle],
-    default=ConnectorStyle.CENTRED.value,
-    help="how slits end at their connectors (default: centred)",
-)
-PAPER = option(
-    "--paper",
-    default=None,
-    choices=("none", "a4", "letter"),
-    help="spread a PDF over pages of this size (default: the project's, or none)",
-)
-CUTS = (
-    option(
-        "--style",
-        choices=[style.value for style in ConnectorStyle],
-        default=None,
-        help="how slits end at their connectors",
-    ),
-    option("--order", choices=[order.value for order in CutOrder], default=None, help="cutting order"),
-    option("--tabs", type=whole, default=None, help="number of uncut places in the outline that hold the sheet"),
-    option("--tab-mm", type=positive, default=None, help="finished width of a tab"),
+(PHI,) = setting_options(DesignChoices, "phi")
+#: What a project that is exported has, unless options say otherwise.
+USUAL = FabricationSettings()
+WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", over=USUAL)
+PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
+SINGLE_CONNECTORS = (
     option(
         "--hinge-mm",
         nargs="+",
@@ -99,28 +77,19 @@ CUTS = (
         help="connectors to cut through, by number; added to the project's own",
     ),
 )
-
+CUTS = (*setting_options(CutOptions, "style", "order", "tabs", "tab_mm", over=USUAL.options), *SINGLE_CONNECTORS)
 #: A name on the sheet.
-ENGRAVE = (
-    option("--engrave", action=argparse.BooleanOptionalAction, default=None,
-           help="engrave the design's name on one panel, on layer NAME and before the cuts (default: the project's "
-                "choice, or no)"),
-    option("--name", type=name, default=None, metavar="TEXT",
-           help="call the design TEXT; for design, the best one (default: the name that it has, such as A1)"),
-)  # fmt: skip
+NAME = option(
+    "--name",
+    type=name,
+    default=None,
+    metavar="TEXT",
+    help="call the design TEXT; for design, the best one (default: the name that it has, such as A1)",
+)
+ENGRAVE = (*setting_options(FabricationSettings, "engrave", over=USUAL), NAME)  # fmt: skip
 
 #: Several sheets in one file.
-COPIES = (
-    option(
-        "--copies",
-        type=copies,
-        default=None,
-        metavar="N|fit",
-        help="copies of the sheet in one file, in rows; fit: as many as fit on the material's bed (default: the "
-        "project's, or 1)",
-    ),
-    option("--copy-gap-mm", type=positive, default=None, help="gap between copies (default: the project's, or 5)"),
-)
+COPIES = setting_options(CutOptions, "copies", "copy_gap_mm", over=USUAL.options)
 
 #: Which parts of a drawing are the target.
 PARTS = (
@@ -156,29 +125,6 @@ START_WEIGHT = option(
     "for a better match (default 1)",
 )
 
-#: What sheets may be like, and which of them come first.
-SHEETS = (
-    option(
-        "--symmetry",
-        choices=SYMMETRIES,
-        default="auto",
-        help="symmetry that designs keep (default auto: the target's own)",
-    ),
-    option(
-        "--rim",
-        choices=RIMS,
-        default="free",
-        help="where cuts meet the rim: free moves them to fit, even spaces them as in the paper (default free)",
-    ),
-    option(
-        "--regular",
-        type=share,
-        default=None,
-        metavar="0..1",
-        help="what ranking prefers, from 0, the best match, to 1, even panels (default: that of --prefer, 0.5)",
-    ),
-)
-
 #: A cluster in the place of this machine.
 SCHEDULER = option(
     "--scheduler",
@@ -194,11 +140,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--threshold", type=number, default=None,
                help="grey level that separates an image's shape from its background, 0 to 1 (default: automatic)"),
         *PARTS,
-        option("--k", type=int, default=32, help="number of designs (default 32)"),
-        option("--seed", type=int, default=0, help="random seed; the same seed gives the same result (default 0)"),
         option("--grid", default="auto",
                help="voids, ROWSxCOLUMNS, or auto: as coarse as the shape allows (default auto)"),
-        PHI,
+        *setting_options(Request),
         START,
         START_WEIGHT,
         option("--also", default=None, metavar="TARGET",
@@ -207,23 +151,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="angle at which it should show the second target, above --phi (default 45)"),
         option("--weight", type=positive, default=None,
                help="weight of the second target, that of the first being 1 (default 0.3)"),
-        *SHEETS,
-        option("--variant", default="balanced",
-               help="generator variant, see 'kirigami-studio variants' (default balanced)"),
-        option("--steps", type=int, default=4, help="sampling steps: half Euler steps, half corrections (default 4)"),
-        option("--polish", action=argparse.BooleanOptionalAction, default=True,
-               help="fit every design on the exact geometry (default: yes)"),
-        option("--prefer", choices=tuple(PREFERENCES), default="balanced",
-               help="what polishing prefers among nearly equal matches, and a preset of --regular: "
-                    "0, 0.5, 0.75, 1 (default balanced)"),
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
-        option("--trim", action="store_true",
-               help="trim the best design to the target: adds trimmed_iou and trims cut.dxf"),
-        option("--search", type=whole, nargs="?", const=1, default=0, metavar="EFFORT",
-               help="also search for a better design, effort 1 to 8 (default 0: no search; --search alone: 1)"),
-        option("--budget", type=positive, default=None, metavar="SECONDS",
-               help="stop after this time with the best so far; results then depend on the machine (default: none)"),
         *WIDTHS,
         *ENGRAVE,
         SCHEDULER,
@@ -278,20 +207,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write (.dxf .svg .pdf .lbrn2 .png .gif); with --all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
-        *WIDTHS,
-        *CUTS,
-        *COPIES,
-        *ENGRAVE,
-        option("--profile", default=None,
-               help="machine profile: any, lightburn, k40, single, layers or slots (default: the project's)"),
-        option("--dxf-version", default=None, choices=("R2010", "R12"), help="DXF version (default: the project's)"),
-        PAPER,
+        *setting_options(FabricationSettings, over=USUAL),
+        *setting_options(CutOptions, over=USUAL.options),
+        *SINGLE_CONNECTORS,
+        NAME,
         option("--sidecar", action=argparse.BooleanOptionalAction, default=None,
                help="also write all settings as .json beside the cut file (default: only with --all)"),
         option("--fixes", action="store_true",
                help="if the sheet is not ready to cut, try changes on it and tell which ones work"),
-        option("--markers", action="store_true",
-               help="mark the connectors in LightBurn projects, on a layer that LightBurn does not cut"),
         JSON,
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
@@ -331,8 +254,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics sheet.json --width-mm 150 --connector-mm 0.5 --hold 0 10 --move 110 120 --json",
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
-    SubCommand("check", "read a DXF cut file and list its problems", "cli.fabrication:check", (
-        option("file", help="a .dxf file, or a folder of layer files"),
+    SubCommand("check", "read a cut file and list its problems", "cli.fabrication:check", (
+        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
@@ -375,7 +298,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *WIDTHS,
         *CUTS,
         *COPIES,
-        option("--profile", default=None, help="machine profile of the cut file (default: the project's)"),
+        PROFILE,
         PAPER,
         JSON,
     ), ("kirigami-studio artwork heart.kiri --picture photo.jpg --out out/print",
@@ -412,7 +335,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="gaps measured beside the comb with its fingers pushed to one side"),
         WIDTHS[1], WIDTHS[3],
         option("--profile", default=None, help="machine profile of DXF files"),
-        option("--dxf-version", default="R2010", choices=("R2010", "R12"), help="DXF version (default R2010)"),
+        *setting_options(FabricationSettings, "dxf_version"),
         JSON,
     ), ("kirigami-studio coupon --material film-uv --out coupon.dxf", "kirigami-studio coupon --gap-mm 0.29 0.31")),
     SubCommand("variants", "list the bundled generator variants", "cli.library:variants", (JSON,),

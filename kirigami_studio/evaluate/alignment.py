@@ -50,7 +50,7 @@ STAGES: tuple[tuple[int, int, tuple[float, ...]], ...] = (
 #: Tabulated IoU that a start may lack and still turn out to be the better near-copy.
 RIVAL = 0.01
 
-#: What half a turn counts as when two places are about equally good: a person would turn a design less.
+#: What half a turn counts as when two places are about equally good: the user would turn a design less.
 TURN_PENALTY = 2e-4
 
 #: Share of the band's weight that every boundary point keeps, so that no direction is left without curvature.
@@ -69,7 +69,7 @@ NEAR_COPY = 0.98
 #: ``NEAR_COPY`` by more than this is not measured exactly.
 TABLE_ERROR = 0.04
 
-#: IoU differences below this are ties; the smaller rotation then wins, as a person would turn it.
+#: IoU differences below this are ties; the smaller rotation then wins, as the user would turn it.
 TIE = 1e-6
 
 #: Boundary points that slide, beside the vertices.

@@ -106,7 +106,12 @@ def overlap_ratio(deployment: Deployment, phi: float) -> float:
     outline = deployment.outline(phi)
     if shapely.is_valid(shapely.Polygon(outline)) or deepest_crossing(as_plane(outline)) is None:
         return 0.0
-    quads = np.asarray(shapely.polygons(quads_that_count(deployment, phi)), dtype=object)
+    return shared_area(quads_that_count(deployment, phi))
+
+
+def shared_area(corners: FloatArray) -> float:
+    """Share of the area of quads (K, 4, 2), unit cells, that lies in more than one; 1 where none has any."""
+    quads = np.asarray(shapely.polygons(corners), dtype=object)
     quads = quads[shapely.is_valid(quads)]
     total = float(shapely.area(quads).sum())
     if total <= 0.0:

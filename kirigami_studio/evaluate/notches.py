@@ -108,7 +108,7 @@ def deep_cut(
     KirigamiError
         No void lies mostly on the target.
     """
-    cut = _Cut(corners, targets, slits, void_gain, keep)
+    cut = _NotchCut(corners, targets, slits, void_gain, keep)
     voids = cut.first()
     if not voids.any():
         raise KirigamiError("trim.nothing_left")
@@ -117,7 +117,7 @@ def deep_cut(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Draft:
+class _NotchDraft:
     """Parts of all panels for a set of voids, notches that they still enclose, and what all that is worth."""
 
     voids: BoolArray
@@ -126,7 +126,7 @@ class _Draft:
     worth: float
 
 
-class _Cut:
+class _NotchCut:
     """One sheet over its target: what every panel is worth with some of its hinges."""
 
     def __init__(
@@ -181,7 +181,7 @@ class _Cut:
                 best = draft if draft.worth > best.worth + LEAST_GAIN else best
         return best.voids
 
-    def _that_enclose(self, draft: _Draft) -> list[int]:
+    def _that_enclose(self, draft: _NotchDraft) -> list[int]:
         """Voids whose hinges bar the way out of the enclosed parts of notches, along slits of those that went."""
         if not draft.enclosed:
             return []
@@ -191,7 +191,7 @@ class _Cut:
         beside = draft.voids & (shapely.distance(slits, shapely.union_all(bars)) < TOUCH)
         return [int(void) for void in np.flatnonzero(beside)]
 
-    def _draft(self, voids: BoolArray, hinged: BoolArray) -> _Draft:
+    def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
         """The parts with these voids and hinges before enclosed places are filled."""
         shapes = np.empty(len(self._panels), dtype=object)
         shapes[:] = [self._part(k, hinged[k])[1] for k in range(len(hinged))]
@@ -201,7 +201,7 @@ class _Cut:
             self._open_ways_out(shapes, hinged, ~voids, notches)
             notches = [notch for notch in enclosed(self._present(shapes)) if notch.area > WORTH_OPENING]
         filled = STICKING_OUT * sum(float(notch.area) for notch in notches)
-        return _Draft(voids, shapes, notches, worth - filled)
+        return _NotchDraft(voids, shapes, notches, worth - filled)
 
     def _orbits(self, images: IntArray | None) -> IntArray:
         """Each void with its images, (m n, G + 1), if the target has the sheet's symmetry; else alone."""

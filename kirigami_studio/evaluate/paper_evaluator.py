@@ -29,7 +29,7 @@ OVERLAP = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class PaperScore:
     """What the evaluator says about one design at phi = 0.
 
     Attributes
@@ -67,10 +67,10 @@ class Verdict:
 
 
 #: The verdict on ratios that cannot be decoded.
-NOTHING = Verdict(0.0, 0.0, 0, 0.0, has_layout=False, feasible=False)
+NOTHING = PaperScore(0.0, 0.0, 0, 0.0, has_layout=False, feasible=False)
 
 
-def judge(fields: FloatArray, outline: Outline) -> list[Verdict]:
+def judge(fields: FloatArray, outline: Outline) -> list[PaperScore]:
     """Decode, check and score designs for one target: ``len(fields)`` environment calls.
 
     Parameters
@@ -82,7 +82,7 @@ def judge(fields: FloatArray, outline: Outline) -> list[Verdict]:
 
     Returns
     -------
-    verdicts : list of Verdict
+    verdicts : list of PaperScore
         In the order of ``fields``.
     """
     sheets: dict[int, Deployment] = {}
@@ -95,13 +95,13 @@ def judge(fields: FloatArray, outline: Outline) -> list[Verdict]:
     return [found.get(index, NOTHING) for index in range(len(fields))]
 
 
-def judge_sheets(sheets: Sequence[Deployment], outline: Outline) -> list[Verdict]:
+def judge_sheets(sheets: Sequence[Deployment], outline: Outline) -> list[PaperScore]:
     """Check and score decoded designs of one grid at phi = 0; the sIoU is that of a score."""
     if not sheets:
         return []
     matches = siou_of_many([sheet.outline(0.0) for sheet in sheets], outline)
     return [
-        Verdict(
+        PaperScore(
             match.siou,
             total_variation(sheet.field),
             check.n_invalid,

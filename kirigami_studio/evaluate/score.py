@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from functools import lru_cache
+
+import numpy as np
 
 from kirigami_studio.evaluate.evenness import Evenness, evenness_of_many
 from kirigami_studio.evaluate.feasibility import Contact, Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.evaluate.siou import ShapeMatch, siou_near, siou_of_many
+from kirigami_studio.evaluate.siou import PIXELS_OFF, ROUNDING, ShapeMatch, matches_in_poses, siou_near, siou_of_many
 from kirigami_studio.evaluate.total_variation import log_variation, total_variation
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.sheet import Sheet
@@ -118,8 +120,65 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
         matches = siou_of_many([sheet.outline(phi) for sheet in sheets], outline)
         checks, figures = feasibility_of_many(sheets, phi), evenness_of_many(sheets)
         for index, sheet, match, check, even in zip(members, sheets, matches, checks, figures, strict=True):
-            found[index] = _complete(sheet, match, check, even, outline, phi)
+            floor = _uniform_match(sheet.sheet.plain(), phi, outline)
+            found[index] = _complete(sheet, match, check, even, floor, phi)
     return [found[index] for index in range(len(deployments))]
+
+
+def confirmed(deployments: Sequence[Deployment], scores: Sequence[Score], outline: Outline) -> list[Score]:
+    """Keep scores from a file that say what their designs have; designs with another score are scored again.
+
+    A design is measured in the pose that its score names, which takes a hundredth of the time of scoring it.
+
+    Parameters
+    ----------
+    deployments : sequence of Deployment
+    scores : sequence of Score
+        One for each.
+    outline : Outline
+    """
+    found = list(scores)
+    kinds = [(deployment.sheet.grid, score.phi) for deployment, score in zip(deployments, scores, strict=True)]
+    for kind in dict.fromkeys(kinds):
+        members = [index for index, each in enumerate(kinds) if each == kind]
+        measured = _in_their_poses([deployments[k] for k in members], [scores[k] for k in members], outline)
+        for index, own in zip(members, measured, strict=True):
+            if own is None or not _is_same(own, scores[index]):
+                found[index] = evaluate(deployments[index], outline, scores[index].phi)
+    return found
+
+
+def _in_their_poses(deployments: Sequence[Deployment], scores: Sequence[Score], outline: Outline) -> list[Score | None]:
+    """What designs of one grid have at one angle, in the poses of their scores; None far off the target."""
+    phi = scores[0].phi
+    matches = matches_in_poses(
+        [each.outline(phi) for each in deployments], outline, [score.transform for score in scores]
+    )
+    checks, figures = feasibility_of_many(deployments, phi), evenness_of_many(deployments)
+    floors = [ShapeMatch(score.uniform_siou, score.uniform_iou, score.transform) for score in scores]
+    return [
+        None if match is None else _complete(deployment, match, check, even, floor, phi)
+        for deployment, match, check, even, floor in zip(deployments, matches, checks, figures, floors, strict=True)
+    ]
+
+
+def _is_same(own: Score, read: Score) -> bool:
+    """Whether a score that was read is the measured one but for rounding, with a floor that can be one."""
+    kinds = [(score.feasible, score.n_invalid, score.contact is None) for score in (own, read)]
+    rastered, read_rastered = ([score.siou, score.siou_gain] for score in (own, read))
+    return (
+        kinds[0] == kinds[1]
+        and 0.0 <= read.uniform_siou <= 1.0
+        and 0.0 <= read.uniform_iou <= 1.0
+        and np.allclose(rastered, read_rastered, rtol=0.0, atol=PIXELS_OFF)
+        and np.allclose(_figures(own), _figures(read), rtol=ROUNDING, atol=ROUNDING)
+    )
+
+
+def _figures(score: Score) -> list[float]:
+    """All numbers of a score that are measured without a raster."""
+    contact = [] if score.contact is None else [score.contact.phi, *score.contact.where]
+    return [score.iou_exact, score.tv, score.tv_log10, score.overlap_ratio, *contact, *astuple(score.evenness)]
 
 
 def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Similarity) -> Score:
@@ -149,9 +208,8 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
 
 
 def _complete(
-    deployment: Deployment, match: ShapeMatch, check: Feasibility, even: Evenness, outline: Outline, phi: float
+    deployment: Deployment, match: ShapeMatch, check: Feasibility, even: Evenness, floor: ShapeMatch, phi: float
 ) -> Score:
-    floor = _uniform_match(deployment.sheet.plain(), phi, outline)
     return Score(
         siou=match.siou,
         siou_gain=match.siou - floor.siou,

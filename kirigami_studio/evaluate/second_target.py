@@ -9,15 +9,15 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
-from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.evaluate.siou import ShapeMatch, matches_in_poses, siou_of_many
+from kirigami_studio.foundation.errors import AngleError
+from kirigami_studio.foundation.settings import Setting, check
+from kirigami_studio.foundation.words import mark
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.outlines.outline import Outline
 
-#: Largest weight: a second target that counts four times as much as the first.
-HEAVIEST = 4.0
 #: Angle (radians) and weight unless others are asked for.
 USUAL_PHI, USUAL_WEIGHT = math.radians(45.0), 0.3
 
@@ -31,8 +31,8 @@ class SecondTarget:
     outline : Outline
     phi : float, radians
         Between 0 and pi, both excluded.
-    weight : float, above 0, up to :data:`HEAVIEST`
-        Of its match, where that of the first target has 1.
+    weight : float, above 0, up to 4
+        Of its match, where that of the first target has 1: it may count four times as much.
 
     Raises
     ------
@@ -41,14 +41,40 @@ class SecondTarget:
     """
 
     outline: Outline
-    phi: float
-    weight: float
+    phi: float = field(
+        metadata=Setting(
+            least=0.0,
+            above_least=True,
+            most=math.pi,
+            below_most=True,
+            code="second_target.angle_out_of_range",
+            error=AngleError,
+            label=mark("At"),
+            spoken=mark("Angle of the second target in degrees"),
+            widget="secondAngle",
+            scale=180.0 / math.pi,
+            step=5.0,
+            decimals=1,
+            unit="°",
+        ).metadata
+    )
+    weight: float = field(
+        metadata=Setting(
+            about=mark("How much the second target counts; the first has 1 ({low:g} to {most:g})."),
+            least=0.0,
+            above_least=True,
+            most=4.0,
+            code="second_target.weight_out_of_range",
+            label=mark("&Weight"),
+            spoken=mark("Weight of the second target"),
+            widget="secondWeight",
+            low=0.01,
+            step=0.1,
+        ).metadata
+    )
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.phi < math.pi:
-            raise AngleError("second_target.angle_out_of_range", phi=self.phi)
-        if not 0.0 < self.weight <= HEAVIEST:
-            raise UsageError("second_target.weight_out_of_range", weight=self.weight, most=HEAVIEST)
+        check(self)
 
     def check_on_the_way_to(self, phi: float) -> None:
         """Refuse a second target that the sheet does not pass before it is at ``phi`` (radians).
@@ -98,3 +124,12 @@ def second_matches(deployments: Sequence[Deployment], target: SecondTarget | Non
         return [None] * len(deployments)
     outlines = [deployment.outline(target.phi) for deployment in deployments]
     return [SecondMatch(target, match) for match in siou_of_many(outlines, target.outline)]
+
+
+def confirmed_match(deployment: Deployment, read: SecondMatch) -> SecondMatch:
+    """Keep a match from a file that is the design's in the pose that it names; else match the design again."""
+    target, match = read.target, read.match
+    (own,) = matches_in_poses([deployment.outline(target.phi)], target.outline, [match.transform])
+    if own is not None and own.is_near(match):
+        return read
+    return SecondMatch(target, siou_of_many([deployment.outline(target.phi)], target.outline)[0])

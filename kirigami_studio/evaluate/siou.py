@@ -25,6 +25,11 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.outlines.outline import Outline
 
+#: Processors round differently: sIoU may differ by a few of 16 000 pixels, exact numbers by less than this.
+PIXELS_OFF, ROUNDING = 1e-3, 1e-4
+#: A silhouette that reaches this many times as far from the middle as the target is not laid upon it.
+FARTHEST = 10.0
+
 
 @dataclass(frozen=True, slots=True)
 class ShapeMatch:
@@ -43,6 +48,10 @@ class ShapeMatch:
     iou_exact: float
     transform: Similarity
 
+    def is_near(self, other: ShapeMatch) -> bool:
+        """Whether both numbers are those of another match but for rounding."""
+        return abs(self.siou - other.siou) <= PIXELS_OFF and abs(self.iou_exact - other.iou_exact) <= ROUNDING
+
 
 def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMatch]:
     """The sIoU of silhouettes (L, 2) that all have the same number of vertices."""
@@ -52,6 +61,18 @@ def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMat
 def siou_near(shape: FloatArray, target: Outline, pose: Similarity) -> ShapeMatch:
     """The same of one silhouette (L, 2), under the best similarity that is found from ``pose`` on uphill."""
     return _matches([shape], target, [align_near(shape, target.points, pose)])[0]
+
+
+def matches_in_poses(
+    shapes: Sequence[FloatArray], target: Outline, poses: Sequence[Similarity]
+) -> list[ShapeMatch | None]:
+    """The sIoU of silhouettes (L, 2) of equally many vertices in given poses; None far off the target."""
+    # A raster that holds a silhouette far off the target would be as large.
+    reach = FARTHEST * float(np.abs(target.points).max())
+    near = [bool(np.abs(pose.apply(shape)).max() <= reach) for shape, pose in zip(shapes, poses, strict=True)]
+    close = [(shape, pose) for shape, pose, here in zip(shapes, poses, near, strict=True) if here]
+    found = iter(_matches([shape for shape, _ in close], target, [pose for _, pose in close]))
+    return [next(found) if here else None for here in near]
 
 
 def _matches(shapes: Sequence[FloatArray], target: Outline, transforms: Sequence[Similarity]) -> list[ShapeMatch]:

@@ -1,4 +1,4 @@
-"""What is printed on a sheet: one picture or two, and where they lie, on the opened sheet or on the flat one.
+"""Pictures on a sheet: one or two, and their places on the opened or on the flat sheet.
 
 Points of the plane are complex numbers x + iy with y up, pixels are u + iv with v down from the picture's upper left
 corner; a picture with the map (a, b) shows its pixel p at a conj(p) + b.
@@ -63,14 +63,14 @@ class ArtPicture:
         return ".jpg" if self.is_jpeg else ".png"
 
 
-class State(Enum):
+class SheetState(Enum):
     """Where a picture is seen whole."""
 
     TARGET = "target"
     FLAT = "flat"
 
 
-class Fitting(Enum):
+class PictureFit(Enum):
     """How large a picture is laid: all of it inside the box of the state, or all of the box covered."""
 
     FIT = "fit"
@@ -84,9 +84,9 @@ class Laid:
     Attributes
     ----------
     picture : ArtPicture
-    state : State
+    state : SheetState
         On the target, or on the flat sheet.
-    fitting : Fitting
+    fitting : PictureFit
         Into the box around the target, or around the flat sheet.
     scale : float
         Times the size that ``fitting`` gives, above 0.
@@ -102,8 +102,8 @@ class Laid:
     """
 
     picture: ArtPicture
-    state: State = State.TARGET
-    fitting: Fitting = Fitting.FILL
+    state: SheetState = SheetState.TARGET
+    fitting: PictureFit = PictureFit.FILL
     scale: float = 1.0
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
@@ -118,11 +118,11 @@ class Laid:
     def map_into(self, low: FloatArray, high: FloatArray) -> tuple[complex, complex]:
         """The picture's map (a, b) into the frame of a box from ``low`` (2,) to ``high`` (2,)."""
         size = high - low
-        if self.fitting is Fitting.FILL:
+        if self.fitting is PictureFit.FILL:
             size = size + 2.0 * BEYOND * float(size.max())
         width, height = self.picture.size
         ratios = (float(size[0]) / width, float(size[1]) / height)
-        length = min(ratios) if self.fitting is Fitting.FIT else max(ratios)
+        length = min(ratios) if self.fitting is PictureFit.FIT else max(ratios)
         factor = self.scale * length * cmath.exp(1j * self.turn)
         x, y = (0.5 * (low + high) + np.array(self.shift) * (high - low)).tolist()
         return factor, complex(x, y) - factor * complex(0.5 * width, -0.5 * height)
@@ -130,7 +130,7 @@ class Laid:
 
 @dataclass(frozen=True, slots=True)
 class Artwork:
-    """What is printed on a sheet.
+    """The pictures on a sheet.
 
     Attributes
     ----------
@@ -159,5 +159,5 @@ class Artwork:
         """Both pictures as they lie; the second one is neither turned nor shifted."""
         if self.second is None:
             return (self.first,)
-        other = State.FLAT if self.first.state is State.TARGET else State.TARGET
+        other = SheetState.FLAT if self.first.state is SheetState.TARGET else SheetState.TARGET
         return self.first, Laid(self.second, other, self.first.fitting)

@@ -20,16 +20,14 @@ from xml.etree import ElementTree
 import numpy as np
 import shapely
 from PIL import Image, ImageDraw
-from reportlab.lib.units import mm
-from reportlab.lib.utils import ImageReader
-from reportlab.pdfgen.canvas import Canvas
 
 from kirigami_studio import __version__
 from kirigami_studio.export.artwork import ArtPicture, Artwork
 from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_patches, printed_patches, rings_of
-from kirigami_studio.export.artwork_raster import Page, most_dpi, paint
+from kirigami_studio.export.artwork_raster import BitmapFrame, most_dpi, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import Tile, Tiling, find_paper, tile
+from kirigami_studio.export.pdf_library import Canvas, ImageReader, mm
 from kirigami_studio.export.pdf_pages import LINE_MM, check_pages, draw_pages, page_boxes, to_page
 from kirigami_studio.export.picture import INK, PAPER, TARGET_EDGE, write_image
 from kirigami_studio.export.profile import find_profile
@@ -59,7 +57,7 @@ OPENED_OVERLAP = 4e-4
 
 @dataclass(frozen=True, eq=False)
 class ArtworkJob:
-    """What the files of a printed sheet are made of.
+    """The contents of the files of a printed sheet.
 
     Attributes
     ----------
@@ -134,7 +132,7 @@ class ArtworkJob:
         return None if find_paper(self.job.paper) is None else tile(self.page_mm, self.job.paper)
 
     @property
-    def page(self) -> Page:
+    def page(self) -> BitmapFrame:
         """The page as a bitmap.
 
         Raises
@@ -143,7 +141,7 @@ class ArtworkJob:
             It would have too many pixels.
         """
         low, high = (-self.margin_mm, -self.margin_mm), (np.array(self.frame_mm) + self.margin_mm).tolist()
-        return Page(low, (high[0], high[1]), self.dpi)
+        return BitmapFrame(low, (high[0], high[1]), self.dpi)
 
     @property
     def marks(self) -> FloatArray:
@@ -207,7 +205,7 @@ def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -
     return svg, pdf, png, opened
 
 
-def printed_image(work: ArtworkJob, page: Page) -> Image.Image:
+def printed_image(work: ArtworkJob, page: BitmapFrame) -> Image.Image:
     """The printed page: RGBA, nothing where nothing is printed."""
     copies = [patch.moved(1.0, complex(*place)) for place in work.places.tolist() for patch in work.patches]
     image = paint(copies, page)
@@ -231,7 +229,7 @@ def opened_image(work: ArtworkJob) -> Image.Image:
     points = np.concatenate(clouds)
     low, high = points.min(axis=0) - OPENED_MARGIN_MM, points.max(axis=0) + OPENED_MARGIN_MM
     dpi = OPENED_SIDE / float((high - low).max()) * MM_PER_INCH
-    page = Page((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
+    page = BitmapFrame((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
     image = paint(patches, page, (*PAPER, 255))
     if target is not None:
         ring = page.to_pixels(np.concatenate([target, target[:1]])) - 0.5

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, SheetState
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
@@ -80,7 +80,7 @@ class PrintedSheet:
         cells = panels_in_mm(design.deployment, parts, width_mm, np.zeros(2))
         return cls(design, target, np.array(panels_in_mm(design.deployment, (), width_mm, np.zeros(2))), cells)
 
-    def motion(self, phi: float) -> Motion:
+    def motion(self, phi: float) -> PanelSimilarities:
         """How the panels come from the flat sheet (mm) to the world at an angle."""
         flat = as_plane(self.corners)
         there = as_plane(self.design.panels(self.design.nodes(phi)))
@@ -88,11 +88,11 @@ class PrintedSheet:
         arms = flat - flat_middle[:, None]
         weight = np.maximum(np.sum(np.abs(arms) ** 2, axis=1), 1e-300)
         factor = np.sum((there - there_middle[:, None]) * np.conj(arms), axis=1) / weight
-        return Motion(factor, there_middle - factor * flat_middle)
+        return PanelSimilarities(factor, there_middle - factor * flat_middle)
 
-    def box(self, state: State) -> FloatArray:
+    def box(self, state: SheetState) -> FloatArray:
         """Lower left and upper right corner (2, 2) of what pictures are laid on: world, or mm of the flat sheet."""
-        if state is State.FLAT:
+        if state is SheetState.FLAT:
             points = np.concatenate(self.cells)
         else:
             opened = self.design.parts(self.design.phi_target)
@@ -101,7 +101,7 @@ class PrintedSheet:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class PanelSimilarities:
     """One similarity for each panel: flat mm -> world, ``factor * z + shift``.
 
     Attributes
@@ -146,7 +146,7 @@ class Patch:
 
 
 def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf_mm: float) -> tuple[Patch, ...]:
-    """What is printed on the flat sheet, to be painted in this order.
+    """The print on the flat sheet, to be painted in this order.
 
     Parameters
     ----------
@@ -203,14 +203,14 @@ def _bands(sheet: PrintedSheet, stripes: int) -> BaseGeometry:
     return MultiPolygon(list(shapely.box(left, low[1] - room, left + width, high[1] + room)))
 
 
-def _maps(laid: Laid, sheet: PrintedSheet) -> Motion:
+def _maps(laid: Laid, sheet: PrintedSheet) -> PanelSimilarities:
     """The picture's map into the flat sheet, for each panel."""
     low, high = sheet.box(laid.state)
     factor, shift = laid.map_into(low, high)
-    if laid.state is State.FLAT:
-        return Motion(np.full(len(sheet.cells), factor), np.full(len(sheet.cells), shift))
+    if laid.state is SheetState.FLAT:
+        return PanelSimilarities(np.full(len(sheet.cells), factor), np.full(len(sheet.cells), shift))
     there = sheet.motion(sheet.design.phi_target)
-    return Motion(factor / there.factor, (shift - there.shift) / there.factor)
+    return PanelSimilarities(factor / there.factor, (shift - there.shift) / there.factor)
 
 
 def _regions(cells: Sequence[FloatArray], bleed_mm: float, overlap_mm: float) -> list[BaseGeometry]:

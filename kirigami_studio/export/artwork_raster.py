@@ -35,7 +35,7 @@ def most_dpi(width_mm: float, height_mm: float) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Page:
+class BitmapFrame:
     """A rectangle of the plane as a bitmap; its upper left corner is that of pixel (0, 0).
 
     Attributes
@@ -86,7 +86,7 @@ class Page:
         return complex(self.low[0], self.high[1]) + pixel.conjugate() / self.dots_per_mm
 
 
-def paint(patches: Sequence[Patch], page: Page, ground: Colour = NOTHING) -> Image.Image:
+def paint(patches: Sequence[Patch], page: BitmapFrame, ground: Colour = NOTHING) -> Image.Image:
     """Paint patches, whose frame is in mm, one over the other: RGBA."""
     canvas = Image.new("RGBA", page.pixels, ground)
     sources: dict[tuple[ArtPicture, float], Image.Image] = {}
@@ -117,7 +117,7 @@ def _reduced(picture: ArtPicture, share: float) -> Image.Image:
     return image.convert("RGBa")
 
 
-def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: Page) -> None:
+def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: BitmapFrame) -> None:
     low_x, low_y, high_x, high_y = patch.region.bounds
     near = page.to_pixels(np.array([[low_x, high_y], [high_x, low_y]]))
     left, top = (max(0, math.floor(value)) for value in near[0].tolist())
@@ -141,7 +141,7 @@ def _paint_patch(canvas: Image.Image, patch: Patch, source: Image.Image, page: P
     canvas.paste(shown, (left, top), mask)
 
 
-def _mask(patch: Patch, page: Page, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
+def _mask(patch: Patch, page: BitmapFrame, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
     """How much of each pixel a region covers."""
     large = Image.new("L", (size[0] * SUPERSAMPLING, size[1] * SUPERSAMPLING), 0)
     draw = ImageDraw.Draw(large)

@@ -22,14 +22,13 @@ from ezdxf.filemanagement import new
 from kirigami_studio.export.design_record import record_pieces
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.file_content import FileContent, bent_otherwise
-from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, DEFAULT_PROFILE, WHITE, DxfVersion, Profile, find_profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes, layer_colours
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
-VERSIONS = ("R2010", "R12")
 #: Layers that every DXF document has whether wanted or not.
 UNAVOIDABLE_LAYERS = frozenset({"0", "Defpoints"})
 #: Coordinates survive the text form exactly; anything above this (mm) is a fault.
@@ -115,7 +114,7 @@ def strokes_dxf(
     ExportError
         Unknown version.
     """
-    if version not in VERSIONS:
+    if version not in tuple(DxfVersion):
         raise ExportError("dxf.unknown_version", version=version)
     with _fixed_metadata():
         # R12 knows no units, and ezdxf.new would log that at every export.
@@ -222,7 +221,7 @@ def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, floa
 def _first_difference(
     content: FileContent, strokes: Sequence[Stroke], size: tuple[float, float], version: str
 ) -> ExportError | None:
-    """What differs first from what was meant; None where nothing does."""
+    """The first difference from the plan; None where there is none."""
     if version != "R12" and content.unit != units.MM:
         return ExportError("dxf.other_unit", unit=content.unit)
     if content.extent != size:

@@ -1,8 +1,8 @@
 """Judge any cut file: units, layers, duplicates, gaps in the outline, pieces and the narrowest ligament.
 
-:func:`check_file` reads a DXF of any origin, or a folder of layer files.  A file written here says how many tabs its
-outline has and how many cuts end on other cuts, and is held to that; in a foreign file the outline is the largest
-closed contour.  A name that such a file says it engraves is no cut.
+:func:`check_file` reads a DXF of any origin, a cut SVG of this program, or a folder of layer files.  A file written
+here says how many tabs its outline has and how many cuts end on other cuts, and is held to that; in a foreign file the
+outline is the largest closed contour.  A name that such a file says it engraves is no cut.
 """
 
 from __future__ import annotations
@@ -18,15 +18,25 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.export.dxf_reading import DxfContent, FilePath, read_content
+from kirigami_studio.export.dxf_reading import (
+    FARTHEST_MM,
+    FLATTEN_MM,
+    SHORTEST_MM,
+    DxfContent,
+    FilePath,
+    read_content,
+)
+from kirigami_studio.export.file_content import MILLIMETRES
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.profile import NAME_LAYER
+from kirigami_studio.export.provenance import PROGRAM
+from kirigami_studio.export.svg_reading import facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.engraving import nearest_cut
 from kirigami_studio.fabricate.findings import Problem, Severity
-from kirigami_studio.fabricate.finished_sheet import Overlap, overlap, remaining_pieces, smallest_ligament
+from kirigami_studio.fabricate.finished_sheet import RepeatedCut, overlap, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
@@ -49,7 +59,7 @@ NEARLY_CLOSED_MM = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FileReport:
-    """What is in a cut file.
+    """The contents of a cut file.
 
     Attributes
     ----------
@@ -92,20 +102,20 @@ class FileReport:
 
 
 def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
-    """Read a DXF of any origin and list what would go wrong on the cutter.
+    """Read a DXF of any origin, or an own cut SVG, and list its faults for the cutter.
 
     Parameters
     ----------
     path : str or Path
-        A file; or a folder of layer files, which is checked as the one drawing that it is.  One file of such a folder
-        is checked by itself without the sheet that only all of them show.
+        A file, whose content says of which kind it is; or a folder of layer files, which is checked as the one drawing
+        that it is.  One file of such a folder is checked by itself without the sheet that only all of them show.
     kerf_mm : float, optional
         Full cut width; else what the file says of itself, else 0.
 
     Raises
     ------
     ExportError
-        The file is missing or not a DXF, or the kerf makes no sense.
+        The file is missing or of another kind, or the kerf makes no sense.
     """
     content = _read(Path(path))
     kerf = _kerf(content, kerf_mm)
@@ -158,7 +168,7 @@ def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) ->
 def _read(path: Path) -> DxfContent:
     """A file, or the files of a folder as one drawing; registration marks are no cuts."""
     if not path.is_dir() or not any(path.iterdir()):
-        return _without_marks(read_content(path))
+        return _without_marks(_svg_content(path) if is_svg(path) else read_content(path))
     contents = [read_content(part) for part in layer_paths(path)]
     marks = [[p.points.tolist() for p in content.paths if p.layer == REGISTRATION_LAYER] for content in contents]
     if any(found != marks[0] or not found for found in marks):
@@ -172,6 +182,38 @@ def _read(path: Path) -> DxfContent:
         problems=[problem for nth, problem in enumerate(problems) if problem not in problems[:nth]],
     )
     return _without_marks(whole)
+
+
+def _svg_content(path: Path) -> DxfContent:
+    """A cut SVG of this program, as if it were a DXF.
+
+    Raises
+    ------
+    ExportError
+        It is damaged, or another program wrote it.
+    """
+    facts = facts_of_svg(path)
+    if PROGRAM not in facts:
+        raise ExportError("cut_file.foreign_svg", path=path)
+    found = read_with_xml(path)
+    problems = [
+        Problem.error("cut_file.other_entities", count=n, kind=kind) for kind, n in Counter(found.others).items()
+    ]
+    if found.unit != MILLIMETRES:
+        problems.append(Problem.warning("cut_file.no_unit"))
+    paths = []
+    for number, stroke in enumerate(found.strokes, start=1):
+        points = stroke.travelled(FLATTEN_MM)
+        chords = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+        name = {"kind": "path", "handle": f"{number}", "layer": stroke.layer}
+        if not np.all(np.abs(points) < FARTHEST_MM):
+            problems.append(Problem.error("cut_file.not_a_number", **name))
+        elif chords < SHORTEST_MM:
+            problems.append(Problem.error("cut_file.no_length", **name))
+        else:
+            paths.append(FilePath(points, stroke.layer, stroke.closed, stroke.length - chords))
+    unit = "mm" if found.unit == MILLIMETRES else "none"
+    return DxfContent(paths, unit, tuple(sorted(found.layers)), facts, problems)
 
 
 def _without_marks(content: DxfContent) -> DxfContent:
@@ -233,7 +275,7 @@ def _size_problems(bounds: tuple[float, float]) -> list[Problem]:
     ]
 
 
-def _double_problems(paths: Sequence[FilePath], twice: Overlap) -> list[Problem]:
+def _double_problems(paths: Sequence[FilePath], twice: RepeatedCut) -> list[Problem]:
     seen: Counter[tuple[tuple[float, float], ...]] = Counter()
     for path in paths:
         points = np.round(path.points / SAME_POINT_MM).astype(np.int64)

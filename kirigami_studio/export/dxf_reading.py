@@ -60,6 +60,8 @@ PARSER_FAULTS = (
     TypeError,
     ValueError,
 )
+#: Curves that are shorter than this (mm) have no length.
+SHORTEST_MM = 1e-6
 #: Ends of a closed curve nearer than this (mm) are the same point.
 ROUNDING_MM = 1e-9
 CURVES = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
@@ -159,7 +161,7 @@ class FilePath:
 
 @dataclass(slots=True)
 class DxfContent:
-    """What a DXF holds, with the problems seen while reading.
+    """The contents of a DXF, with the problems seen while reading.
 
     Attributes
     ----------
@@ -293,7 +295,7 @@ def _add_path(content: DxfContent, entity: DXFEntity, factor: float) -> None:
         content.problems.append(Problem.error("cut_file.not_a_number", **name))
         return
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) if len(points) > 1 else 0.0
-    if length < 1e-6:
+    if length < SHORTEST_MM:
         where = (float(points[0, 0]), float(points[0, 1])) if len(points) else None
         content.problems.append(Problem.error("cut_file.no_length", where, **name))
         return

@@ -1,4 +1,4 @@
-"""Everything that a person may want of one design, in one folder, each cut file verified."""
+"""Everything that the user may want of one design, in one folder, each cut file verified."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.dxf import write_reference
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.export.provenance import sidecar_path, write_sidecar
 from kirigami_studio.export.registry import export, written_path
 from kirigami_studio.export.svg import write_layout_svg
@@ -25,13 +25,11 @@ from kirigami_studio.foundation.files import folder_of_one_writer, write_atomica
 LARGEST_RECORD = 50_000_000
 #: Judges files by what was read back from them.
 Judged = Callable[[Sequence[Verification]], Mapping[str, object]]
-R12 = "R12"
-R2010 = "R2010"
 
 
 @dataclass(frozen=True, slots=True)
 class ExportSet:
-    """What was written.
+    """The written files.
 
     Attributes
     ----------
@@ -163,7 +161,11 @@ def _written(
         if on_written is not None:
             on_written(path)
 
-    for goal, version in ((cut, R2010), (home / f"{name}_r12.dxf", R12), (home / f"{name}.svg", R2010)):
+    for goal, version in (
+        (cut, DxfVersion.R2010),
+        (home / f"{name}_r12.dxf", DxfVersion.R12),
+        (home / f"{name}.svg", DxfVersion.R2010),
+    ):
         with drafted(replace(job, dxf_version=version), goal) as draft:
             verified.append(draft.verification)
             done(draft.place())
@@ -179,7 +181,7 @@ def _written(
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
         done(write_sidecar(job, sidecar_path(cut), written, None if judged is None else judged(verified)))
-    known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", f"_{R12.lower()}", f"_{R12.lower()}.dxf"))
+    known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", "_r12", "_r12.dxf"))
     older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
     return ExportSet(tuple(written), tuple(verified), older, _remove(home, before, written))
 

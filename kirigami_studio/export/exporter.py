@@ -1,11 +1,10 @@
-"""What every exporter gets and is."""
+"""The request and the interface of every exporter."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -14,11 +13,12 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.paper import NO_PAPER
-from kirigami_studio.export.profile import DEFAULT_PROFILE
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.profile import DEFAULT_PROFILE, DxfVersion
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment, deploy
 
 
@@ -40,8 +40,8 @@ class ExportJob:
     dxf_version : str
     profile : str
         Key of the machine profile.
-    paper : str
-        Key of the paper that a PDF is spread over; "none" for one page as large as the sheet.
+    paper : Paper
+        That a PDF is spread over.
     provenance : mapping of str to str
         Where the design comes from: version of the program, name and hash of the model, seed, settings; every file
         repeats it.
@@ -62,10 +62,10 @@ class ExportJob:
     plan: CutPlan | None = None
     target: FloatArray | None = None
     transform: Similarity = field(default_factory=Similarity)
-    dxf_version: str = "R2010"
+    dxf_version: DxfVersion = DxfVersion.R2010
     profile: str = DEFAULT_PROFILE
-    paper: str = NO_PAPER
-    provenance: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    paper: Paper = Paper.NONE
+    provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
@@ -111,7 +111,7 @@ class Exporter(Protocol):
 
     @property
     def name(self) -> str:
-        """What a person reads in a file dialog."""
+        """Name of the format in a file dialog."""
 
     def write(self, job: ExportJob, path: Path) -> None:
         """Write and verify; raises ExportError and leaves an older file alone when that fails."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from types import MappingProxyType
 
 from kirigami_studio.fabricate.findings import Note
@@ -13,9 +14,25 @@ from kirigami_studio.foundation.errors import ExportError
 Size = tuple[float, float]
 Box = tuple[float, float, float, float]
 
-#: Paper sizes (width, height) in mm, upright; "none" is one page as large as the sheet.
-PAPERS: Mapping[str, Size | None] = MappingProxyType({"none": None, "a4": (210.0, 297.0), "letter": (215.9, 279.4)})
-NO_PAPER = "none"
+
+class Paper(StrEnum):
+    """Paper that PDFs are spread over; the values are the names on the command line and in files."""
+
+    NONE = "none"  #: one page as large as the sheet
+    A4 = "a4"
+    LETTER = "letter"
+
+    @classmethod
+    def _missing_(cls, value: object) -> Paper | None:
+        """Capitals and blanks around a name do not matter."""
+        wanted = str(value).strip().casefold()
+        return next((one for one in cls if one.value == wanted), None)
+
+
+#: Sizes (width, height) in mm, upright.
+PAPERS: Mapping[Paper, Size | None] = MappingProxyType(
+    {Paper.NONE: None, Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}
+)
 #: Rim (mm) that printers leave white.
 MARGIN_MM = 10.0
 #: Room below the drawing for the ruler and its words.
@@ -24,7 +41,7 @@ FOOTER_MM = 14.0
 OVERLAP_MM = 10.0
 #: More pages than this are a mistake in the size.
 MOST_PAGES = 400
-#: From this many pages on, a person is told.
+#: From this many pages on, a note says how many.
 MANY_PAGES = 20
 
 
@@ -115,9 +132,10 @@ def find_paper(name: str) -> Size | None:
     ExportError
         No such paper; the sentence lists the known ones.
     """
-    key = str(name).strip().casefold()
-    if key not in PAPERS:
-        raise ExportError("paper.unknown", name=name, known=", ".join(PAPERS))
+    try:
+        key = Paper(name)
+    except ValueError:
+        raise ExportError("paper.unknown", name=name, known=", ".join(PAPERS)) from None
     return PAPERS[key]
 
 

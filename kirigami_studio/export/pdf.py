@@ -16,14 +16,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from reportlab.lib.units import mm
-from reportlab.pdfgen.canvas import Canvas
 from shapely.geometry import LineString
 
 from kirigami_studio import __version__
 from kirigami_studio.export import picture
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, NO_PAPER, Tile, Tiling, find_paper, tile
+from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, Paper, Tile, Tiling, find_paper, tile
+from kirigami_studio.export.pdf_library import Canvas, mm
 from kirigami_studio.export.pdf_pages import (
     LINE_MM,
     MM_PER_POINT,
@@ -65,7 +64,7 @@ class PdfExporter:
         write_pdf(job.required_plan, path, job.paper)
 
 
-def write_pdf(plan: CutPlan, path: str | Path, paper: str = NO_PAPER) -> None:
+def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
     """Write a plan at 1:1, read it back and compare lengths and page sizes.
 
     Parameters

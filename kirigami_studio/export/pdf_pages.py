@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from reportlab.lib.units import mm
 
 from kirigami_studio.export import picture
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, Size, Tile, Tiling
+from kirigami_studio.export.pdf_library import mm
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError

@@ -1,7 +1,7 @@
 """How a machine's program wants its cut files: colours (AutoCAD colour index, ACI), arcs, layers, closed contours.
 
 Programs choose the operation by colour: MeerK40t cuts pure red only, engraves blue and rasters white; K40 Whisperer
-engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so a person picks one.
+engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so the user picks one.
 
 A name that is engraved has a layer and a colour of its own, in which no profile cuts.  Files of profiles that stand for
 cuts alone do not have it.
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from types import MappingProxyType
 
 from kirigami_studio.fabricate.cut_plan import Layer
@@ -18,6 +19,15 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 
 RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
+
+
+class DxfVersion(StrEnum):
+    """Dialects of cut files; the values are the names on the command line and in files."""
+
+    R2010 = "R2010"
+    R12 = "R12"  #: for old programs; such files have no unit
+
+
 #: Layer of a file that keeps everything together.
 ONE_LAYER = "SHEET"
 #: Layer of closed contours that stand for slits.
@@ -33,7 +43,7 @@ class Profile:
     Attributes
     ----------
     key, name : str
-        For the command line, and for a person.
+        For the command line, and for the user.
     colour : mapping of Layer to int
         AutoCAD colour index.
     one_layer : bool

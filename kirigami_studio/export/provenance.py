@@ -30,16 +30,18 @@ from kirigami_studio.lattice.sheet_files import rim_json
 NOT_IN_NAMES = re.compile(r"[^A-Z0-9_]")
 #: Stands for a character that some kind of file cannot hold.
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
+#: The fact by which a cut file is known as one of this program.
+PROGRAM = "KIRIGAMI_STUDIO"
 #: Raised when entries change their meaning.
 VERSION = 1
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """What a file says about how it was made."""
+    """The record in a file of how it was made."""
     kerf = 0.0 if profile.slots else plan.kerf_mm
     paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
     return {
-        "KIRIGAMI_STUDIO": __version__,
+        PROGRAM: __version__,
         "DESIGN": plan.design_hash,
         "SIZE_MM": f"{plan.size_mm[0]:.4f} x {plan.size_mm[1]:.4f}",
         "CONNECTOR_MM": f"{plan.connector_mm:g}",

@@ -23,6 +23,8 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
 NAMESPACE = "http://www.w3.org/2000/svg"
+#: Between the facts of a description.
+SEPARATOR = "; "
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
 CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
@@ -159,7 +161,7 @@ def root_element(width: float, height: float, title: str, margin: float = 0.0) -
 def _describe(root: ElementTree.Element, facts: Mapping[str, str]) -> None:
     """Say how the drawing was made, where viewers and drawing programs show it."""
     if facts:
-        ElementTree.SubElement(root, "desc").text = "; ".join(f"{key} {value}" for key, value in facts.items())
+        ElementTree.SubElement(root, "desc").text = SEPARATOR.join(f"{key} {value}" for key, value in facts.items())
 
 
 def decimals(value: float) -> str:

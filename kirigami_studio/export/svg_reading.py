@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import io
 import math
 import re
@@ -16,7 +17,7 @@ from svgelements import Path as SvgPath
 
 from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.strokes import Stroke
-from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE
+from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE, SEPARATOR
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.outlines.svg_safety import refuse_long_numbers
@@ -27,6 +28,8 @@ SAME_SCALE = 1e-5
 _COLOURS = {"#{:02x}{:02x}{:02x}".format(*colour): index for index, colour in ACI_COLOUR.items()}
 #: Largest file that is read (bytes).
 LARGEST_FILE = 100_000_000
+#: An SVG begins within so many bytes.
+HEAD_BYTES = 4096
 #: Colour of a stroke in none of the profiles' colours.
 UNKNOWN_COLOUR = -1
 _WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
@@ -104,6 +107,35 @@ def read_with_xml(path: Path) -> FileContent:
         if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc", "metadata")}
     )
     return FileContent("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
+
+
+def is_svg(path: Path) -> bool:
+    """Whether a file begins as an SVG does, whatever its name; False where it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            start = stream.read(HEAD_BYTES)
+    except (OSError, ValueError):
+        return False
+    return start.removeprefix(codecs.BOM_UTF8).lstrip().startswith(b"<") and b"<svg" in start
+
+
+def facts_of_svg(path: Path) -> dict[str, str]:
+    """Record in a cut SVG of this program of how it was made; the first of two entries counts.
+
+    Raises
+    ------
+    ExportError
+        No readable SVG.
+    """
+    try:
+        root = ElementTree.fromstring(read_at_most(path, LARGEST_FILE))
+    except (OSError, ElementTree.ParseError, ValueError, LookupError) as error:
+        raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
+    entries = (entry.partition(" ") for entry in (root.findtext(f"{{{NAMESPACE}}}desc") or "").split(SEPARATOR))
+    facts: dict[str, str] = {}
+    for key, _, value in entries:
+        facts.setdefault(key, value)
+    return facts
 
 
 def _millimetres(side: str) -> float:

@@ -55,7 +55,7 @@ class Finding(Note):
     ----------
     ok : bool
     warning : bool
-        Fine, but a person should know.
+        Fine, but the user should know.
     reader : str
         The only reader that found it; empty where all agree.
     """
@@ -95,7 +95,7 @@ class Verification:
         Estimated time of the job.
     findings : tuple of Finding
     warnings : tuple of Note
-        What a person should read before cutting.
+        Notes to read before cutting.
     void_miss_um : float or None
         By how much voids miss being parallelograms about the connectors' centres as read from the file; None where
         none were found.
@@ -447,7 +447,7 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
 
     Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and every void has to
     be a parallelogram within ``VOID_MISS_UM``.  As wide as planned is as wide as asked for, but for the connectors that
-    the plan lists as narrowed.  Of other plans, a person should know by how much voids miss that.
+    the plan lists as narrowed.  Of other plans, the user should know by how much voids miss that.
     """
     found = {"connectors": len(voids.connectors), "voids": voids.voids, "miss_um": voids.miss_um}
     centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
@@ -495,7 +495,7 @@ def _jam_findings(jam: float | None) -> list[Finding]:
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:
-    """What a person should know about this profile and version."""
+    """Notes on this profile and version."""
     found = [profile.note] if profile.note is not None else []
     if plan.engraving is not None and profile.name_colour is None:
         found.append(Note.of("profile.name_left_out", name=plan.engraving.text))

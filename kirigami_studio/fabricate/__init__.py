@@ -33,7 +33,7 @@ overcut
 engraving
     The name of a design in single strokes on one panel; no cut, so that nothing that is told of cuts counts it.
 note, problem
-    What a person should know about a plan: a code with values; a problem also has a weight and a place.
+    What the user should know about a plan: a code with values; a problem also has a weight and a place.
 
 May import ``lattice`` and ``foundation``.
 """

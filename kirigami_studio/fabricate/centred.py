@@ -43,7 +43,7 @@ OFF_ARC_SPANS = 2e-3
 #: Slits turn within so many spans at most.
 LONGEST_TURN = 8.0
 #: How often what is in the way of each other is made to give way, and from which time on turns are not tried singly.
-ROUNDS, HASTY_FROM = 40, 10
+ROUNDS, JOINT_TURNS_FROM = 40, 10
 #: A connector keeps at least this share of the width that was asked for.
 LEAST_SHARE = 0.3
 #: Share of its width that a connector in the way keeps at once: little is lost above a share of what was asked for,
@@ -114,7 +114,7 @@ def least_widths(asked: FloatArray, least_mm: float, chosen: Mapping[int, float]
     least_mm : float
         Narrowest connector that the material bears.
     chosen : mapping of hinge to mm
-        Widths that a person chose one by one, which stay.
+        Widths that the user chose one by one, which stay.
     """
     least = np.minimum(np.maximum(LEAST_SHARE * asked, least_mm), asked)
     least[list(chosen)] = asked[list(chosen)]
@@ -207,7 +207,7 @@ class _Room:
         return settled_centres(sheet.lines, sheet.table, sheet.sides, self._spans, sheet.kerf_mm, flat, sheet.removed)
 
     def _give_way(self, draft: _Draft, tighter: set[int], flatter: set[int], turn: int) -> None:
-        hasty = turn >= HASTY_FROM
+        hasty = turn >= JOINT_TURNS_FROM
         turned = set()
         for hinge in tighter:
             following = draft.next_attempt(hinge)

@@ -149,7 +149,7 @@ def settled_centres(
     removed : tuple of int
         Hinges without a connector.
     """
-    problem = _Problem(lines, table, sides, spans, kerf_mm, removed)
+    problem = _CentreProblem(lines, table, sides, spans, kerf_mm, removed)
     held = flat.copy()
     facing = np.zeros(table.slit_count, dtype=np.bool_)
     shift = np.zeros((table.hinge_count, 2))
@@ -167,7 +167,7 @@ def settled_centres(
     return replace(problem.centres(shift), facing=facing)
 
 
-class _Problem:
+class _CentreProblem:
     """The least-squares problem of one sheet."""
 
     def __init__(

@@ -1,8 +1,8 @@
 """The physical check of a plan: is the sheet one piece, are all widths as asked, do the connectors survive bending?
 
-:func:`check_plan` cuts the sheet in the computer (``finished_sheet``) and returns a :class:`Report` of problems, each
-with a place.  The strain of the connectors is an estimate: a strip as thick as the smaller of width and thickness that
-bends evenly over its flexure length.
+:func:`check_plan` cuts the sheet in the computer (``finished_sheet``) and returns a :class:`PlanReport` of problems,
+each with a place.  The strain of the connectors is an estimate: a strip as thick as the smaller of width and thickness
+that bends evenly over its flexure length.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import (
     Ligament,
-    Overlap,
+    RepeatedCut,
     overlap,
     remaining_pieces,
     smallest_ligament,
@@ -36,7 +36,7 @@ WIDTH_TOLERANCE_MM = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class PlanReport:
     """What the check found.
 
     Attributes
@@ -64,7 +64,7 @@ class Report:
         return not any(problem.severity is Severity.ERROR for problem in self.problems)
 
 
-def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None) -> Report:
+def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None) -> PlanReport:
     """Cut the plan in the computer and look at what is left.
 
     Parameters
@@ -96,7 +96,7 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         *([] if phi is None or plan.material.connectors_hold else [_breaking(plan)]),
         *([] if bent is None else strain_problems(plan, bent, plan.material.strain_limit)),
     ]
-    return Report(
+    return PlanReport(
         problems=tuple(problems),
         pieces=len(pieces),
         min_connector_mm=plan.min_connector_mm + plan.kerf_mm - kerf,
@@ -220,7 +220,7 @@ def slit_problems(plan: CutPlan) -> list[Problem]:
     ]
 
 
-def _overlap_problems(twice: Overlap) -> list[Problem]:
+def _overlap_problems(twice: RepeatedCut) -> list[Problem]:
     if twice.where is None or twice.length_mm <= OVERLAP_TOLERANCE_MM:
         return []
     return [Problem.error("plan.cut_twice", twice.where, length_mm=twice.length_mm)]

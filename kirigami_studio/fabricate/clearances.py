@@ -27,7 +27,7 @@ NEAR_SPANS = 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Falls:
+class SparseJacobian:
     """By how much lengths fall, or angles, as nodes move: each is a sum of shares of what a few nodes move.
 
     Attributes
@@ -49,28 +49,28 @@ class Falls:
         falls: FloatArray = table @ slopes.reshape(2 * total, columns)
         return falls
 
-    def times(self, factor: FloatArray) -> Falls:
+    def times(self, factor: FloatArray) -> SparseJacobian:
         """Every fall times its factor (K,)."""
-        return Falls(self.nodes, factor[:, None, None] * self.shares)
+        return SparseJacobian(self.nodes, factor[:, None, None] * self.shares)
 
-    def taken(self, which: IntArray) -> Falls:
+    def taken(self, which: IntArray) -> SparseJacobian:
         """Those of these numbers."""
-        return Falls(self.nodes[which], self.shares[which])
+        return SparseJacobian(self.nodes[which], self.shares[which])
 
-    def beside(self, other: Falls) -> Falls:
+    def beside(self, other: SparseJacobian) -> SparseJacobian:
         """The sums of as many falls and these."""
-        return Falls(np.hstack([self.nodes, other.nodes]), np.hstack([self.shares, other.shares]))
+        return SparseJacobian(np.hstack([self.nodes, other.nodes]), np.hstack([self.shares, other.shares]))
 
-    def then(self, other: Falls) -> Falls:
+    def then(self, other: SparseJacobian) -> SparseJacobian:
         """These falls and others after them."""
         width = max(self.nodes.shape[1], other.nodes.shape[1])
         one, two = self._as_wide(width), other._as_wide(width)
-        return Falls(np.concatenate([one.nodes, two.nodes]), np.concatenate([one.shares, two.shares]))
+        return SparseJacobian(np.concatenate([one.nodes, two.nodes]), np.concatenate([one.shares, two.shares]))
 
-    def _as_wide(self, width: int) -> Falls:
+    def _as_wide(self, width: int) -> SparseJacobian:
         """The same falls with nodes without a share, (K, width)."""
         more = width - self.nodes.shape[1]
-        return Falls(np.pad(self.nodes, ((0, 0), (0, more))), np.pad(self.shares, ((0, 0), (0, more), (0, 0))))
+        return SparseJacobian(np.pad(self.nodes, ((0, 0), (0, more))), np.pad(self.shares, ((0, 0), (0, more), (0, 0))))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,12 +81,12 @@ class Clearances:
     ----------
     missing : (K,) float, mm
         By how much each is too short; negative where there is room.
-    falls : Falls
+    falls : SparseJacobian
         By how much that falls (K,) as nodes move.
     """
 
     missing: FloatArray
-    falls: Falls
+    falls: SparseJacobian
 
 
 class _Features:
@@ -148,11 +148,11 @@ def clearances(
     """
     features = _Features(nodes, table, spans, rim)
     if not features.hinge.size:
-        return Clearances(np.empty(0), Falls(np.empty((0, 6), dtype=np.intp), np.empty((0, 6, 2))))
+        return Clearances(np.empty(0), SparseJacobian(np.empty((0, 6), dtype=np.intp), np.empty((0, 6, 2))))
     least = float(spans[spans > 0.0].min())
     parts = [_pairs(features, least, spare_mm), _lines(features, nodes, table, outline, least, spare_mm)]
     missing, numbers, shares = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Clearances(missing, Falls(numbers, shares))
+    return Clearances(missing, SparseJacobian(numbers, shares))
 
 
 #: What is missing (K,), nodes (K, 6) and the shares (K, 6, 2) of their moves in the distance.

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 import shapely
@@ -43,6 +42,7 @@ from kirigami_studio.fabricate.trimmed_sheet import (
 )
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment
 
 SMALLEST_SHEET_MM = 5.0
@@ -78,7 +78,7 @@ class CutPlan:
         Identifies the sheet that the plan was made from, and what was trimmed off it.
     options : CutOptions
     notes : tuple of Note
-        What a person should read before cutting.
+        Notes to read before cutting.
     panels : tuple of (P, 2) float, mm
         Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
     centres : (H, 2) float or None, mm
@@ -107,7 +107,7 @@ class CutPlan:
     centres: FloatArray | None = None
     void_miss_mm: float | None = None
     made: Deployment | None = None
-    origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What a person should know about a plan or a file: values with a code, whose sentence is made when it is read."""
+"""Notes and problems of a plan or a file: values with a code, and a sentence made on reading."""
 
 from __future__ import annotations
 

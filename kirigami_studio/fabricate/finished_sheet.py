@@ -45,7 +45,7 @@ class Ligament:
 
 
 @dataclass(frozen=True, slots=True)
-class Overlap:
+class RepeatedCut:
     """What is cut more than once.
 
     Attributes
@@ -202,14 +202,14 @@ def overlap_length(lines: Sequence[BaseGeometry]) -> float:
     return overlap(lines).length_mm
 
 
-def overlap(lines: Sequence[BaseGeometry]) -> Overlap:
+def overlap(lines: Sequence[BaseGeometry]) -> RepeatedCut:
     """Find what would be cut more than once.
 
     Every segment is compared with those before it that lie within ``SAME_LINE_MM`` of it.  (The length of the union
     does not tell: half of a slanted line, drawn again, misses the whole by a rounding error, and both count.)
     """
     if not lines:
-        return Overlap(0.0, None)
+        return RepeatedCut(0.0, None)
     segments, repeated = _told_once(_segments(lines))
     first, second = _pairs_within(shapely.STRtree(segments), segments, SAME_LINE_MM)
     earlier = first > second
@@ -225,11 +225,11 @@ def overlap(lines: Sequence[BaseGeometry]) -> Overlap:
         covered[index] = covered.get(index, 0.0) + int(repeated[index]) * length
         stretches.setdefault(index, []).append((0.0, length))
     if not covered:
-        return Overlap(0.0, None)
+        return RepeatedCut(0.0, None)
     longest = max(covered, key=covered.__getitem__)
     low, high = max(stretches[longest], key=lambda stretch: stretch[1] - stretch[0])
     x, y = shapely.get_coordinates(shapely.line_interpolate_point(segments[longest], 0.5 * (low + high)))[0]
-    return Overlap(sum(covered.values()), (float(x), float(y)))
+    return RepeatedCut(sum(covered.values()), (float(x), float(y)))
 
 
 def _segments(lines: Sequence[BaseGeometry]) -> npt.NDArray[np.object_]:

@@ -27,7 +27,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
-from kirigami_studio.fabricate.clearances import Clearances, Falls, clearances
+from kirigami_studio.fabricate.clearances import Clearances, SparseJacobian, clearances
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
@@ -232,12 +232,12 @@ class _Programme:
         room = share * self._spans * needed + SPARE_MM - 0.5 * length * (1.0 - apart)
         return np.concatenate([wanted - length * apart, room, self._hinge_spans[self._there] * (lean - MOST_SLANTED)])
 
-    def _falls(self, design: Deployment, z: FloatArray, share: float) -> tuple[Falls, FloatArray]:
+    def _falls(self, design: Deployment, z: FloatArray, share: float) -> tuple[SparseJacobian, FloatArray]:
         """How what is missing (N,) falls as nodes move, and, of what slits need, as their own ratios grow (2 S,)."""
         run = self._run(design)
         length = np.linalg.norm(run, axis=1)
         along = self._scale * run / length[:, None]
-        longer = Falls(np.stack([self._last, self._first], axis=1), np.stack([along, -along], axis=1))
+        longer = SparseJacobian(np.stack([self._last, self._first], axis=1), np.stack([along, -along], axis=1))
         apart, slope = self._side * np.tanh(0.5 * z), 0.5 * self._side / np.cosh(0.5 * z) ** 2
         lean, slanting = self._lean(design), self._slanting(design)
         slits, ends = self._worst_ends(lean)
@@ -247,7 +247,7 @@ class _Programme:
         nodes, shares = np.zeros((length.size, 4), dtype=np.intp), np.zeros((length.size, 4, 2))
         nodes[slits] = slanting.nodes[ends]
         shares[slits] = -(share * self._spans[slits] * turning)[:, None, None] * slanting.shares[ends]
-        end = longer.times(0.5 * (1.0 - apart)).beside(Falls(nodes, shares))
+        end = longer.times(0.5 * (1.0 - apart)).beside(SparseJacobian(nodes, shares))
         slants = slanting.times(-self._hinge_spans[self._there])
         return longer.times(apart).then(end).then(slants), np.concatenate([length * slope, -0.5 * length * slope])
 
@@ -292,7 +292,7 @@ class _Programme:
         lean: FloatArray = np.arccos(np.minimum(np.abs(_crossed(*self._headings(design))), 1.0))
         return lean
 
-    def _slanting(self, design: Deployment) -> Falls:
+    def _slanting(self, design: Deployment) -> SparseJacobian:
         """How they (K,) change as nodes move."""
         nodes, table, there = design.compact, self._table, self._there
         length = np.linalg.norm(nodes[table.ends[:, 1]] - nodes[table.ends[:, 0]], axis=1)
@@ -305,7 +305,7 @@ class _Programme:
                                        (table.hinge_through[there], through, own, -1.0 * rests)):  # fmt: skip
             normal = np.stack([-here[:, 1], here[:, 0]], axis=1)
             turned = (sign * flatter * _crossed(normal, other) / length[cut])[:, None] * normal
-            parts.append(Falls(table.ends[cut], np.stack([-turned, turned], axis=1)))
+            parts.append(SparseJacobian(table.ends[cut], np.stack([-turned, turned], axis=1)))
         return parts[0].beside(parts[1])
 
     def _step(
@@ -369,7 +369,7 @@ def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
         short = wanted - rows @ u
         own = rows[short > 0.0]
         step = _balance(own, wanted[short > 0.0]) - u
-        line = _Line(u, step, short, rows @ step)
+        line = _CostLine(u, step, short, rows @ step)
         if line.slope(0.0) >= -NO_FALL * line.cost(0.0):
             break
         if line.cost(1.0) <= line.cost(0.0) + LEAST_FALL * line.slope(0.0) or line.slope(1.0) <= 0.0:
@@ -390,7 +390,7 @@ def _balance(rows: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Line:
+class _CostLine:
     """The cost from a place (V,) along a step (V,): conditions (N,) are short there, and by ``along`` less after it."""
 
     place: FloatArray

@@ -6,10 +6,9 @@ with the key of a preset wins over it.
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, field, fields
 from datetime import date
 from functools import cache
 from pathlib import Path
@@ -20,22 +19,56 @@ import platformdirs
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.files import read_toml
-from kirigami_studio.foundation.plain_text import plain_line, plain_lines
+from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.settings import Setting, check
+from kirigami_studio.foundation.words import mark
 
 #: The preset that a new project starts with: the film of the paper's specimens.
 DEFAULT_PRESET = "film-uv"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
-#: Names the folder of a person's own materials, if it is set.
+#: Names the folder of the user's own materials, if it is set.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
-#: Numbers that may be 0; all others are above it.
-MAY_BE_ZERO = frozenset(
-    {"kerf_mm", "relief_radius_mm", "join_tolerance_mm", "on_delay_s", "off_delay_s", "power_percent", "bed_width_mm",
-     "bed_height_mm", "min_panel_mm"}
-)  # fmt: skip
 #: Full power, percent.
 LARGEST_POWER = 100.0
+_FLAG = Setting(code="material.wrong_type", error=FabricationError).metadata
+
+
+def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
+    setting = Setting(about=about, label=label, may_be_empty=True, code="material.wrong_type", error=FabricationError)
+    return setting.metadata
+
+
+def _number(
+    label: str,
+    about: str,
+    unit: str,
+    low: float,
+    high: float,
+    step: float,
+    decimals: int = 3,
+    scale: float = 1.0,
+    zero: bool = False,
+) -> Mapping[str, Setting]:
+    """A number with its field in the editor of materials, which shows ``scale`` times as much; above 0 unless it may
+    be ``zero``.
+    """
+    setting = Setting(
+        about=about,
+        label=label,
+        unit=unit,
+        low=low,
+        high=high,
+        step=step,
+        decimals=decimals,
+        scale=scale,
+        least=0.0,
+        above_least=not zero,
+        code="material.number_negative" if zero else "material.number_not_positive",
+        error=FabricationError,
+    )
+    return setting.metadata
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +80,7 @@ class Material:
     key : str
         Short name for the command line and for project files (the preset's file name).
     name : str
-        What a person reads.
+        Shown name.
     machine : str
         Kind of machine that the numbers are for.
     thickness_mm : float
@@ -89,47 +122,158 @@ class Material:
         Day (ISO 8601) and author of the calibration, both may be empty.
     """
 
-    key: str
-    name: str
-    machine: str
-    thickness_mm: float
-    kerf_mm: float
-    connector_mm: float
-    min_ligament_mm: float
-    relief_radius_mm: float
-    speed_mm_s: float
-    travel_mm_s: float
-    acceleration_mm_s2: float
-    join_tolerance_mm: float
-    calibrated: bool
-    note: str
-    strain_limit: float = 0.05
-    on_delay_s: float = 0.0
-    off_delay_s: float = 0.0
-    passes: int = 1
-    min_slit_mm: float = 0.1
-    young_gpa: float = 3.0
-    power_percent: float = 0.0
-    bed_width_mm: float = 0.0
-    bed_height_mm: float = 0.0
-    min_panel_mm: float = 0.0
-    connectors_hold: bool = True
-    measured_on: str = ""
-    measured_by: str = ""
+    key: str = field(metadata=_text())
+    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the material list.")))
+    machine: str = field(metadata=_text(mark("Machine"), mark("Machine these values were measured on.")))
+    thickness_mm: float = field(metadata=_number(mark("Thickness"), mark("Sheet thickness."), "mm", 0.005, 50.0, 0.05))
+    kerf_mm: float = field(
+        metadata=_number(mark("Kerf"), mark("Full width of the cut; 0 for a blade."), "mm", 0.0, 5.0, 0.01, zero=True)
+    )
+    connector_mm: float = field(
+        metadata=_number(mark("Connector"), mark("Default finished connector width."), "mm", 0.02, 20.0, 0.05)
+    )
+    min_ligament_mm: float = field(
+        metadata=_number(
+            mark("Smallest ligament"), mark("Warn about ligaments narrower than this."), "mm", 0.005, 20.0, 0.01
+        )
+    )
+    relief_radius_mm: float = field(
+        metadata=_number(
+            mark("Relief radius"), mark("Radius of the relief hole at a slit's end."), "mm", 0.0, 5.0, 0.05, zero=True
+        )
+    )
+    speed_mm_s: float = field(
+        metadata=_number(mark("Cutting speed"), mark("Speed with the beam on."), "mm/s", 0.01, 10000.0, 5.0, decimals=2)
+    )
+    travel_mm_s: float = field(
+        metadata=_number(mark("Travel speed"), mark("Speed between cuts."), "mm/s", 0.01, 20000.0, 20.0, decimals=2)
+    )
+    acceleration_mm_s2: float = field(
+        metadata=_number(
+            mark("Acceleration"), mark("How fast the head accelerates."), "mm/s²", 0.1, 200000.0, 100.0, decimals=1
+        )
+    )
+    join_tolerance_mm: float = field(
+        metadata=_number(
+            mark("Joins gaps below"), mark("Gaps that the machine software may close."), "mm", 0.0, 2.0, 0.01, zero=True
+        )
+    )
+    calibrated: bool = field(metadata=_FLAG)
+    note: str = field(metadata=_text(mark("Note"), mark("Anything worth knowing.")))
+    strain_limit: float = field(
+        default=0.05,
+        metadata=_number(
+            mark("Breaking strain"),
+            mark("Strain at which the material breaks."),
+            "%",
+            0.01,
+            500.0,
+            0.5,
+            decimals=2,
+            scale=100.0,
+        ),
+    )
+    on_delay_s: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Delay before a cut"),
+            mark("Pause before each cut."),
+            "ms",
+            0.0,
+            10000.0,
+            5.0,
+            decimals=1,
+            scale=1000.0,
+            zero=True,
+        ),
+    )
+    off_delay_s: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Delay after a cut"),
+            mark("Pause after each cut."),
+            "ms",
+            0.0,
+            10000.0,
+            5.0,
+            decimals=1,
+            scale=1000.0,
+            zero=True,
+        ),
+    )
+    passes: int = field(
+        default=1,
+        metadata=Setting(
+            about=mark("How many times the job is cut (1 to 100)."),
+            label=mark("Passes"),
+            widget="passes",
+            high=100.0,
+            low=1.0,
+            code="material.wrong_type",
+            error=FabricationError,
+        ).metadata,
+    )
+    min_slit_mm: float = field(
+        default=0.1,
+        metadata=_number(mark("Shortest slit"), mark("Shortest slit for this material."), "mm", 0.005, 20.0, 0.05),
+    )
+    young_gpa: float = field(
+        default=3.0,
+        metadata=_number(
+            mark("Stiffness"), mark("Young's modulus of the material."), "GPa", 0.0001, 1000.0, 0.5, decimals=4
+        ),
+    )
+    power_percent: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Power"),
+            mark("Laser power while cutting; 0 for a blade."),
+            "%",
+            0.0,
+            100.0,
+            5.0,
+            decimals=1,
+            zero=True,
+        ),
+    )
+    bed_width_mm: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Bed width"),
+            mark("Width that the machine reaches; 0: any."),
+            "mm",
+            0.0,
+            5000.0,
+            10.0,
+            decimals=1,
+            zero=True,
+        ),
+    )
+    bed_height_mm: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Bed height"),
+            mark("Height that the machine reaches; 0: any."),
+            "mm",
+            0.0,
+            5000.0,
+            10.0,
+            decimals=1,
+            zero=True,
+        ),
+    )
+    min_panel_mm: float = field(
+        default=0.0,
+        metadata=_number(
+            mark("Smallest panel"), mark("Warn about panels narrower than this."), "mm", 0.0, 100.0, 0.5, zero=True
+        ),
+    )
+    connectors_hold: bool = field(default=True, metadata=_FLAG)
+    measured_on: str = field(default="", metadata=_text())
+    measured_by: str = field(default="", metadata=_text())
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            # The key stays as it was given: whoever writes a file of that name checks it.
-            if isinstance(value, str) and field.name != "key":
-                plain = plain_lines(value) if field.name == "note" else plain_line(value)
-                object.__setattr__(self, field.name, plain)
-            if field.type == "float":
-                self._check_number(field.name, value, zero_allowed=field.name in MAY_BE_ZERO)
-            elif type(value).__name__ != field.type:
-                raise FabricationError(
-                    "material.wrong_type", key=self.key, name=field.name, kind=field.type, value=value
-                )
+        check(self, key=self.key)
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.power_percent > LARGEST_POWER:
@@ -147,12 +291,6 @@ class Material:
             date.fromisoformat(self.measured_on)
         except ValueError:
             raise FabricationError("material.not_a_day", key=self.key, value=self.measured_on) from None
-
-    def _check_number(self, name: str, value: object, zero_allowed: bool) -> None:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-        if not number or value < 0 or (value == 0 and not zero_allowed):  # type: ignore[operator]
-            code = "material.number_negative" if zero_allowed else "material.number_not_positive"
-            raise FabricationError(code, key=self.key, name=name, value=value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +325,7 @@ def _bundled() -> Mapping[str, Material]:
 
 
 def own_folder() -> Path:
-    """Where a person's own materials are: what the variable names, or the platform's place for settings."""
+    """Folder of the user's own materials: the one in the variable, or the platform's for settings."""
     named = os.environ.get(FOLDER_VARIABLE)
     if named:
         return Path(named)
@@ -247,7 +385,7 @@ def read_preset(path: Path) -> Material:
         entries = read_toml(path)
     except (OSError, ValueError) as error:
         raise FabricationError("material.file_not_readable", path=path, reason=str(error)) from error
-    expected = {field.name: field.default is MISSING for field in fields(Material) if field.name != "key"}
+    expected = {one.name: one.default is MISSING for one in fields(Material) if one.name != "key"}
     if missing := {name for name, needed in expected.items() if needed} - entries.keys():
         names = ", ".join(sorted(missing))
         raise FabricationError("material.entries_missing", path=path, names=names, count=len(missing))

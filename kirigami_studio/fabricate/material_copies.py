@@ -18,7 +18,7 @@ from kirigami_studio.foundation.resources import resource
 
 #: Keys are file names on every platform: lower case, so that no two differ by capitals only.
 KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
-#: Entries that are no numbers or words of a person's own.
+#: Entries that are no numbers or words of the user's own.
 JUDGED = frozenset({"key", "calibrated", "connectors_hold"})
 #: Files of these names cannot exist on Windows.
 RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))})

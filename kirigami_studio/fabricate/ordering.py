@@ -1,6 +1,6 @@
 """The order of cutting: layer after layer, the outline last, so that the sheet stays held while it is cut.
 
-Within a layer the paths go in the order that a person chose.  Edge cuts always run from the mouth inwards, so that the
+Within a layer the paths go in the order that the user chose.  Edge cuts always run from the mouth inwards, so that the
 beam starts away from the connector; every other open path may be turned, and a closed one may begin at any of its
 points.  Where two ways are equally short, a path is cut in the direction in which it was given.
 """
@@ -15,7 +15,7 @@ import numpy as np
 
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.options import CutOrder
-from kirigami_studio.fabricate.routing import Tour, Ways, best_ways, shortest_tour
+from kirigami_studio.fabricate.routing import CuttingOrder, Ways, best_ways, shortest_tour
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 
@@ -71,7 +71,7 @@ class _Group:
             return 2.0 * line or 1.0
         return max(math.sqrt(width * height / count), line) or 1.0
 
-    def by_ways(self, order: Sequence[int] | IntArray) -> Tour:
+    def by_ways(self, order: Sequence[int] | IntArray) -> CuttingOrder:
         return best_ways(self.ways, [int(index) for index in order], self.start)
 
 
@@ -137,18 +137,18 @@ def _cut(path: CutPath, way: int) -> CutPath:
     return path.started_at(way) if path.closed else path.backwards()
 
 
-def _last_place(ways: Sequence[Ways], tour: Tour) -> complex:
+def _last_place(ways: Sequence[Ways], tour: CuttingOrder) -> complex:
     return complex(ways[tour.order[-1]].exits[tour.way[-1]])
 
 
-def _shortest(group: _Group) -> Tour:
+def _shortest(group: _Group) -> CuttingOrder:
     tour = shortest_tour(group.ways, group.start)
     if group.layer is Layer.EDGE_SLITS:
         return min(tour, _by_rows(group), key=lambda found: found.length)
     return tour
 
 
-def _by_rows(group: _Group) -> Tour:
+def _by_rows(group: _Group) -> CuttingOrder:
     """Row after row from the bottom, to and fro; edge cuts and parts of the outline once round the sheet."""
     if group.layer in (Layer.EDGE_SLITS, Layer.OUTLINE):
         entries = np.array([way.entries[0] for way in group.ways])
@@ -173,7 +173,7 @@ def _rows(group: _Group) -> tuple[IntArray, FloatArray]:
     return table.rows - 1 - row, column.astype(np.float64)
 
 
-def _inside_out(group: _Group) -> Tour:
+def _inside_out(group: _Group) -> CuttingOrder:
     """Ring after ring round the centre of the sheet, the shortest way within each; what lies at its edge as usual."""
     if group.layer in (Layer.EDGE_SLITS, Layer.OUTLINE):
         return _shortest(group)
@@ -189,7 +189,7 @@ def _inside_out(group: _Group) -> Tour:
     return group.by_ways(order)
 
 
-def _spread(group: _Group) -> Tour:
+def _spread(group: _Group) -> CuttingOrder:
     """Go on to the nearest path that lies away from those cut last; where none does, to the one farthest from them."""
     if group.layer is Layer.OUTLINE:
         return _shortest(group)
@@ -210,7 +210,7 @@ def _spread(group: _Group) -> Tour:
     return group.by_ways(order)
 
 
-ROUTERS: dict[CutOrder, Callable[[_Group], Tour]] = {
+ROUTERS: dict[CutOrder, Callable[[_Group], CuttingOrder]] = {
     CutOrder.SHORTEST: _shortest,
     CutOrder.ROWS: _by_rows,
     CutOrder.INSIDE_OUT: _inside_out,

@@ -62,20 +62,20 @@ def panels_in_mm(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PanelSizes:
+class CutPanelSizes:
     """Sizes (K, S) of panels between the centre lines of their cuts, and the lines (K, S, 2, 2) that have them."""
 
     sizes: FloatArray
     lines: FloatArray
 
 
-def edges_of(corners: FloatArray) -> PanelSizes:
+def edges_of(corners: FloatArray) -> CutPanelSizes:
     """The four edges of panels (K, 4, 2), in any unit."""
     lines = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
-    return PanelSizes(np.linalg.norm(lines[:, :, 1] - lines[:, :, 0], axis=-1), lines)
+    return CutPanelSizes(np.linalg.norm(lines[:, :, 1] - lines[:, :, 0], axis=-1), lines)
 
 
-def necks_of(corners: FloatArray) -> PanelSizes:
+def necks_of(corners: FloatArray) -> CutPanelSizes:
     """The eight necks of panels (K, 4, 2), in any unit: from each corner to the nearest place of both far edges."""
     corner = np.concatenate([corners, corners], axis=1)
     start = np.concatenate([np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1)], axis=1)
@@ -84,7 +84,7 @@ def necks_of(corners: FloatArray) -> PanelSizes:
     squared = np.maximum(np.sum(run * run, axis=2), 1e-24)
     share = np.clip(np.sum((corner - start) * run, axis=2) / squared, 0.0, 1.0)
     foot = start + share[..., None] * run
-    return PanelSizes(np.linalg.norm(corner - foot, axis=2), np.stack([corner, foot], axis=2))
+    return CutPanelSizes(np.linalg.norm(corner - foot, axis=2), np.stack([corner, foot], axis=2))
 
 
 def smallest_edge(panels: Sequence[FloatArray], kerf_mm: float) -> SmallPlace | None:
@@ -129,7 +129,7 @@ def _whole(panels: Sequence[FloatArray]) -> FloatArray:
     return np.array([panel for panel in panels if len(panel) == 4]).reshape(-1, 4, 2)
 
 
-def _smallest(found: PanelSizes, kerf_mm: float) -> SmallPlace:
+def _smallest(found: CutPanelSizes, kerf_mm: float) -> SmallPlace:
     worst = np.unravel_index(int(np.argmin(found.sizes)), found.sizes.shape)
     x, y = found.lines[worst].mean(axis=0)
     return SmallPlace(float(found.sizes[worst]) - kerf_mm, (float(x), float(y)))

@@ -44,7 +44,7 @@ class Ways:
 
 
 @dataclass(frozen=True, slots=True)
-class Tour:
+class CuttingOrder:
     """Paths in the order of cutting, and the way in which each one is cut.
 
     Attributes
@@ -60,7 +60,7 @@ class Tour:
     length: float
 
 
-def shortest_tour(paths: Sequence[Ways], start: complex, kicked: bool = True) -> Tour:
+def shortest_tour(paths: Sequence[Ways], start: complex, kicked: bool = True) -> CuttingOrder:
     """Order paths by nearest neighbours, then exchange (2-opt with flips), move (or-opt) and kick.
 
     Parameters
@@ -83,7 +83,7 @@ def shortest_tour(paths: Sequence[Ways], start: complex, kicked: bool = True) ->
         tour, kicks = better, 0
 
 
-def nearest_neighbours(paths: Sequence[Ways], start: complex) -> Tour:
+def nearest_neighbours(paths: Sequence[Ways], start: complex) -> CuttingOrder:
     """Go on to the nearest place where a path that is left may begin."""
     entries = np.concatenate([path.entries for path in paths])
     exits = np.concatenate([path.exits for path in paths])
@@ -101,10 +101,10 @@ def nearest_neighbours(paths: Sequence[Ways], start: complex) -> Tour:
         way.append(nearest - int(first[path]))
         here = complex(exits[nearest])
         left[first[path] : first[path] + counts[path]] = np.inf
-    return Tour(tuple(order), tuple(way), length)
+    return CuttingOrder(tuple(order), tuple(way), length)
 
 
-def best_ways(paths: Sequence[Ways], order: Sequence[int], start: complex) -> Tour:
+def best_ways(paths: Sequence[Ways], order: Sequence[int], start: complex) -> CuttingOrder:
     """Keep the order and choose for each path the way that makes the whole tour shortest (dynamic programming)."""
     cost = np.zeros(1)
     exits = np.array([start])
@@ -116,10 +116,10 @@ def best_ways(paths: Sequence[Ways], order: Sequence[int], start: complex) -> To
     length, way = float(cost.min()), [int(np.argmin(cost))]
     for choice in came_from[:0:-1]:
         way.append(int(choice[way[-1]]))
-    return Tour(tuple(order), tuple(way[::-1][: len(order)]), length)
+    return CuttingOrder(tuple(order), tuple(way[::-1][: len(order)]), length)
 
 
-def _ends(paths: Sequence[Ways], tour: Tour) -> tuple[ComplexArray, ComplexArray]:
+def _ends(paths: Sequence[Ways], tour: CuttingOrder) -> tuple[ComplexArray, ComplexArray]:
     chosen = list(zip(tour.order, tour.way, strict=True))
     entries = np.array([paths[path].entries[way] for path, way in chosen])
     return entries, np.array([paths[path].exits[way] for path, way in chosen])

@@ -1,4 +1,4 @@
-"""The errors a person may read: a code, the values that belong to it, and one clear sentence made of both.
+"""Errors for the user: a code, the values that belong to it, and one clear sentence.
 
 ``raise TargetError("outline.too_few_points", count=2)`` says what happened; the sentence stands once, in
 :mod:`kirigami_studio.foundation.sentences`, and is made in the user's language only when somebody reads it.
@@ -37,6 +37,14 @@ class KirigamiError(Exception):
 def _remade(kind: type[KirigamiError], code: str, fields: Mapping[str, object]) -> KirigamiError:
     """An error that came out of a pickle: worker processes send theirs to the run."""
     return kind(code, **fields)
+
+
+def text_of(error: BaseException) -> str:
+    """Return the text of any error, the name of its class where it has none or its text cannot be made."""
+    try:
+        return str(error) or type(error).__name__
+    except Exception:
+        return type(error).__name__
 
 
 class UsageError(KirigamiError):

@@ -20,7 +20,7 @@ def printable(text: str, instead: str = " ") -> str:
 
 
 def plain_line(text: str, longest: int = LONGEST_NAME) -> str:
-    """A name from outside as one line of at most ``longest`` printable characters; a line that is one stays as it is."""
+    """Return a name from outside as one line of at most ``longest`` printable characters."""
     if len(text) <= longest and text.isprintable():
         return text
     looked_at = text[: LOOKED_AT * longest]

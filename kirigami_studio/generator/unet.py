@@ -15,9 +15,11 @@ The paper's hyper-parameters as a command, 400 epochs of 5000 targets::
     kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5
         --weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet
 
-and eight Euler steps when sampling.  Training here stays as for every network: designs are drawn endlessly instead of
-5000 over and over, the learning rate follows a cosine, and an exponential average of the weights stands for the paper's
-stochastic weight averaging.
+and eight Euler steps when sampling.  ``--designs`` visits 5000 designs over and over as the paper does; without it they
+are drawn endlessly.  The learning rate follows a cosine, and an exponential average of the weights stands for the
+paper's stochastic weight averaging.  The bundled ``paper`` has one pixel for each ratio instead of resized fields
+(``--latent 10``): resizing 10 x 10 to 16 x 16 and back keeps a sixth of the checkerboard mode, which moves outlines
+most.
 
 Built from ``torch.nn``.  ``diffusers`` and MONAI offer the same network ready-made, but neither is among this
 program's dependencies, and each brings far more than one network (model hubs, imaging formats, schedulers).
@@ -158,7 +160,7 @@ class SelfAttention(nn.Module):
         return result
 
 
-class Stage(nn.Module):
+class UNetStage(nn.Module):
     """A residual block, followed by self-attention where the level has it."""
 
     def __init__(self, block: Residual, attention: SelfAttention | None) -> None:
@@ -283,15 +285,15 @@ class DownwardHalf(nn.Module):
         for level, width in enumerate(shape.channels):
             for _ in range(shape.residuals):
                 block = Residual(self.skips[-1], width, time, shape.groups)
-                self.stages.append(Stage(block, _attention(shape, level)))
+                self.stages.append(UNetStage(block, _attention(shape, level)))
                 self.skips.append(width)
             if level + 1 < len(shape.channels):
                 halved = Residual(width, width, time, shape.groups, nn.AvgPool2d(2))
-                self.stages.append(Stage(halved, None))
+                self.stages.append(UNetStage(halved, None))
                 self.skips.append(width)
         last = self.skips[-1]
         attention = SelfAttention(last, HEADS, shape.groups, shape.dropout)
-        self.middle_in = Stage(Residual(last, last, time, shape.groups), attention)
+        self.middle_in = UNetStage(Residual(last, last, time, shape.groups), attention)
         self.middle_out = Residual(last, last, time, shape.groups)
 
     def forward(self, image: Tensor, t: Tensor, hint: Tensor | None = None) -> tuple[list[Tensor], Tensor, Tensor]:
@@ -318,12 +320,12 @@ class UpwardHalf(nn.Module):
             width = shape.channels[level]
             for _ in range(shape.residuals + 1):
                 block = Residual(below + left.pop(), width, time, shape.groups)
-                self.stages.append(Stage(block, _attention(shape, level)))
+                self.stages.append(UNetStage(block, _attention(shape, level)))
                 self.takes.append(True)
                 below = width
             if level:
                 doubled = Residual(width, width, time, shape.groups, nn.Upsample(scale_factor=2.0, mode="nearest"))
-                self.stages.append(Stage(doubled, None))
+                self.stages.append(UNetStage(doubled, None))
                 self.takes.append(False)
         last = nn.Conv2d(below, 1, 3, padding=1)
         self.leave = nn.Sequential(nn.GroupNorm(shape.groups, below), nn.SiLU(), zeroed(last))

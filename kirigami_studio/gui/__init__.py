@@ -1,4 +1,4 @@
-"""The studio window: document -> what a person sees; gesture -> edit.
+"""The studio window: document -> what the user sees; gesture -> edit.
 
 Vocabulary: a *view* draws and reports gestures; a *panel* groups controls; the *stage* holds the one design that is
 shown large; a *job* is long work in a thread of its own; a *palette* is a set of colours by role.

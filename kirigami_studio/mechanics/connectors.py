@@ -88,7 +88,7 @@ def plane_stiffness(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Connectors:
+class SheetConnectors:
     """The connectors of one flat sheet, as plain arrays.
 
     Attributes
@@ -143,7 +143,7 @@ class Junctions:
     on_edge : (H,) bool
         Whether the slit ends on the sheet's edge.
     sign : (H,) float
-        As in :class:`Connectors`.
+        As in :class:`SheetConnectors`.
     corners : (P, 4, 2) float, mm
         All panels.
     """
@@ -230,7 +230,7 @@ def cut_connectors(
     kerf_mm: float,
     centres: FloatArray | None = None,
     longer_mm: FloatArray | None = None,
-) -> Connectors:
+) -> SheetConnectors:
     """Connectors where slits end a finished width before the junction; those of width 0 are left out.
 
     Parameters
@@ -269,7 +269,7 @@ def cut_connectors(
             raise MechanicsError("sheet.centres_wrong", found=centres.shape, count=count)
         both = centres[there] if centres.ndim == 3 else np.stack([centres[there], centres[there]], axis=1)
         height = _heights(found, there, both.mean(axis=1))
-    return Connectors(
+    return SheetConnectors(
         panels=found.panels[there],
         centres=both,
         along=found.along[there],

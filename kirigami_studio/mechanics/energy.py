@@ -1,6 +1,6 @@
 """Elastic energy of a network with its exact gradient and sparse Hessian, for all ligaments at once.
 
-For a ligament from x_A to x_B let ``e = R(-(theta_A + theta_B)/2 - axis) (x_B - x_A)``: what a person sees who turns
+For a ligament from x_A to x_B let ``e = R(-(theta_A + theta_B)/2 - axis) (x_B - x_A)``: what the user sees who turns
 with the mean of both panels, its first component along the ligament's axis.  Then
 
     slender      E = 1/2 k_a (|e| - l)^2 + 1/2 k_s l^2 psi^2 + 1/2 k_t (theta_B - theta_A)^2,    psi = angle of e

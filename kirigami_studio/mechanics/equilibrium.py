@@ -118,7 +118,7 @@ def follow_steps(
     MechanicsError
         No equilibrium was found at some step, for instance because panels that are driven run into each other.
     """
-    system = _System(network, drive)
+    system = _DrivenSystem(network, drive)
     motion = np.zeros((network.panel_count, 3)) if start is None else np.array(start, dtype=np.float64)
     if motion.shape != (network.panel_count, 3):
         raise MechanicsError("network.wrong_shape", name="start", found=motion.shape, wanted=(network.panel_count, 3))
@@ -153,7 +153,7 @@ def follow_steps(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Found:
+class _Equilibrium:
     """What is known about one equilibrium."""
 
     energy: float
@@ -189,7 +189,7 @@ class _Factors:
         return step
 
 
-class _System:
+class _DrivenSystem:
     """The free degrees of freedom of a driven network, and what is prescribed for them."""
 
     def __init__(self, network: PanelNetwork, drive: Drive) -> None:
@@ -238,7 +238,7 @@ class _System:
             done, size = share, min(1.0, 2.0 * size)
         return motion, snapped
 
-    def report(self, motion: FloatArray) -> _Found:
+    def report(self, motion: FloatArray) -> _Equilibrium:
         """Energy, reactions and the least eigenvalue at an equilibrium."""
         gradient, hessian = self.energy.slopes(motion)
         reaction = gradient[self.drive.freedoms]
@@ -247,7 +247,7 @@ class _System:
             # At an equilibrium the gradient is a multiple of the prescribed combination.
             pull = float(self.row @ gradient[self.free]) / float(self.row @ self.row)
             reaction = reaction - pull * self.drive.weights[self.drive.freedoms]
-        return _Found(self.energy.value(motion), reaction, pull, self._least(self._factored(hessian, 0.0)))
+        return _Equilibrium(self.energy.value(motion), reaction, pull, self._least(self._factored(hessian, 0.0)))
 
     def _relaxed(
         self, motion: FloatArray, wanted: FloatArray, level: float, patient: bool

@@ -11,8 +11,8 @@ import numpy as np
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.mechanics.connectors import (
-    Connectors,
     ElasticSheet,
+    SheetConnectors,
     plane_stiffness,
     turning_stiffness,
 )
@@ -27,12 +27,12 @@ class SheetNetwork:
     ----------
     network : PanelNetwork
         At rest it is the flat sheet; ligament h is connector h.
-    connectors : Connectors
+    connectors : SheetConnectors
     sheet : ElasticSheet
     """
 
     network: PanelNetwork
-    connectors: Connectors
+    connectors: SheetConnectors
     sheet: ElasticSheet
 
     def opening(self, motion: FloatArray) -> FloatArray:
@@ -63,7 +63,7 @@ class SheetNetwork:
         return bent * self.connectors.width_mm + pulled, bent * softer + pulled
 
 
-def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticSheet) -> SheetNetwork:
+def sheet_network(panels: FloatArray, connectors: SheetConnectors, sheet: ElasticSheet) -> SheetNetwork:
     """Join the panels of a flat sheet.
 
     Parameters
@@ -71,7 +71,7 @@ def sheet_network(panels: FloatArray, connectors: Connectors, sheet: ElasticShee
     panels : (P, Q, 2) float, mm
         Their corners; where they have different numbers of corners, the last one is repeated.  Those that trimming took
         are not numbers (NaN).
-    connectors : Connectors
+    connectors : SheetConnectors
     sheet : ElasticSheet
 
     Raises

@@ -50,7 +50,7 @@ class Boolean(Enum):
     INTERSECT = "intersect"
 
 
-class Side(Enum):
+class AlignedSide(Enum):
     """What is lined up: the axis, 0 for x, and the share of an object's box on it."""
 
     LEFT = (0, 0.0)
@@ -227,7 +227,7 @@ class Drawing:
             tuple(self.objects[k] for k in every), frozenset(at for at, k in enumerate(every) if k in chosen)
         )
 
-    def aligned(self, side: Side) -> Drawing:
+    def aligned(self, side: AlignedSide) -> Drawing:
         """The selected objects with one side, or their middles, on one line of the box around them."""
         axis, share = side.value
         low, high = self.box(self.chosen)

@@ -34,7 +34,7 @@ class Figure(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class BoundingBox:
     """An axis-parallel box, mm, y up."""
 
     left: float
@@ -43,7 +43,7 @@ class Box:
     top: float
 
     @classmethod
-    def spanned(cls, start: tuple[float, float], end: tuple[float, float], square: bool = False) -> Box:
+    def spanned(cls, start: tuple[float, float], end: tuple[float, float], square: bool = False) -> BoundingBox:
         """The box between two opposite corners in any order; a ``square`` one takes the longer side from ``start``."""
         dx, dy = end[0] - start[0], end[1] - start[1]
         if square:
@@ -62,13 +62,13 @@ class Box:
         return self.right - self.left, self.top - self.bottom
 
 
-def figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL_WAIST) -> FloatArray:
+def figure(kind: Figure, box: BoundingBox, corners: int = 5, waist: float = USUAL_WAIST) -> FloatArray:
     """Return the vertices of a figure, counter-clockwise.
 
     Parameters
     ----------
     kind : Figure
-    box : Box, mm
+    box : BoundingBox, mm
         Rectangles fill it; the others are inscribed in its ellipse, first corner on top, so that a square box makes
         them regular.
     corners : int, 3..64
@@ -102,7 +102,7 @@ def figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL_WAIST)
     return _around(box, np.tile([1.0, waist], corners))
 
 
-def placed_figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL_WAIST) -> Placed:
+def placed_figure(kind: Figure, box: BoundingBox, corners: int = 5, waist: float = USUAL_WAIST) -> Placed:
     """Return a figure where it was drawn; arguments as of :func:`figure`.
 
     Raises
@@ -122,7 +122,7 @@ def placed_figure(kind: Figure, box: Box, corners: int = 5, waist: float = USUAL
     return made.with_nodes(Nodes(at, (Kind.SYMMETRIC,) * 4, handles, np.ones(4, dtype=np.bool_)))
 
 
-def _around(box: Box, radii: FloatArray) -> FloatArray:
+def _around(box: BoundingBox, radii: FloatArray) -> FloatArray:
     """Vertices at equal angles from the top on, each at its share of the way to the box's ellipse."""
     angle = 0.5 * math.pi + 2.0 * math.pi * np.arange(len(radii)) / len(radii)
     reach = 0.5 * np.array(box.size)

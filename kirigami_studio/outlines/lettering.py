@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.outlines.figures import Box
+from kirigami_studio.outlines.figures import BoundingBox
 from kirigami_studio.outlines.pieces import largest_piece
 
 #: Least width of the joint between two letters, as a share of the height of the text.
@@ -88,7 +88,7 @@ def _pushed(word: BaseGeometry, letter: BaseGeometry, height: float) -> BaseGeom
     return translate(letter, high - low - JOINT * height)
 
 
-def lettered(letters: Sequence[Sequence[FloatArray]], box: Box) -> tuple[FloatArray, tuple[str, ...]]:
+def lettered(letters: Sequence[Sequence[FloatArray]], box: BoundingBox) -> tuple[FloatArray, tuple[str, ...]]:
     """The word that fills a box as far as its proportions allow, in the middle of it.
 
     Raises

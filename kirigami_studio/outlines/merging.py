@@ -135,7 +135,8 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                     )
                 )
     ring, dropped = largest_piece(region)
-    name = parts[0].name if len(parts) == 1 < len(source.parts) else source.name
+    alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
+    name = parts[0].name if alone else source.name
     outline = Outline.from_points(thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit)
     return Merged(outline, Polygon(ring), bridges)
 

@@ -1,4 +1,4 @@
-"""Which vertices of an outline are points that a person drew, and which handles bend the lines between them."""
+"""Which vertices of an outline are points that the user drew, and which handles bend the lines between them."""
 
 from __future__ import annotations
 

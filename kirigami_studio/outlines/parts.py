@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -21,6 +20,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError, UsageError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
 
@@ -45,7 +45,7 @@ Corner = Literal["round", "mitre", "bevel"]
 ALL, LARGEST = "all", "largest"
 
 
-class PartKind(Enum):
+class DrawnPartKind(Enum):
     """What makes a part."""
 
     FILLED = "filled"
@@ -54,7 +54,7 @@ class PartKind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Pen:
+class StrokeStyle:
     """How lines are painted.
 
     Attributes
@@ -89,22 +89,25 @@ class Part:
         "" where the source has none.
     colour : str
         "#rrggbb", or "" where the source has none.
-    kind : PartKind
+    kind : DrawnPartKind
     region : shapely geometry, source units, y up
         What is filled or enclosed, holes left open; empty for open lines.
     lines : tuple of (P, 2) float, source units, y up
         What is painted with the pen; a closed line repeats its first vertex at the end.
-    pen : Pen
+    pen : StrokeStyle
+    is_named : bool
+        Whether the name is the source's own.
     """
 
     number: int
     name: str
     layer: str
     colour: str
-    kind: PartKind
+    kind: DrawnPartKind
     region: BaseGeometry
     lines: tuple[FloatArray, ...] = ()
-    pen: Pen = field(default_factory=Pen)
+    pen: StrokeStyle = field(default_factory=StrokeStyle)
+    is_named: bool = True
 
     def __post_init__(self) -> None:
         for name in ("name", "layer", "colour"):
@@ -174,13 +177,13 @@ class SourceParts:
     parts: tuple[Part, ...]
     left_out: tuple[str, ...] = ()
     unit: str = ""
-    facts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    facts: Mapping[str, str] = field(default_factory=FrozenMapping)
 
     def __post_init__(self) -> None:
         facts = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in self.facts.items()}
         object.__setattr__(self, "name", plain_line(self.name))
         object.__setattr__(self, "left_out", tuple(plain_line(note, LONGEST_NOTE) for note in self.left_out))
-        object.__setattr__(self, "facts", MappingProxyType(facts))
+        object.__setattr__(self, "facts", FrozenMapping(facts))
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -337,10 +340,10 @@ def parts_of_lines(net: Joined, like: Part) -> list[Part]:
         area = shapely.union_all(shapely.get_parts(shapely.polygonize(members)))
         regions = [piece for piece in shapely.get_parts(area) if isinstance(piece, Polygon)]
         if not regions:
-            found.append(replace(like, kind=PartKind.STROKED, region=Polygon(), lines=chains))
+            found.append(replace(like, kind=DrawnPartKind.STROKED, region=Polygon(), lines=chains))
         for region in regions:
             near = chains if len(regions) == 1 else _near(chains, region)
-            found.append(replace(like, kind=PartKind.CLOSED, region=region, lines=near))
+            found.append(replace(like, kind=DrawnPartKind.CLOSED, region=region, lines=near))
     return found
 
 
@@ -366,12 +369,17 @@ def numbered(parts: Sequence[Part], size: float) -> tuple[tuple[Part, ...], tupl
         )
         kept = [kept[index] for index in sorted(ranked[:MOST_PARTS])]
     words = {
-        PartKind.FILLED: tr("shape {number}"),
-        PartKind.CLOSED: tr("contour {number}"),
-        PartKind.STROKED: tr("line {number}"),
+        DrawnPartKind.FILLED: tr("shape {number}"),
+        DrawnPartKind.CLOSED: tr("contour {number}"),
+        DrawnPartKind.STROKED: tr("line {number}"),
     }
     named = [
-        replace(part, number=number, name=part.name or words[part.kind].format(number=number))
+        replace(
+            part,
+            number=number,
+            name=part.name or words[part.kind].format(number=number),
+            is_named=bool(part.name),
+        )
         for number, part in enumerate(kept, start=1)
     ]
     return tuple(named), notes

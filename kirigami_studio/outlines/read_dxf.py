@@ -6,7 +6,6 @@ import io
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 from ezdxf import colors, recover, units
@@ -31,7 +30,7 @@ from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.contour import thinned
 from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import Part, PartKind, Pen, SourceParts, numbered, parts_of_lines
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, StrokeStyle, numbered, parts_of_lines
 from kirigami_studio.outlines.pieces import largest_piece
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 from kirigami_studio.outlines.text_curves import MOST_LETTERS, Text, scaled, text_parts
@@ -78,7 +77,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Read:
+class DxfDrawing:
     """The lines of a file, what was changed, and millimetres to a unit (1 without a unit)."""
 
     lines: list[Line]
@@ -136,9 +135,11 @@ def dxf_parts(path: str | Path) -> SourceParts:
             net = joined([line.chain * found.to_mm for line in lines], WIDEST_GAP)
             gaps += closed_gaps(net, found.unit)
             thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
-            pen = Pen(max(line.width * found.to_mm for line in lines) or thickness)
+            pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
             colours = {line.colour for line in lines}
-            like = Part(0, "", layer, colours.pop() if len(colours) == 1 else "", PartKind.STROKED, Polygon(), (), pen)
+            like = Part(
+                0, "", layer, colours.pop() if len(colours) == 1 else "", DrawnPartKind.STROKED, Polygon(), (), pen
+            )
             parts += parts_of_lines(net, like)
         written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
         parts += written
@@ -146,10 +147,10 @@ def dxf_parts(path: str | Path) -> SourceParts:
             raise TargetError("dxf.no_lines_but_text")
         kept, too_many = numbered(parts, max(max(part.size) for part in parts))
         left_out = (*found.notes, *fonts, *gaps, *too_many)
-        return SourceParts(path.stem, kept, left_out, found.unit, MappingProxyType(found.facts))
+        return SourceParts(path.stem, kept, left_out, found.unit, found.facts)
 
 
-def _read(path: Path, content: bytes, with_texts: bool = False) -> Read:
+def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
     """Everything visible in model space, flattened; texts only where they are wanted.
 
     Raises
@@ -184,7 +185,7 @@ def _read(path: Path, content: bytes, with_texts: bool = False) -> Read:
             ),
         )
     facts = {str(name): str(text) for name, text in drawing.header.custom_vars.properties}
-    return Read(lines, notes, to_mm, "mm" if has_unit else "", facts, tuple(written))
+    return DxfDrawing(lines, notes, to_mm, "mm" if has_unit else "", facts, tuple(written))
 
 
 class _TimedBytes(io.BytesIO):

@@ -19,7 +19,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import Part, PartKind, SourceParts, numbered, parts_of_region
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, numbered, parts_of_region
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.trace import LEAST_PIXELS, trace
 
@@ -174,7 +174,7 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
             continue  # thinner than a pixel
         below = ink.shape[0] - window[0].start - field.shape[0]
         region = Polygon((ring + np.array([left, below])) * reduction).buffer(0)
-        like = Part(0, "", layer, colour, PartKind.FILLED, Polygon())
+        like = Part(0, "", layer, colour, DrawnPartKind.FILLED, Polygon())
         parts += parts_of_region(region, like)
     return parts, count - len(order)
 

@@ -24,10 +24,10 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import (
     Cap,
     Corner,
+    DrawnPartKind,
     Part,
-    PartKind,
-    Pen,
     SourceParts,
+    StrokeStyle,
     numbered,
     parts_of_lines,
     parts_of_region,
@@ -66,11 +66,11 @@ class Drawn:
     name: str
     layer: str
     colour: str
-    pen: Pen | None  #: None without a stroke
+    pen: StrokeStyle | None  #: None without a stroke
 
 
 @dataclass(frozen=True, slots=True)
-class Read:
+class SvgDrawing:
     """A drawing with lengths in ``unit``, what was left out, and hidden layers among that."""
 
     drawn: list[Drawn]
@@ -125,7 +125,16 @@ def svg_parts(path: str | Path) -> SourceParts:
         parts: list[Part] = []
         for shape in filled:
             lines = shape.chains if shape.pen is not None else ()
-            like = Part(0, shape.name, shape.layer, shape.colour, PartKind.FILLED, Polygon(), lines, shape.pen or Pen())
+            like = Part(
+                0,
+                shape.name,
+                shape.layer,
+                shape.colour,
+                DrawnPartKind.FILLED,
+                Polygon(),
+                lines,
+                shape.pen or StrokeStyle(),
+            )
             parts += parts_of_region(_region(shape), like)
         lines_of: dict[tuple[str, str], list[Drawn]] = {}
         for shape in strokes:
@@ -135,9 +144,9 @@ def svg_parts(path: str | Path) -> SourceParts:
             net = joined([chain for shape in shapes for chain in shape.chains], WIDEST_GAP)
             gaps += closed_gaps(net, read.unit)
             # Lines that meet are one part: it is painted with the broadest of their pens.
-            pen = max((shape.pen or Pen() for shape in shapes), key=lambda pen: pen.width)
+            pen = max((shape.pen or StrokeStyle() for shape in shapes), key=lambda pen: pen.width)
             name = shapes[0].name if len(shapes) == 1 else ""
-            parts += parts_of_lines(net, Part(0, name, layer, colour, PartKind.STROKED, Polygon(), (), pen))
+            parts += parts_of_lines(net, Part(0, name, layer, colour, DrawnPartKind.STROKED, Polygon(), (), pen))
         parts = [_upright(part) for part in parts] + written
         if not parts:
             raise TargetError("drawing.no_area")
@@ -145,7 +154,7 @@ def svg_parts(path: str | Path) -> SourceParts:
         return SourceParts(path.stem, kept, (*left_out, *notes, *gaps, *too_many), read.unit)
 
 
-def _written(read: Read) -> tuple[list[Part], tuple[str, ...]]:
+def _written(read: SvgDrawing) -> tuple[list[Part], tuple[str, ...]]:
     """The letters of all texts as parts, y up; and what is left out of the drawing then."""
     parts, fonts = text_parts(read.texts)
     return parts, (*(note for note in read.left_out if note != text_left_out()), *fonts)
@@ -157,7 +166,7 @@ def _upright(part: Part) -> Part:
     return replace(part, region=region, lines=tuple(line * (1.0, -1.0) for line in part.lines))
 
 
-def _read(content: bytes) -> Read:
+def _read(content: bytes) -> SvgDrawing:
     """Everything visible in a file, y down.
 
     Raises
@@ -172,7 +181,7 @@ def _read(content: bytes) -> Read:
     scale, unit = (width_mm / svg.width, "mm") if width_mm and svg.width else (1.0, "px")
     drawn = list(_drawn(_walk(svg, ""), scale, budget))
     refuse_scribbles([chain for shape in drawn for chain in shape.chains])
-    return Read(drawn, (*notes, *_left_out(svg)), unit, tuple(_texts(_walk(svg, ""), scale)))
+    return SvgDrawing(drawn, (*notes, *_left_out(svg)), unit, tuple(_texts(_walk(svg, ""), scale)))
 
 
 def _texts(elements: Iterable[tuple[Any, str]], scale: float) -> Iterator[Text]:
@@ -324,13 +333,13 @@ def _colour(colour: Any) -> str:
     return f"#{colour.red:02x}{colour.green:02x}{colour.blue:02x}"
 
 
-def _pen(shape: Any, scale: float) -> Pen:
+def _pen(shape: Any, scale: float) -> StrokeStyle:
     """How a shape is stroked."""
     width, values = shape.stroke_width, shape.values
     width = float(width) * scale if isinstance(width, int | float) and np.isfinite(width) and width > 0 else scale
     cap = CAPS.get(str(values.get("stroke-linecap", "butt")).strip(), "flat")
     join = JOINS.get(str(values.get("stroke-linejoin", "miter")).strip(), "mitre")
-    return Pen(width, cap, join, _number(values.get("stroke-miterlimit"), 4.0))
+    return StrokeStyle(width, cap, join, _number(values.get("stroke-miterlimit"), 4.0))
 
 
 def flattened(path: Any, tolerance: float | None = None) -> list[FloatArray]:

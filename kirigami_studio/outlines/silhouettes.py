@@ -13,7 +13,7 @@ from kirigami_studio.outlines.outline import Outline
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LibraryEntry:
     """One line of the library list.
 
     Attributes
@@ -38,18 +38,18 @@ def names() -> tuple[str, ...]:
 
 
 @cache
-def _stored(name: str) -> tuple[Entry, Outline]:
+def _stored(name: str) -> tuple[LibraryEntry, Outline]:
     path = resource("silhouettes", f"{name}.json")
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))
-        entry = Entry(stored["name"], stored["title"], stored["about"])
+        entry = LibraryEntry(stored["name"], stored["title"], stored["about"])
         points = stored["points"]
     except (OSError, ValueError, KeyError, TypeError):
         raise TargetError("silhouette.damaged", path=path) from None
     return entry, Outline.from_points(points, name=entry.name)
 
 
-def entry(name: str) -> Entry:
+def entry(name: str) -> LibraryEntry:
     """Title and description of a silhouette; raises like ``load``."""
     return _stored(known(name))[0]
 

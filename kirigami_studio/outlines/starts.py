@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -13,6 +13,8 @@ import shapely
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import SheetError, UsageError
 from kirigami_studio.foundation.plain_text import plain_line
+from kirigami_studio.foundation.settings import Setting, check
+from kirigami_studio.foundation.words import mark
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.read import read_target
@@ -36,8 +38,8 @@ MOST_HOLLOW = 0.35
 ACCURACY = 1e-4
 #: A mirror axis within this (radians) of upright or level stays where it is.
 UPRIGHT = 1e-3
-#: Weight of a start unless another is asked for, and the largest.
-USUAL_WEIGHT, HEAVIEST = 1.0, 10.0
+#: Weight of a start unless another is asked for.
+USUAL_WEIGHT = 1.0
 #: What :func:`start_shape` reads beside files and library names.
 KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
 
@@ -54,7 +56,7 @@ class StartShape:
         Its mirror axis is upright if it has one; None for a rectangle.
     aspect : float or None
         Width over height of a rectangle; None for square cells, whatever the grid.
-    weight : float, above 0, up to :data:`HEAVIEST`
+    weight : float, above 0, up to 10
         How firmly fits hold round parts and hollows of the outline, see ``polish.chords``: below 1 the flat sheet may
         be a little off its start for a better match.  Straight sides between sharp corners are met at any weight.
 
@@ -67,12 +69,28 @@ class StartShape:
     name: str = "rectangle"
     outline: Outline | None = None
     aspect: float | None = None
-    weight: float = USUAL_WEIGHT
+    weight: float = field(
+        default=USUAL_WEIGHT,
+        metadata=Setting(
+            about=mark(
+                "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the "
+                "target is matched more closely and the start less."
+            ),
+            least=0.0,
+            above_least=True,
+            most=10.0,
+            code="start.weight_out_of_range",
+            label=mark("Start weight"),
+            spoken=mark("Weight of the start"),
+            widget="startWeight",
+            low=0.01,
+            step=0.1,
+        ).metadata,
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", plain_line(self.name))
-        if not 0.0 < self.weight <= HEAVIEST:
-            raise UsageError("start.weight_out_of_range", weight=self.weight, most=HEAVIEST)
+        check(self)
 
     @property
     def is_plain(self) -> bool:

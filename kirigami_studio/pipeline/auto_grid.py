@@ -33,8 +33,8 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
-from kirigami_studio.polish.objective import Stage
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries, symmetric_poses
+from kirigami_studio.polish.objective import FitPhase
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
 
 #: Fewest rows and columns, and most unless another limit is asked for.
 COARSEST, FINEST = 6, 16
@@ -60,7 +60,7 @@ FINER_BETWEEN, FINER_GAIN = (0.95, 0.975), 0.005
 FINER_LIMIT, FINER_PANELS = 24, 312
 #: Poses of each grid that are tried, and the steps of each fit.
 TRIED_POSES = 2
-TRIAL = (Stage(3, 0.1, 3e-2), Stage(3, 0.04, 3e-3), Stage(3, 0.01, 1e-3))
+TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -199,7 +199,7 @@ def predicted_match(
 @lru_cache(maxsize=64)
 def choose_grid(
     target: Outline,
-    symmetry: str = "auto",
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO,
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
     limit: int = FINEST,
@@ -210,7 +210,7 @@ def choose_grid(
     Parameters
     ----------
     target : Outline
-    symmetry : {"auto", "none", "mirror", "turn"}
+    symmetry : KeptSymmetry
         As for :func:`kirigami_studio.polish.symmetry.symmetric_poses`.
     width_mm : float
         Width of the flat sheet.
@@ -227,7 +227,7 @@ def choose_grid(
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = _poses(target, symmetry, start)
     figures = ShapeFigures.of(target)
@@ -296,7 +296,7 @@ def known_for(request: Request) -> GridChoice:
 
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
-    sheet = (request.width_mm, request.least_feature_mm, request.wishes.free_rim, request.start)
+    sheet = (request.width_mm, request.least_feature_mm, request.fit_options.free_rim, request.start)
     return request.target, request.phi, request.symmetry, *sheet
 
 
@@ -457,7 +457,7 @@ def _nearest(
     return [one for one, far in zip(found, off, strict=True) if far <= min(off) + PROPORTION_ROOM]
 
 
-def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[SymmetricPose, ...]:
+def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:
     """The symmetric set-ups of a target that sheets of a start can have on some grid.
 
     Raises
@@ -465,13 +465,13 @@ def _poses(target: Outline, symmetry: str, start: StartShape) -> tuple[Symmetric
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        There is no such symmetry setting, or the start cannot have the symmetry that is asked for.
+        The start cannot have the symmetry that is asked for.
     """
     poses = symmetric_poses(target, symmetry)
     if start.is_plain:
         return poses
     kept = tuple(pose for pose in poses if any(pose.fits(grid, start) for grid in SYMMETRIC_GRIDS))
-    if poses and not kept and symmetry in ("mirror", "turn"):
+    if poses and not kept and symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         rows, columns = SYMMETRIC_GRIDS[0]
         raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=symmetry)
     return kept

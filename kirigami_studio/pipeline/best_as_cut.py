@@ -20,7 +20,7 @@ from kirigami_studio.pipeline.events import Result
 MOST_LOOKED_AT = 32
 
 
-class CloseLook(Protocol):
+class AsCutAssessment(Protocol):
     """What a close look at a design found."""
 
     @property
@@ -49,7 +49,7 @@ class Looking:
 
 
 def best_as_cut(
-    result: Result, jams: Mapping[Candidate, float], look: Callable[[Candidate], Generator[None, None, CloseLook]]
+    result: Result, jams: Mapping[Candidate, float], look: Callable[[Candidate], Generator[None, None, AsCutAssessment]]
 ) -> Generator[Looking | None, None, Result]:
     """Rank designs by how they do as cut, the best that can be cut first.
 

@@ -1,6 +1,6 @@
 """Designs that are there fitted again by what ranking prefers now, each from where it is.
 
-The window does this when a person moves the balance of match and regularity: ranking anew is instant, but fits that
+The window does this when the user moves the balance of match and regularity: ranking anew is instant, but fits that
 were made for another balance leave something to gain.
 """
 

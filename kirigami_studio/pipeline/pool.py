@@ -14,6 +14,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
 from functools import cache
@@ -24,8 +25,8 @@ from typing import IO
 import kirigami_studio
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Task
-from kirigami_studio.pipeline.worker import WORKER_FLAG, Assignment, Done, Failed, Ready, Report, Stop
+from kirigami_studio.pipeline.tasks import Task, TaskResult
+from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop
 
 log: logging.Logger = topic("pipeline")
 
@@ -37,6 +38,10 @@ THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
+
+#: Seconds after which a worker that has work and says nothing is given up: it says that it lives twice a second, and
+#: its imports take a few seconds.
+SILENCE = 60.0
 
 #: Code for the interpreter of a worker; the package's folder follows, for checkouts that are not installed.
 ENTRY = "import sys; sys.path.append(sys.argv[1]); from kirigami_studio.pipeline.worker import serve; sys.exit(serve())"
@@ -54,12 +59,13 @@ def worker_count() -> int:
     return min(usable_cores(), LARGEST_POOL)
 
 
-class Worker:
+class PolishingWorker:
     """One process and the thread that listens to it."""
 
-    def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[Worker, Report | None]]) -> None:
+    def __init__(self, command: Sequence[str], reports: SimpleQueue[tuple[PolishingWorker, Report | None]]) -> None:
         self.assignment: Assignment | None = None
         self.ready = False
+        self.silence = 0.0  #: seconds since it was heard, while it had something to say
         self.process = _started(command)
         self._reports = reports
         self._listener = threading.Thread(target=self._listen, name="polishing worker", daemon=True)
@@ -100,7 +106,9 @@ class Worker:
             except Exception:  # the end of the pipe, or half a message of a killed worker
                 self._reports.put((self, None))
                 return
-            self._reports.put((self, report))
+            self.silence = 0.0
+            if not isinstance(report, Alive):
+                self._reports.put((self, report))
 
 
 class Pool:
@@ -113,13 +121,16 @@ class Pool:
         never starts.
     command : sequence of str, optional
         Program and arguments of a worker, see :func:`worker_command`.
+    silence : float, seconds
+        How long a worker that has work may say nothing until it is given up: a stopped process neither works nor ends.
     """
 
-    def __init__(self, size: int | None = None, command: Sequence[str] | None = None) -> None:
+    def __init__(self, size: int | None = None, command: Sequence[str] | None = None, silence: float = SILENCE) -> None:
+        self._silence = silence
         self.size = worker_count() if size is None else size
         self._command = worker_command() if command is None else command
-        self.workers: list[Worker] = []
-        self._reports: SimpleQueue[tuple[Worker, Report | None]] = SimpleQueue()
+        self.workers: list[PolishingWorker] = []
+        self._reports: SimpleQueue[tuple[PolishingWorker, Report | None]] = SimpleQueue()
         self._broken = self.size < 2
         self._batch = 0
         self._winding_down = False
@@ -136,7 +147,7 @@ class Pool:
         if not self._taken.acquire(blocking=False):
             return False
         try:
-            self._take_reports()
+            self._on_reports()
             return any(worker.ready and worker.alive for worker in self.workers)
         finally:
             self._taken.release()
@@ -146,13 +157,13 @@ class Pool:
         self.workers = [worker for worker in self.workers if worker.alive]
         while not self._broken and len(self.workers) < self.size:
             try:
-                self.workers.append(Worker(self._command, self._reports))
+                self.workers.append(PolishingWorker(self._command, self._reports))
             except OSError as error:
                 self._give_up(f"worker processes cannot be started: {error}")
 
     def answers(
         self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
-    ) -> Generator[tuple[int, Answer] | None]:
+    ) -> Generator[tuple[int, TaskResult] | None]:
         """Hand out tasks (number, task) in order and yield answers as they come: None once the first are given, and
         every ``wait`` seconds without an answer.
 
@@ -184,9 +195,9 @@ class Pool:
 
     def _served(
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
-    ) -> Iterator[tuple[int, Answer] | None]:
+    ) -> Iterator[tuple[int, TaskResult] | None]:
         self.start()
-        begun = False
+        begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
             for worker in self.workers:
                 if waiting and not self._winding_down and worker.ready and worker.assignment is None:
@@ -196,6 +207,10 @@ class Pool:
             if not begun:
                 begun = True
                 yield None
+            now = time.monotonic()
+            # Time in which this process did not listen, stopped itself or asleep, is nobody's silence.
+            self._kill_silent(min(now - heard_at, 2.0 * wait))
+            heard_at = now
             try:
                 worker, report = self._reports.get(timeout=wait)
             except Empty:
@@ -210,10 +225,22 @@ class Pool:
             elif isinstance(report, Done) and report.batch == batch:
                 yield report.number, report.answer
 
+    def _kill_silent(self, passed: float) -> None:
+        """Kill workers that have said nothing for long; their work is done again as that of any that die."""
+        for worker in self.workers:
+            if worker.assignment is None and worker.ready:
+                worker.silence = 0.0
+                continue
+            worker.silence += passed
+            if worker.silence > self._silence:
+                log.warning("a polishing worker has said nothing for %.0f s and is ended", worker.silence)
+                worker.silence = 0.0
+                worker.process.kill()
+
     def _under_way(self, batch: int) -> bool:
         return any(worker.assignment is not None and worker.assignment.batch == batch for worker in self.workers)
 
-    def _take_reports(self) -> None:
+    def _on_reports(self) -> None:
         """Read what came in between two batches."""
         while True:
             try:
@@ -221,7 +248,7 @@ class Pool:
             except Empty:
                 return
 
-    def _note(self, worker: Worker, report: Report | None) -> None:
+    def _note(self, worker: PolishingWorker, report: Report | None) -> None:
         if isinstance(report, Ready):
             worker.ready = True
             return

@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.polish.preferences import FitPreference
 
 #: IoU (0..1) that a coefficient of variation of panel areas lower by 1 is worth: 0.4 rather than 0.8 is worth 1 %.
 EVENNESS = 0.025
@@ -41,11 +42,16 @@ SYMMETRY = 0.022
 JAMMING = 0.25
 
 #: The IoU that this preference gives away for a total variation (per void) that is lower by 1.
-WORTH = {"accuracy": 0.0, "balanced": 0.0, "regularity": 0.005, "calm": 0.03}
+WORTH = {
+    FitPreference.ACCURACY: 0.0,
+    FitPreference.BALANCED: 0.0,
+    FitPreference.REGULARITY: 0.005,
+    FitPreference.CALM: 0.03,
+}
 #: The worth that a fit may lose at most for a lower total variation: less still counts as equal.
 MOST_LOST = 0.003
 #: What is tried where a fit has lost more than it may.
-MILDER = {"calm": "regularity"}
+MILDER = {FitPreference.CALM: FitPreference.REGULARITY}
 
 #: Sorting key of a candidate; smaller is better.
 Key = tuple[bool, bool, bool, bool, float, bool, float, int]
@@ -53,7 +59,7 @@ Key = tuple[bool, bool, bool, bool, float, bool, float, int]
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """What a person wants first.
+    """What the user wants first.
 
     Attributes
     ----------
@@ -141,12 +147,12 @@ class Ranking:
         """Candidates sorted best first."""
         return tuple(sorted(candidates, key=self.key))
 
-    def improves(self, after: Candidate, before: Candidate, prefer: str) -> bool:
+    def improves(self, after: Candidate, before: Candidate, prefer: FitPreference) -> bool:
         """Whether a fitted design may take the place of the one it came from.
 
         It has to be worth more, unless only one of the two can be cut.  A fit that prefers low total variation may give
         away some worth for it; that is no more than :data:`MOST_LOST`, and what was gained in total variation outweighs
-        it.  ``prefer`` is a key of :data:`kirigami_studio.polish.preferences.PREFERENCES`.
+        it.
         """
         price, can_cut = WORTH[prefer], self.cuttable(after)
         if can_cut is not self.cuttable(before) and after.score.feasible is before.score.feasible:

@@ -31,13 +31,13 @@ from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.panel_size import least_in_cells
-from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.polish.preferences import PREFERENCES, FitPreference
 from kirigami_studio.polish.vertex_drag import VertexDrag
 
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
 
-#: Accepted steps of one fit that a person asks for; most end before that because nothing more is gained.
+#: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20
 
 
@@ -190,7 +190,7 @@ def trimmed(
 def refitted(
     candidate: Candidate,
     target: Outline,
-    prefer: str,
+    prefer: FitPreference,
     locked: Collection[tuple[int, int]],
     keep: Callable[[], float],
     cancel: Callable[[], bool],
@@ -207,8 +207,7 @@ def refitted(
     ----------
     candidate : Candidate
     target : Outline
-    prefer : str
-        A key of :data:`kirigami_studio.polish.preferences.PREFERENCES`.
+    prefer : FitPreference
     locked : collection of (row, column)
         Voids that keep the ratios that are seen: those of the trim, if the candidate is trimmed.
     keep : callable

@@ -1,46 +1,31 @@
-"""What a person asked for: everything that decides the result, and what files repeat of it."""
+"""The request of a run: everything that decides its result, and what files repeat of it."""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.trimming import KEEP, check_keep
-from kirigami_studio.foundation.errors import AngleError, UsageError
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
-from kirigami_studio.polish.continuation import Wishes
+from kirigami_studio.polish.continuation import FitOptions
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
 from kirigami_studio.polish.panel_size import check_least, least_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import SYMMETRIES
-
-LARGEST_K = 1024
-LARGEST_STEPS = 64
-LARGEST_POLISH = 200
-LARGEST_SEARCH = 8
-LARGEST_GUIDED = 64
-#: Two ways from a few poses.
-GUIDED_STARTS = 8
-#: The default of window and command line: nearly converged from a generator sample.
-POLISH_STEPS = 15
-#: The paper's grid.
-USUAL_GRID = (10, 10)
-#: Where cuts meet the rim: where fits move them, or evenly spaced as in the paper.
-RIMS = ("free", "even")
-#: Where a preference stands between match (0) and regular (1).
-REGULAR = {"accuracy": 0.0, "balanced": 0.5, "regularity": 0.75, "calm": 1.0}
+from kirigami_studio.polish.symmetry import KeptSymmetry
+from kirigami_studio.settings.design import USUAL_GRID, DesignChoices, DesignSettings, RimRule, choices_of
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class Request(DesignChoices):
     """One design task.  The same request gives the same candidates, bit by bit, unless a budget ends it.
 
     Attributes
@@ -48,26 +33,9 @@ class Request:
     target : Outline
     grid : (rows, columns) voids, 2..64 each, or None
         None leaves the choice to the run, see :meth:`resolved`.
-    phi : float, radians, in [0, pi)
-        Deployment angle at which the sheet should show the target; 0 is the second compact state.
-    k : int, 1..1024
-        Number of candidates.
-    seed : int, >= 0
-    variant : str
-        Name of a bundled generator variant, see :func:`kirigami_studio.generator.weights.variants`.
-    steps : int, 1..64
-        Evaluations of the network for each sample: Euler steps of the flow, then corrections, see
-        :func:`kirigami_studio.generator.flow.integrate`.
-    polish : int, 0..200
-        Steps of the fit on the exact geometry that every candidate gets after sampling, in one or two rounds;
-        0 leaves them as sampled.
-    prefer : str
-        What the fits prefer among nearly equal matches, see :data:`kirigami_studio.polish.preferences.PREFERENCES`.
     least_panel : float, unit cells, 0..0.9
         Panel edges and necks that no fit falls below, wherever a sheet near by allows that; 0 for any size.  What the
         material needs (``least_feature_mm``) is kept in any case, see :attr:`kept_size`.
-    search : int, 0..8
-        Effort of a search for a design beyond the samples, started from the best of them; 0 does without.
     trim : bool
         Also fit the best designs to cover the target and trim their edge panels; the best trimmed one then comes first.
     keep : float, unit cells, 0.02..0.4
@@ -79,12 +47,6 @@ class Request:
     nearness : float, 0..1 without 1
         How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
         in that design's pose.
-    symmetry : str
-        What designs have to keep, one of :data:`kirigami_studio.polish.symmetry.SYMMETRIES`.
-    rim : str
-        One of :data:`RIMS`.
-    regular : float, 0..1
-        What ranking prefers, from the best match (0) to even panels (1), see :mod:`kirigami_studio.pipeline.rank`.
     width_mm : float, > 0
         Width of the flat sheet.
     least_feature_mm : float, >= 0
@@ -95,78 +57,84 @@ class Request:
         Whether the run chose the grid.
     guided : int, 0..64
         Designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of all,
-        and none without ``polish``, near another design, or on a budget.
-    start : StartShape
-        What the sheets look like while they are flat.
-    second : SecondTarget, optional
-        What they should also show on their way to ``phi``.
+        and none without ``polish``, near another design, or on a budget.  By default two ways from a few poses.
     """
 
     target: Outline
     grid: tuple[int, int] | None = USUAL_GRID
-    phi: float = 0.0
-    k: int = 32
-    seed: int = 0
-    variant: str = "balanced"
-    steps: int = 4
-    polish: int = 0
-    prefer: str = "balanced"
-    least_panel: float = 0.0
-    search: int = 0
-    trim: bool = False
-    keep: float = KEEP
-    budget_seconds: float | None = None
-    near: Sheet | None = None
-    nearness: float = 0.0
-    symmetry: str = "auto"
-    rim: str = "free"
-    regular: float = 0.5
-    width_mm: float = 100.0
-    least_feature_mm: float = 0.0
-    room_mm: float = 0.0
-    grid_chosen: bool = False
-    guided: int = GUIDED_STARTS
-    start: StartShape = RECTANGLE
-    second: SecondTarget | None = None
+    least_panel: float = field(default=0.0, kw_only=True)
+    trim: bool = field(
+        default=False,
+        kw_only=True,
+        metadata=Setting(
+            help="trim the best design to the target: adds trimmed_iou and trims cut.dxf", option="--trim"
+        ).metadata,
+    )
+    keep: float = field(default=KEEP, kw_only=True)
+    budget_seconds: float | None = field(
+        default=None,
+        kw_only=True,
+        metadata=Setting(
+            help="stop after this time with the best so far; results then depend on the machine (default: none)",
+            least=0.0,
+            above_least=True,
+            code="request.budget_not_positive",
+            option="--budget",
+            metavar="SECONDS",
+        ).metadata,
+    )
+    near: Sheet | None = field(default=None, kw_only=True)
+    nearness: float = field(
+        default=0.0,
+        kw_only=True,
+        metadata=Setting(least=0.0, most=1.0, below_most=True, code="request.nearness_out_of_range").metadata,
+    )
+    width_mm: float = field(
+        default=100.0,
+        kw_only=True,
+        metadata=Setting(least=0.0, above_least=True, code="request.width_not_positive").metadata,
+    )
+    least_feature_mm: float = field(
+        default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
+    )
+    room_mm: float = field(
+        default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
+    )
+    grid_chosen: bool = field(default=False, kw_only=True)
+    guided: int = field(default=8, kw_only=True, metadata=Setting(least=0, most=64).metadata)
 
     def __post_init__(self) -> None:
         if self.grid is not None:
             check_grid(*self.grid)
-        if not 0.0 <= self.phi < math.pi:
-            raise AngleError("request.angle_out_of_range", phi=self.phi)
-        for code, value, least, most in (
-            ("request.k_out_of_range", self.k, 1, LARGEST_K),
-            ("request.steps_out_of_range", self.steps, 1, LARGEST_STEPS),
-            ("request.seed_out_of_range", self.seed, 0, 2**63 - 1),
-            ("request.polish_out_of_range", self.polish, 0, LARGEST_POLISH),
-            ("request.search_out_of_range", self.search, 0, LARGEST_SEARCH),
-            ("request.guided_out_of_range", self.guided, 0, LARGEST_GUIDED),
-        ):
-            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-                raise UsageError(code, value=value, least=least, most=most)
-        if self.prefer not in PREFERENCES:
-            raise UsageError("request.unknown_preference", prefer=self.prefer, choices=", ".join(PREFERENCES))
-        if self.symmetry not in SYMMETRIES:
-            raise UsageError("request.unknown_symmetry", symmetry=self.symmetry, choices=", ".join(SYMMETRIES))
-        if self.rim not in RIMS:
-            raise UsageError("request.unknown_rim", rim=self.rim, choices=", ".join(RIMS))
-        if not _is_number(self.regular) or not 0.0 <= self.regular <= 1.0:
-            raise UsageError("request.regular_out_of_range", regular=self.regular)
-        if not _is_number(self.width_mm) or not 0.0 < self.width_mm < math.inf:
-            raise UsageError("request.width_not_positive", width_mm=self.width_mm)
-        for size in (self.least_feature_mm, self.room_mm):
-            if not _is_number(size) or not 0.0 <= size < math.inf:
-                raise UsageError("request.least_feature_out_of_range", least_mm=size)
+        check(self)
         if self.second is not None:
             self.second.check_on_the_way_to(self.phi)
         check_least(self.least_panel)
         check_keep(self.keep)
-        self._check_near()
-        budget = self.budget_seconds
-        if budget is None:
-            return
-        if not _is_number(budget) or not 0.0 < budget < math.inf:
-            raise UsageError("request.budget_not_positive", budget=budget)
+        if self.near is None:
+            if self.nearness:
+                raise UsageError("request.nearness_without_design")
+        elif self.grid is not None and self.near.grid != tuple(self.grid):
+            (rows, columns), near = self.grid, self.near
+            raise UsageError(
+                "request.near_other_grid", near_rows=near.rows, near_columns=near.columns, rows=rows, columns=columns
+            )
+
+    @classmethod
+    def of(cls, target: Outline, settings: DesignSettings, **more: Any) -> Request:
+        """The run for a target that the settings of a project ask for, with ``more`` that they do not hold."""
+        return cls(target, None if settings.auto_grid else settings.grid, **choices_of(settings) | more)
+
+    @property
+    def settings(self) -> DesignSettings:
+        """What a project keeps of it.
+
+        Raises
+        ------
+        UsageError
+            Its grid is left to the run, which has not chosen it yet.
+        """
+        return DesignSettings(self.chosen_grid, self.grid_chosen, **choices_of(self))
 
     @property
     def chosen_grid(self) -> tuple[int, int]:
@@ -215,12 +183,12 @@ class Request:
         return least_in_cells(size_mm, self.width_mm, width_in_cells(self.grid, self.start))
 
     @property
-    def wishes(self) -> Wishes:
+    def fit_options(self) -> FitOptions:
         """What fits ask for beside the match."""
-        return Wishes(
+        return FitOptions(
             PREFERENCES[self.prefer],
             self.kept_size,
-            self.rim == "free",
+            self.rim is RimRule.FREE,
             self.even,
             self.symmetry,
             start=self.start,
@@ -236,33 +204,16 @@ class Request:
         SheetError
             Panels fold over around a hollow on this grid.
         """
-        return first_sheet(self.chosen_grid, self.start, free_rim=self.rim == "free")
+        return first_sheet(self.chosen_grid, self.start, free_rim=self.rim is RimRule.FREE)
 
     def resolved(self, grid: tuple[int, int]) -> Request:
         """The same request on the grid that was chosen for it; a grid that it has already stays."""
         return replace(self, grid=grid, grid_chosen=True) if self.grid is None else self
 
-    def _check_near(self) -> None:
-        nearness = self.nearness
-        if not _is_number(nearness) or not 0.0 <= nearness < 1.0:
-            raise UsageError("request.nearness_out_of_range", nearness=nearness)
-        if self.near is None:
-            if nearness:
-                raise UsageError("request.nearness_without_design")
-        elif self.grid is not None and self.near.grid != tuple(self.grid):
-            (rows, columns), near = self.grid, self.near
-            raise UsageError(
-                "request.near_other_grid", near_rows=near.rows, near_columns=near.columns, rows=rows, columns=columns
-            )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
-
 
 def as_in_paper(request: Request) -> Request:
     """The same request in the paper's setting: an even rim, no symmetry asked for, ranked by match alone."""
-    return replace(request, symmetry="none", rim="even", regular=0.0, guided=0)
+    return replace(request, symmetry=KeptSymmetry.NONE, rim=RimRule.EVEN, regular=0.0, guided=0)
 
 
 def provenance(request: Request, digest: str) -> dict[str, str]:

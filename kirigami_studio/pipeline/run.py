@@ -31,13 +31,13 @@ from kirigami_studio.pipeline.events import (
 )
 from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import USUAL_GRID, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import (
-    Answer,
     GuidedTask,
     PolishTask,
     SearchTask,
     Task,
+    TaskResult,
     TrialTask,
     TrimTask,
     fit_target,
@@ -46,8 +46,9 @@ from kirigami_studio.pipeline.tasks import (
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
 from kirigami_studio.polish.covering import notches_filled
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
+from kirigami_studio.settings.design import USUAL_GRID, RimRule
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -218,7 +219,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if not request.fitted_starts:
         return []
     angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry, request.start)
-    if request.symmetry in ("mirror", "turn"):
+    if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
@@ -236,7 +237,7 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
     poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry, request.start)
     poses = poses[:MOST_SYMMETRIES]
-    together = count if request.symmetry in ("mirror", "turn") and poses else count // 2
+    together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
     return [(pose, share) for pose, share in zip(poses, each, strict=True) if share]
 
@@ -246,10 +247,10 @@ def on_sheet(request: Request, field: RatioField) -> Sheet:
 
     The model knows no hollows: where the start has some, the sheet is unfolded; one that stays folded is not feasible.
     """
-    flat = request.uniform if request.near is None or request.rim == "even" else request.near
+    flat = request.uniform if request.near is None or request.rim is RimRule.EVEN else request.near
     sheet = flat.with_field(field)
     try:
-        return unfolded(sheet, free_rim=request.rim == "free")
+        return unfolded(sheet, free_rim=request.rim is RimRule.FREE)
     except SheetError:
         return sheet
 
@@ -267,7 +268,7 @@ def decodings(request: Request) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class RunPhase:
     """A part of a run that works on several designs: its progress message, and the code of its cancellation."""
 
     words: str
@@ -278,11 +279,11 @@ class Stage:
         return Progress(done, total, tr(self.words, done=done, total=total))
 
 
-GUIDING = Stage(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
-POLISHING = Stage(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
-SEARCHING = Stage(mark("Searching: {done} of {total} done"), "run.stopped_searching")
-FINISHING = Stage(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
-TRIMMING = Stage(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
+GUIDING = RunPhase(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
+POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
+SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching")
+FINISHING = RunPhase(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
+TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
 class _Work:
@@ -394,9 +395,9 @@ class _Work:
                 self.found.append(report[1].candidate)
                 yield CandidateFound(report[1].candidate.index, report[1].candidate)
 
-    def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], stage: Stage) -> Iterator[Event]:
+    def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], phase: RunPhase) -> Iterator[Event]:
         """Each chosen candidate as its task makes it."""
-        for report in self._carried_out(tasks, stage, 0, len(tasks)):
+        for report in self._carried_out(tasks, phase, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
@@ -405,15 +406,15 @@ class _Work:
                 yield CandidateImproved(report[1].candidate.index, report[1].candidate)
 
     def _carried_out(
-        self, tasks: Sequence[Task], stage: Stage, done: int, total: int, request: Request | None = None
-    ) -> Iterator[Progress | tuple[int, Answer]]:
+        self, tasks: Sequence[Task], phase: RunPhase, done: int, total: int, request: Request | None = None
+    ) -> Iterator[Progress | tuple[int, TaskResult]]:
         """Answers as they come, with signs of life in between; those of another request where one is given."""
         reported = time.perf_counter()
         with closing(answers(self.pool, request or self.request, tasks, self.watch)) as reports:
             next(reports)  # workers begin
-            yield stage.progress(done, total)
+            yield phase.progress(done, total)
             for report in reports:
-                self.watch.check(stage.stopped, done, total)
+                self.watch.check(phase.stopped, done, total)
                 now = time.perf_counter()
                 if report is not None:
                     done += 1
@@ -421,8 +422,8 @@ class _Work:
                     yield report
                 elif now - reported > HEARTBEAT:
                     reported = now
-                    yield stage.progress(done, total)
-        self.watch.check(stage.stopped, done, total)
+                    yield phase.progress(done, total)
+        self.watch.check(phase.stopped, done, total)
         self.cut_short = self.cut_short or self.watch.expired()
 
 
@@ -471,7 +472,7 @@ class Watch:
 
 def answers(
     pool: Pool | None, request: Request, tasks: Sequence[Task], watch: Watch
-) -> Generator[tuple[int, Answer] | None]:
+) -> Generator[tuple[int, TaskResult] | None]:
     """Do tasks in order; yield (place in ``tasks``, answer) in the order in which they end, and None in between.
 
     The first is None: workers that are ready have got work then, and this process begins none before the next.
@@ -479,7 +480,7 @@ def answers(
     The caller looks at the cancel flag at every yield; closing this iterator stops the work within one step.
     """
     waiting = dict(enumerate(tasks))
-    by_workers: Iterator[tuple[int, Answer] | None] = iter(())
+    by_workers: Iterator[tuple[int, TaskResult] | None] = iter(())
     if pool is not None and not watch.stopped():
         by_workers = _by_workers(pool, request, waiting, watch)
     yield next(by_workers, None)
@@ -495,7 +496,7 @@ def answers(
 
 def _by_workers(
     pool: Pool, request: Request, waiting: dict[int, Task], watch: Watch
-) -> Generator[tuple[int, Answer] | None]:
+) -> Generator[tuple[int, TaskResult] | None]:
     stopped_at: float | None = None
     with closing(pool.answers(request, list(waiting.items()), LOOK)) as reports:
         for report in reports:

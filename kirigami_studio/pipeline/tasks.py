@@ -24,13 +24,13 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.objective import CONVERGED, Stage
-from kirigami_studio.polish.preferences import PREFERENCES
-from kirigami_studio.polish.symmetry import shared_symmetries, symmetric_target
+from kirigami_studio.polish.objective import CONVERGED, FitPhase
+from kirigami_studio.polish.preferences import PREFERENCES, FitPreference
+from kirigami_studio.polish.symmetry import KeptSymmetry, shared_symmetries, symmetric_target
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class TaskResult:
     """What came of a task.
 
     Attributes
@@ -48,7 +48,7 @@ class Answer:
 class Task(Protocol):
     """Work on one design."""
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Do the work; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
         ...
 
@@ -71,13 +71,13 @@ class PolishTask:
     steps: int
     last: bool = True
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit as preferred, and more mildly where that gives away too much match."""
         candidate, evaluations = self.candidate, 0
         # A design of an earlier run keeps the second target that it was made for, or does without as it did.
         request = replace(request, second=None if candidate.second is None else candidate.second.target)
         symmetry = kept_symmetry(candidate.sheet)
-        prefer: str | None = request.prefer
+        prefer: FitPreference | None = request.prefer
         while prefer is not None:
             with one_blas_thread():
                 fit = polish(
@@ -88,9 +88,9 @@ class PolishTask:
                     PREFERENCES[prefer],
                     candidate.score.transform,
                     stopped,
-                    stages=self._stages(request.even),
+                    phases=self._phases(request.even),
                     least_panel=request.kept_size,
-                    free_rim=request.rim == "free",
+                    free_rim=request.fit_options.free_rim,
                     symmetry=symmetry,
                     second=request.second,
                     start_weight=request.start.weight,
@@ -99,17 +99,17 @@ class PolishTask:
             evaluations += fit.evaluations + 1
             if Ranking.of(request).improves(better, candidate, request.prefer):
                 before = candidate.sampled_sheet if candidate.polished else candidate.sheet
-                return Answer(replace(better, sampled_sheet=before), evaluations)
+                return TaskResult(replace(better, sampled_sheet=before), evaluations)
             prefer = MILDER.get(prefer)
-        return Answer(None, evaluations)
+        return TaskResult(None, evaluations)
 
-    def _stages(self, even: float) -> tuple[Stage, ...]:
+    def _phases(self, even: float) -> tuple[FitPhase, ...]:
         if not even:
-            return (Stage(self.steps, least_gain=CONVERGED),)
+            return (FitPhase(self.steps, least_gain=CONVERGED),)
         if self.last:
             weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
-            return (Stage(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
-        return (Stage(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
+            return (FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
+        return (FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,14 +121,14 @@ class GuidedTask:
     symmetry: Symmetry | None
     way: Way
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit the way that the task says."""
-        grid, wishes = request.chosen_grid, request.wishes
+        grid, options = request.chosen_grid, request.fit_options
         with one_blas_thread():
             target = fit_target(request, self.symmetry)
-            fit = fit_from_uniform(target, grid, request.phi, self.angle, self.way, wishes, self.symmetry, stopped)
+            fit = fit_from_uniform(target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped)
         (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
-        return Answer(found, fit.evaluations + 1)
+        return TaskResult(found, fit.evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,18 +138,18 @@ class TrialTask:
     grid: tuple[int, int]
     angle: float
     symmetry: Symmetry | None
-    stages: tuple[Stage, ...]
+    phases: tuple[FitPhase, ...]
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
-        """Fit by the stages, without a guide; the exact IoU of the answer is that in the pose of the fit."""
-        free, start = request.wishes.free_rim, request.start
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit by the phases, without a transport map; the exact IoU of the answer is that in the pose of the fit."""
+        free, start = request.fit_options.free_rim, request.start
         with one_blas_thread():
             fit = fit_by_stages(
-                request.target, self.grid, request.phi, self.angle, self.stages, free, self.symmetry, start
+                request.target, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
             )
         (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
         match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.target)
-        return Answer(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
+        return TaskResult(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +159,7 @@ class SearchTask:
     index: int
     starts: tuple[Sheet, ...]
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Search from scratch and from the starts."""
         ranking = Ranking.of(request)
         with one_blas_thread():
@@ -171,13 +171,13 @@ class SearchTask:
                 request.search,
                 stopped,
                 replace(
-                    request.wishes,
+                    request.fit_options,
                     evenness_price=ranking.scale * EVENNESS,
                     symmetry_price=max(FAIR_LOSS, ranking.scale * SYMMETRY),
                 ),
             )
         (found,) = scored(request, [fits[0].sheet], self.index, Origin.SEARCHED, fitted=True)
-        return Answer(found, fits[0].evaluations + 1)
+        return TaskResult(found, fits[0].evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,24 +186,26 @@ class TrimTask:
 
     candidate: Candidate
 
-    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> Answer:
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Trim, unless the design crosses itself."""
         try:
             made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_when_trimmed)
         except KirigamiError:
-            return Answer(None, 1)
-        return Answer(made.candidate, made.evaluations)
+            return TaskResult(None, 1)
+        return TaskResult(made.candidate, made.evaluations)
 
 
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
-    if symmetry is None or request.symmetry not in ("mirror", "turn"):
+    if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         return request.target
     return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry)
 
 
 @lru_cache(maxsize=16)
-def _meant(target: Outline, grid: tuple[int, int], start: StartShape, setting: str, symmetry: Symmetry) -> Outline:
+def _meant(
+    target: Outline, grid: tuple[int, int], start: StartShape, setting: KeptSymmetry, symmetry: Symmetry
+) -> Outline:
     for pose in shared_symmetries(target, grid, setting, start):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)

@@ -13,12 +13,13 @@ import os
 import pickle
 import signal
 import threading
+import time
 from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import BinaryIO
 
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Answer, Task
+from kirigami_studio.pipeline.tasks import Task, TaskResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +45,17 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True)
+class Alive:
+    """A sign of life every :data:`ALIVE_EVERY` seconds of work: a process that was stopped gives none."""
+
+
+@dataclass(frozen=True, slots=True)
 class Done:
     """The answer to an assignment."""
 
     batch: int
     number: int
-    answer: Answer
+    answer: TaskResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +67,10 @@ class Failed:
     error: Exception
 
 
-Report = Ready | Done | Failed
+Report = Ready | Alive | Done | Failed
+
+#: Seconds between two signs of life while a worker works.
+ALIVE_EVERY = 0.5
 
 
 #: The argument that makes a frozen program be a worker.
@@ -72,14 +81,18 @@ def serve() -> int:
     """Work until the input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program, which then closes the pipe
     # What a library prints must not get between the answers.
-    answers = os.fdopen(os.dup(1), "wb")
+    answers = _Outbox(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
     inbox = _Inbox(os.fdopen(os.dup(0), "rb"))
     threading.Thread(target=inbox.listen, name="assignments", daemon=True).start()
-    _send(answers, Ready())
+    answers.send(Ready())
+    threading.Thread(target=answers.show_life, name="signs of life", daemon=True).start()
     while True:
         assignment = inbox.assignments.get()
-        _send(answers, _carried_out(assignment, inbox))
+        answers.working.set()
+        report = _carried_out(assignment, inbox)
+        answers.working.clear()
+        answers.send(report)
 
 
 class _Inbox:
@@ -110,15 +123,30 @@ def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:
     return Done(assignment.batch, assignment.number, answer)
 
 
-def _send(answers: BinaryIO, report: Report) -> None:
-    try:
-        content = pickle.dumps(report)
-    except Exception as fault:  # an error that cannot be pickled is still reported
-        if not isinstance(report, Failed):
-            raise
-        content = pickle.dumps(Failed(report.batch, report.number, RuntimeError(f"{report.error!r} ({fault})")))
-    try:
-        answers.write(content)
-        answers.flush()
-    except OSError:
-        os._exit(0)
+class _Outbox:
+    """Reports, one at a time, and signs of life while ``working`` is set."""
+
+    def __init__(self, answers: BinaryIO) -> None:
+        self.working = threading.Event()
+        self._answers = answers
+        self._lock = threading.Lock()
+
+    def show_life(self) -> None:
+        while True:
+            self.working.wait()
+            self.send(Alive())
+            time.sleep(ALIVE_EVERY)
+
+    def send(self, report: Report) -> None:
+        try:
+            content = pickle.dumps(report)
+        except Exception as fault:  # an error that cannot be pickled is still reported
+            if not isinstance(report, Failed):
+                raise
+            content = pickle.dumps(Failed(report.batch, report.number, RuntimeError(f"{report.error!r} ({fault})")))
+        try:
+            with self._lock:
+                self._answers.write(content)
+                self._answers.flush()
+        except OSError:
+            os._exit(0)

@@ -22,7 +22,7 @@ RIM_REACH = 0.7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Bounds:
+class ShapeBounds:
     """Which shapes a fit may reach.
 
     Attributes
@@ -45,7 +45,7 @@ class Bounds:
     _locked: BoolArray
 
     @classmethod
-    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> Bounds:
+    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> ShapeBounds:
         """The bounds of one fit."""
         z, fixed = sheet.field.log10.ravel(), locked.ravel()
         start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)

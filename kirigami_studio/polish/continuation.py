@@ -39,13 +39,13 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.polish.bounds import RIM_REACH
 from kirigami_studio.polish.flat_sheet import can_have, first_sheet, uniform_sheet
-from kirigami_studio.polish.guide import TransportMap
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
-from kirigami_studio.polish.objective import Stage
+from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.preferences import Preference
-from kirigami_studio.polish.symmetry import SymmetricPose, shared_symmetries
+from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
+from kirigami_studio.polish.transport_map import TransportMap
 
 #: Largest grid that is searched directly; finer ones start from a search on about this many voids each way.
 COARSE = 10
@@ -90,27 +90,27 @@ FAIR_LOSS = 0.002
 ACCURACY = 0.002
 
 
-def cooled(even: float) -> tuple[Stage, ...]:
+def cooled(even: float) -> tuple[FitPhase, ...]:
     """Stages that begin with stiff, even panels and far parts that pull, and end with the weight ``even``.
 
     Found on 12 drawn shapes at 10 x 10: the mean CV of panel areas falls from 0.70 to 0.49 at the same exact IoU.
     """
     return (
-        Stage(8, 0.1, max(3e-2, even)),
-        Stage(8, 0.05, max(1e-2, even)),
-        Stage(8, 0.02, max(1e-3, even)),
-        Stage(16, FINE, even, junctions=junction_weight(even)),
+        FitPhase(8, 0.1, max(3e-2, even)),
+        FitPhase(8, 0.05, max(1e-2, even)),
+        FitPhase(8, 0.02, max(1e-3, even)),
+        FitPhase(16, FINE, even, junctions=junction_weight(even)),
     )
 
 
-def guided(even: float) -> tuple[Stage, ...]:
-    """The same with a guide for the inside that fades: for arms and hollows that trap the others."""
+def guided(even: float) -> tuple[FitPhase, ...]:
+    """The same with a transport map of the inside that fades: for arms and hollows that trap the others."""
     return (
-        Stage(7, 0.1, max(1e-2, even), 0.1),
-        Stage(7, 0.06, max(3e-3, even), 0.03),
-        Stage(7, 0.03, max(1e-3, even), 0.01),
-        Stage(7, 0.015, max(5e-4, even), 0.003),
-        Stage(14, FINE, even, junctions=junction_weight(even)),
+        FitPhase(7, 0.1, max(1e-2, even), 0.1),
+        FitPhase(7, 0.06, max(3e-3, even), 0.03),
+        FitPhase(7, 0.03, max(1e-3, even), 0.01),
+        FitPhase(7, 0.015, max(5e-4, even), 0.003),
+        FitPhase(14, FINE, even, junctions=junction_weight(even)),
     )
 
 
@@ -130,7 +130,7 @@ class Way(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class FitOptions:
     """What all fits of one request ask for beside the match.
 
     Attributes
@@ -140,7 +140,7 @@ class Wishes:
     free_rim : bool
     even : float
         Weight of even panels in the end.
-    symmetry : {"auto", "none", "mirror", "turn"}
+    symmetry : KeptSymmetry
         Which symmetries of the target sheets may keep.
     evenness_price : float
         IoU that a coefficient of variation of panel areas lower by 1 is worth.
@@ -156,7 +156,7 @@ class Wishes:
     least_panel: float = 0.0
     free_rim: bool = False
     even: float = 0.0
-    symmetry: str = "auto"
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO
     evenness_price: float = 0.0
     symmetry_price: float = FAIR_LOSS
     start: StartShape = RECTANGLE
@@ -170,7 +170,7 @@ def fit_shape(
     starts: Sequence[Sheet | RatioField] = (),
     effort: int = 1,
     cancel: Callable[[], bool] = lambda: False,
-    wishes: Wishes | None = None,
+    options: FitOptions | None = None,
 ) -> list[Fit]:
     """Search for the sheets whose outline at ``phi`` matches ``target`` best.
 
@@ -185,13 +185,13 @@ def fit_shape(
         Multiplies the number of rotations and of fits that are carried to the end.
     cancel : callable
         Asked before every step; the best so far are returned.
-    wishes : Wishes, optional
+    options : FitOptions, optional
 
     Returns
     -------
     fits : list of Fit
-        Those that are worth most first: exact IoU, less the prices of ``wishes``; at least one.  ``evaluations`` counts
-        the decodings of the whole search.
+        Those that are worth most first: exact IoU, less the prices of ``options``; at least one.  ``evaluations``
+        counts the decodings of the whole search.
 
     Raises
     ------
@@ -204,18 +204,18 @@ def fit_shape(
     phi = check_fit(phi, LAST_STEPS, NEAR)
     if not isinstance(effort, int) or isinstance(effort, bool) or not 1 <= effort <= LARGEST_EFFORT:
         raise UsageError("search.effort_out_of_range", most=LARGEST_EFFORT, effort=effort)
-    wishes = wishes or Wishes()
-    check_least(wishes.least_panel)
-    search = _Search(target, phi, cancel, wishes)
+    options = options or FitOptions()
+    check_least(options.least_panel)
+    search = _FitSearch(target, phi, cancel, options)
     guesses = [Sheet.of(start) for start in starts]
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
     if coarse == grid:
-        found += [search.from_guess(lifted(guess, grid, wishes.start)) for guess in guesses]
+        found += [search.from_guess(lifted(guess, grid, options.start)) for guess in guesses]
     best = search.completed(_best(found, KEPT * effort))
     if coarse != grid:
         raised = [look for one in best for look in search.lifted(one, grid)]
-        raised += [search.from_guess(lifted(guess, grid, wishes.start)) for guess in guesses]
+        raised += [search.from_guess(lifted(guess, grid, options.start)) for guess in guesses]
         best = search.completed(_best(raised, KEPT * effort))
     best = search.completed(best, FINE)
     best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
@@ -228,14 +228,14 @@ def fit_from_uniform(
     phi: float,
     angle: float,
     way: Way,
-    wishes: Wishes,
+    options: FitOptions,
     symmetry: Symmetry | None = None,
     cancel: Callable[[], bool] = lambda: False,
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
     the inside, growing out of a round shape, or shrinking from a thickened one.
     """
-    sheet, even = first_sheet(grid, wishes.start, free_rim=wishes.free_rim), wishes.even
+    sheet, even = first_sheet(grid, options.start, free_rim=options.free_rim), options.even
     pose, evaluations = _centred(sheet, phi, angle), 0
     route = _route(target, way, even)
     if route:
@@ -246,42 +246,45 @@ def fit_from_uniform(
             easy.outline,
             phi,
             0,
-            wishes.preference,
+            options.preference,
             easy.frame.inverse().compose(pose),
             cancel,
-            stages=[Stage(EASY_STEPS, FAR, weight)],
-            free_rim=wishes.free_rim,
+            phases=[FitPhase(EASY_STEPS, FAR, weight)],
+            free_rim=options.free_rim,
             symmetry=symmetry,
-            start_weight=wishes.start.weight,
+            start_weight=options.start.weight,
         )
         sheet, pose, evaluations = fit.sheet, easy.frame.compose(fit.pose), evaluations + fit.evaluations
     match way:
         case Way.COOLED:
-            stages = cooled(even)
+            phases = cooled(even)
         case Way.GUIDED:
-            stages = guided(even)
+            phases = guided(even)
         case Way.GROWN:
-            stages = (
-                Stage(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)),
-                Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
+            phases = (
+                FitPhase(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)),
+                FitPhase(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
             )
         case Way.THICKENED:
-            stages = (Stage(LOOK_STEPS, FAR, even), Stage(LAST_STEPS, FINE, even, junctions=junction_weight(even)))
+            phases = (
+                FitPhase(LOOK_STEPS, FAR, even),
+                FitPhase(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
+            )
     fit = polish(
         sheet,
         target,
         phi,
         0,
-        wishes.preference,
+        options.preference,
         pose,
         cancel,
-        stages=stages,
-        guide=TransportMap.of(sheet, target, angle) if way is Way.GUIDED else None,
-        least_panel=wishes.least_panel,
-        free_rim=wishes.free_rim,
+        phases=phases,
+        transport=TransportMap.of(sheet, target, angle) if way is Way.GUIDED else None,
+        least_panel=options.least_panel,
+        free_rim=options.free_rim,
         symmetry=symmetry,
-        second=wishes.second,
-        start_weight=wishes.start.weight,
+        second=options.second,
+        start_weight=options.start.weight,
     )
     return replace(fit, evaluations=evaluations + fit.evaluations)
 
@@ -306,12 +309,12 @@ def fit_by_stages(
     grid: tuple[int, int],
     phi: float,
     angle: float,
-    stages: Sequence[Stage],
+    phases: Sequence[FitPhase],
     free_rim: bool,
     symmetry: Symmetry | None,
     start: StartShape = RECTANGLE,
 ) -> Fit:
-    """One fit from the uniform sheet, turned by ``angle`` (radians), through ``stages`` that need no guide."""
+    """One fit from the uniform sheet, turned by ``angle`` (radians), through ``phases`` that need no transport map."""
     sheet = first_sheet(grid, start, free_rim=free_rim)
     pose = _centred(sheet, phi, angle)
     return polish(
@@ -320,7 +323,7 @@ def fit_by_stages(
         phi,
         0,
         pose=pose,
-        stages=stages,
+        phases=phases,
         free_rim=free_rim,
         symmetry=symmetry,
         start_weight=start.weight,
@@ -331,7 +334,7 @@ def first_angles(
     target: Outline,
     grid: tuple[int, int],
     effort: int = 1,
-    setting: str = "auto",
+    setting: KeptSymmetry = KeptSymmetry.AUTO,
     start: StartShape = RECTANGLE,
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.
@@ -367,7 +370,7 @@ def lifted(sheet: Sheet, grid: tuple[int, int], start: StartShape = RECTANGLE) -
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _FoundFit:
     """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has.
 
     ``small`` says that a panel is smaller than asked for; ``worth`` is the IoU less the price of uneven panels and what
@@ -382,54 +385,54 @@ class _Found:
     symmetry: Symmetry | None = None
 
 
-class _Search:
+class _FitSearch:
     """What all fits of one request share."""
 
-    def __init__(self, target: Outline, phi: float, cancel: Callable[[], bool], wishes: Wishes) -> None:
-        self.target, self.phi, self.cancel, self.wishes = target, phi, cancel, wishes
+    def __init__(self, target: Outline, phi: float, cancel: Callable[[], bool], options: FitOptions) -> None:
+        self.target, self.phi, self.cancel, self.options = target, phi, cancel, options
         self.evaluations = 0
 
-    def first_looks(self, grid: tuple[int, int], effort: int) -> list[_Found]:
+    def first_looks(self, grid: tuple[int, int], effort: int) -> list[_FoundFit]:
         """Fits from the uniform sheet: every rotation on every way, those that keep a symmetry first."""
         thick = thickened(self.target, MARGINS)
         ways = Way.suited_to(self.target)
-        found: list[_Found] = []
-        for angle, symmetry in first_angles(self.target, grid, effort, self.wishes.symmetry, self.wishes.start):
+        found: list[_FoundFit] = []
+        for angle, symmetry in first_angles(self.target, grid, effort, self.options.symmetry, self.options.start):
             for way in ways:
                 if found and self.cancel():
                     return found
                 found.append(self._from_uniform(grid, angle, way, symmetry))
-            sheet = first_sheet(grid, self.wishes.start, free_rim=self.wishes.free_rim)
+            sheet = first_sheet(grid, self.options.start, free_rim=self.options.free_rim)
             first = thick[0].frame.compose(_centred(sheet, self.phi, angle))
             if found and self.cancel():
                 return found
             found.append(self._along(thick, sheet, first, symmetry))
         return found
 
-    def _from_uniform(self, grid: tuple[int, int], angle: float, way: Way, symmetry: Symmetry | None) -> _Found:
-        fit = fit_from_uniform(self.target, grid, self.phi, angle, way, self.wishes, symmetry, self.cancel)
+    def _from_uniform(self, grid: tuple[int, int], angle: float, way: Way, symmetry: Symmetry | None) -> _FoundFit:
+        fit = fit_from_uniform(self.target, grid, self.phi, angle, way, self.options, symmetry, self.cancel)
         self.evaluations += fit.evaluations
         return self._found(fit, symmetry)
 
-    def _along(self, route: list[EasyShape], sheet: Sheet, pose: Similarity, symmetry: Symmetry | None) -> _Found:
+    def _along(self, route: list[EasyShape], sheet: Sheet, pose: Similarity, symmetry: Symmetry | None) -> _FoundFit:
         for easy in route:
             own = easy.frame.inverse().compose(pose)
             fit = self._polish(sheet, easy.outline, EASY_STEPS, own, FAR, symmetry, least_panel=0.0)
             sheet, pose = fit.sheet, easy.frame.compose(fit.pose)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry)
 
-    def from_guess(self, sheet: Sheet) -> _Found:
+    def from_guess(self, sheet: Sheet) -> _FoundFit:
         """A look from a given sheet, aligned by IoU; it keeps its symmetry."""
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry_of(sheet))
 
-    def plain(self, grid: tuple[int, int]) -> _Found:
+    def plain(self, grid: tuple[int, int]) -> _FoundFit:
         """The fit without a search, so that a search never ends with less."""
-        sheet = first_sheet(grid, self.wishes.start, free_rim=self.wishes.free_rim)
+        sheet = first_sheet(grid, self.options.start, free_rim=self.options.free_rim)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, PLAIN_STEPS, FINE, None)
 
-    def aligned(self, found: _Found) -> _Found:
+    def aligned(self, found: _FoundFit) -> _FoundFit:
         """The same sheet in the pose of largest IoU, which is what a score compares."""
         outline = deploy(found.fit.sheet).outline(self.phi)
         pose = align(outline, self.target.points)
@@ -438,38 +441,38 @@ class _Search:
             return found
         return replace(found, fit=replace(found.fit, pose=pose), iou=iou, worth=found.worth + iou - found.iou)
 
-    def lifted(self, coarse: _Found, grid: tuple[int, int]) -> list[_Found]:
+    def lifted(self, coarse: _FoundFit, grid: tuple[int, int]) -> list[_FoundFit]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
-        sheet = lifted(coarse.fit.sheet, grid, self.wishes.start)
+        sheet = lifted(coarse.fit.sheet, grid, self.options.start)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         routes = [[], thickened(self.target, LIFTED_MARGINS)]
         kept = coarse.symmetry
-        if kept is not None and not can_have(grid, self.wishes.start, kept):
+        if kept is not None and not can_have(grid, self.options.start, kept):
             kept = None
         return [self._along(route, sheet, pose, kept) for route in routes]
 
-    def completed(self, found: list[_Found], trust: float = NEAR) -> list[_Found]:
+    def completed(self, found: list[_FoundFit], trust: float = NEAR) -> list[_FoundFit]:
         """The fits carried to the end, best first."""
         ends = [self._fit(one.fit.sheet, one.fit.pose, LAST_STEPS, trust, one.symmetry) for one in found]
         return _best([_best([end, one], 1)[0] for end, one in zip(ends, found, strict=True)], len(ends))
 
-    def _fit(self, sheet: Sheet, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _Found:
-        least = self.wishes.least_panel
+    def _fit(self, sheet: Sheet, pose: Similarity, steps: int, trust: float, symmetry: Symmetry | None) -> _FoundFit:
+        least = self.options.least_panel
         return self._found(self._polish(sheet, self.target, steps, pose, trust, symmetry, least), symmetry)
 
-    def _found(self, fit: Fit, symmetry: Symmetry | None) -> _Found:
+    def _found(self, fit: Fit, symmetry: Symmetry | None) -> _FoundFit:
         deployment = deploy(fit.sheet)
         laid = fit.pose.apply(deployment.outline(self.phi))
-        iou, wishes = exact_iou(laid, self.target), self.wishes
+        iou, options = exact_iou(laid, self.target), self.options
         figures = evenness(deployment)
-        small = min(figures.least_edge, figures.least_neck) < wishes.least_panel
-        worth = iou - wishes.evenness_price * figures.area_cv
-        if wishes.second is not None and fit.second_pose is not None:
-            laid = fit.second_pose.apply(deployment.outline(wishes.second.phi))
-            worth -= wishes.second.weight * (1.0 - exact_iou(laid, wishes.second.outline))
+        small = min(figures.least_edge, figures.least_neck) < options.least_panel
+        worth = iou - options.evenness_price * figures.area_cv
+        if options.second is not None and fit.second_pose is not None:
+            laid = fit.second_pose.apply(deployment.outline(options.second.phi))
+            worth -= options.second.weight * (1.0 - exact_iou(laid, options.second.outline))
         if symmetry is not None:
-            worth += wishes.symmetry_price
-        return _Found(fit, iou, path_contact(deployment, self.phi) is None, small, worth, symmetry)
+            worth += options.symmetry_price
+        return _FoundFit(fit, iou, path_contact(deployment, self.phi) is None, small, worth, symmetry)
 
     def _polish(
         self,
@@ -481,34 +484,34 @@ class _Search:
         symmetry: Symmetry | None,
         least_panel: float,
     ) -> Fit:
-        wishes = self.wishes
+        options = self.options
         fit = polish(
             sheet,
             target,
             self.phi,
             steps,
-            wishes.preference,
+            options.preference,
             pose,
             self.cancel,
             trust=trust,
-            even=wishes.even,
+            even=options.even,
             least_panel=least_panel,
-            free_rim=wishes.free_rim,
+            free_rim=options.free_rim,
             symmetry=symmetry,
-            second=wishes.second,
-            start_weight=wishes.start.weight,
+            second=options.second,
+            start_weight=options.start.weight,
         )
         self.evaluations += fit.evaluations
         return fit
 
 
-def _best(found: list[_Found], count: int) -> list[_Found]:
+def _best(found: list[_FoundFit], count: int) -> list[_FoundFit]:
     """The ``count`` that are worth most, those with small panels and those that touch themselves last.
 
     Equal ones keep their order.
     """
 
-    def key(one: _Found) -> tuple[bool, bool, float]:
+    def key(one: _FoundFit) -> tuple[bool, bool, float]:
         return not one.clear, one.small, -one.worth
 
     return sorted(found, key=key)[:count]

@@ -171,7 +171,7 @@ def _trimmed(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callabl
     plain = Cover(fit, trim(deployment, target, phi, fit.pose, keep))
     if cancel():
         return plain
-    pose = _Promise(deployment, target, phi, keep).best_pose(fit.pose, cancel)
+    pose = TrimmedIoUEstimate(deployment, target, phi, keep).best_pose(fit.pose, cancel)
     try:
         moved = trim(deployment, target, phi, pose, keep)
     except KirigamiError:  # touching itself by rounding in one pose is no reason to lose the other
@@ -179,7 +179,7 @@ def _trimmed(fit: Fit, target: Outline, phi: float, keep: float, cancel: Callabl
     return plain if moved.iou <= plain.trim.iou else Cover(replace(fit, pose=pose), moved)
 
 
-class _Promise:
+class TrimmedIoUEstimate:
     """A quick estimate of the trimmed IoU in any pose: the target's part of the layout, and what has to stay outside.
 
     What stays is the inside of the sheet, whole, and a disc of material at every hinge of an edge panel.

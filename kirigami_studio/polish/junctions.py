@@ -32,7 +32,7 @@ def junction_weight(even: float) -> float:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Junctions:
+class JunctionAngles:
     """Angles between cuts and the cuts that they end on.
 
     Attributes
@@ -54,10 +54,10 @@ class Junctions:
     def __len__(self) -> int:
         return len(self.sine)
 
-    def shallower(self, sine: float) -> Junctions:
+    def shallower(self, sine: float) -> JunctionAngles:
         """Those whose sine is below ``sine``."""
         chosen: BoolArray = self.sine < sine
-        return Junctions(
+        return JunctionAngles(
             self.node[chosen], self.before[chosen], self.after[chosen], self.sine[chosen], self.slope[chosen]
         )
 
@@ -72,7 +72,7 @@ class Junctions:
         return along[0], along[1]
 
 
-def junctions(nodes: FloatArray, rows: int, columns: int) -> Junctions:
+def junctions(nodes: FloatArray, rows: int, columns: int) -> JunctionAngles:
     """Measure all 2 m n junctions inside an m x n grid with compact ``nodes`` (N, 2), unit cells."""
     node, before, after = _corners(rows, columns)
     first, second = nodes[before] - nodes[node], nodes[after] - nodes[node]
@@ -82,7 +82,7 @@ def junctions(nodes: FloatArray, rows: int, columns: int) -> Junctions:
     sine = (second[:, :1] * first[:, 1:] - second[:, 1:] * first[:, :1]) * scale
     by_before = np.stack([-second[:, 1], second[:, 0]], axis=1) * scale - sine / squared[0] * first
     by_after = np.stack([first[:, 1], -first[:, 0]], axis=1) * scale - sine / squared[1] * second
-    return Junctions(node, before, after, sine[:, 0], np.stack([by_before, by_after], axis=1))
+    return JunctionAngles(node, before, after, sine[:, 0], np.stack([by_before, by_after], axis=1))
 
 
 @lru_cache(maxsize=64)

@@ -22,7 +22,7 @@ from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
 from kirigami_studio.evaluate.evenness import panel_sizes
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.polish.bounds import Bounds
+from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.normal_equations import FLOOR
 from kirigami_studio.polish.objective import SETTLED, Look, Objective, Slopes
 
@@ -38,7 +38,7 @@ DAMPING, LARGEST_DAMPING, HARDEN = 1e-3, 1e3, 30.0
 #: Weight of missing sizes over the largest multiplier.
 OVER_MULTIPLIERS = 2.0
 #: How much conditions give way, relative to how far the sheet does.
-GIVING = 1e-10
+CONSTRAINT_RELAXATION = 1e-10
 #: Sizes that are no more than this (unit cells) above the least one are conditions from the start; rounds in which
 #: sizes and limits that a step violates by more than that become conditions: of hundreds, few do.
 TOUCHING, VIOLATED, ROUNDS = 1e-3, 1e-9, 6
@@ -67,7 +67,7 @@ class Sized:
 def with_kept_sizes(
     objective: Objective,
     state: FloatArray,
-    bounds: Bounds,
+    bounds: ShapeBounds,
     least: float,
     steps: int,
     cancel: Callable[[], bool],
@@ -81,7 +81,7 @@ def with_kept_sizes(
         Without a least size of its own.
     state : (S + P,) float
         Of a fit with a penalty on small sizes, or of any other sheet.
-    bounds : Bounds
+    bounds : ShapeBounds
     least : float, unit cells
     steps : int
         Most steps for match and sizes together; at least :data:`LEAST_STEPS`.
@@ -90,7 +90,7 @@ def with_kept_sizes(
     stiffness : (V, V) float, optional
         Second derivative of even panels at a state nearby, to be used again.
     """
-    descent = _Descent(objective, state, bounds, least, stiffness)
+    descent = _SizeDescent(objective, state, bounds, least, stiffness)
     first = descent.here
     if descent.is_kept:
         return Sized(first, True, 0, descent.evaluations)
@@ -100,11 +100,11 @@ def with_kept_sizes(
     return Sized(descent.here if descent.is_kept else first, descent.is_kept, descent.steps, descent.evaluations)
 
 
-class _Descent:
+class _SizeDescent:
     """The moving state."""
 
     def __init__(
-        self, objective: Objective, state: FloatArray, bounds: Bounds, least: float, stiffness: FloatArray | None
+        self, objective: Objective, state: FloatArray, bounds: ShapeBounds, least: float, stiffness: FloatArray | None
     ) -> None:
         self.objective, self.bounds, self.least = objective, bounds, least
         self.here, self._stiffness = objective.look(state), stiffness
@@ -121,7 +121,7 @@ class _Descent:
         for _ in range(steps):
             if cancel() or (sizes_alone and self.is_kept):
                 return
-            problem = _Problem.of(self, sizes_alone)
+            problem = _SizeProblem.of(self, sizes_alone)
             before = self.here
             while damping <= LARGEST_DAMPING:
                 step, multiplier = problem.step(damping)
@@ -176,7 +176,7 @@ class _Descent:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Problem:
+class _SizeProblem:
     """The quadratic problem at one state, by V variables and the P numbers of the poses.
 
     Attributes
@@ -188,7 +188,7 @@ class _Problem:
     added : (F,) float
         What a step has to add to them.
     shape : (S,) float
-    bounds : Bounds
+    bounds : ShapeBounds
     """
 
     gradient: FloatArray
@@ -196,10 +196,10 @@ class _Problem:
     slopes: FloatArray
     added: FloatArray
     shape: FloatArray
-    bounds: Bounds
+    bounds: ShapeBounds
 
     @classmethod
-    def of(cls, descent: _Descent, sizes_alone: bool) -> _Problem:
+    def of(cls, descent: _SizeDescent, sizes_alone: bool) -> _SizeProblem:
         """The problem where a descent is; with ``sizes_alone`` that of the shortest step."""
         objective, here, bounds = descent.objective, descent.here, descent.bounds
         model, basis, poses = objective.model, bounds.basis, objective.poses
@@ -216,7 +216,7 @@ class _Problem:
         model_here = objective.quadratic(here, derivatives)
         return cls(model_here.gradient, model_here.hessian, slopes, added, shape, bounds)._without_locked()
 
-    def _without_locked(self) -> _Problem:
+    def _without_locked(self) -> _SizeProblem:
         """The same with variables that cannot move at rest."""
         fixed = self.bounds.low == self.bounds.high
         if not fixed.any():
@@ -279,7 +279,9 @@ def _multipliers(compliance: FloatArray, asked: FloatArray) -> FloatArray:
     if not len(asked):
         return np.zeros(0)
     softened = compliance.copy()
-    softened[np.diag_indices_from(softened)] += GIVING * max(float(np.diagonal(compliance).mean()), 1e-12)
+    softened[np.diag_indices_from(softened)] += CONSTRAINT_RELAXATION * max(
+        float(np.diagonal(compliance).mean()), 1e-12
+    )
     lower = cholesky(softened, lower=True, check_finite=False)
     right = solve_triangular(lower, asked, lower=True, check_finite=False)
     found: FloatArray = nnls(lower.T, right, maxiter=10 * len(asked) + 100)[0]

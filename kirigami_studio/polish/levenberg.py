@@ -26,16 +26,16 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
-from kirigami_studio.polish.bounds import Bounds
+from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.even_panels import EvenPanels
-from kirigami_studio.polish.guide import Guide, TransportMap
 from kirigami_studio.polish.kept_sizes import with_kept_sizes
 from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
-from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, Look, Objective, SecondTerm, Slopes, Stage
+from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, FitPhase, Look, Objective, SecondTerm, Slopes
 from kirigami_studio.polish.panel_size import check_least
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.polish.transport_map import TransportMap, TransportTerm
 
 #: Even samples of the target boundary.
 SAMPLES = 256
@@ -95,8 +95,8 @@ def polish(
     *,
     trust: float = TRUST,
     even: float = 0.0,
-    stages: Sequence[Stage] = (),
-    guide: TransportMap | None = None,
+    phases: Sequence[FitPhase] = (),
+    transport: TransportMap | None = None,
     least_panel: float = 0.0,
     free_rim: bool = False,
     symmetry: Symmetry | None = None,
@@ -120,11 +120,11 @@ def polish(
     cancel : callable
         Asked before every step; the best so far is returned.
     trust, even
-        See :class:`Stage`: the fit's only stage, unless ``stages`` are given.
-    stages : sequence of Stage
+        See :class:`FitPhase`: the fit's only phase, unless ``phases`` are given.
+    phases : sequence of FitPhase
         What counts one after the other, instead of ``steps``, ``trust`` and ``even``.
-    guide : TransportMap, optional
-        Needed by stages with a guide.
+    transport : TransportMap, optional
+        Needed by phases with a transport map.
     least_panel : float, unit cells
         No panel edge or neck of the fitted sheet is smaller, wherever a sheet near by allows that; 0 for any size.
     free_rim : bool
@@ -156,13 +156,13 @@ def polish(
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
     model = OutlineModel.of(sheet, phi, free_rim, start_weight)
-    bounds = Bounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
+    bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
-    terms = PreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
-    stages = tuple(stages) or (Stage(steps, trust, even, least_gain=CONVERGED),)
-    even_panels = EvenPanels.of(sheet) if any(stage.even for stage in stages) else None
-    term = Guide(sheet, phi, guide) if guide is not None else None
+    terms = FieldPreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
+    phases = tuple(phases) or (FitPhase(steps, trust, even, least_gain=CONVERGED),)
+    even_panels = EvenPanels.of(sheet) if any(phase.even for phase in phases) else None
+    term = TransportTerm(sheet, phi, transport) if transport is not None else None
     boundary, least, excess = BoundaryTarget.of(target, SAMPLES), check_least(least_panel), check_excess(excess)
     state = np.concatenate([start, _numbers(pose)])
     also: SecondTerm | None = None
@@ -171,18 +171,18 @@ def polish(
         also = SecondTerm(model.at(second.phi), BoundaryTarget.of(second.outline, SAMPLES), second.weight)
         state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
-    for stage in stages:
-        objective = Objective(model, boundary, terms, stage, least, excess, even_panels, term, also)
+    for phase in phases:
+        objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also)
         descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
-        until = descent.steps + stage.steps
-        # Where panels are too small, the last half of the last stage is left for their bound.
-        half = until - stage.steps // 2 if least and stage is stages[-1] else until
+        until = descent.steps + phase.steps
+        # Where panels are too small, the last half of the last phase is left for their bound.
+        half = until - phase.steps // 2 if least and phase is phases[-1] else until
         if descent.run(half, cancel) and not len(descent.here.small.size):
             descent.run(until, cancel)
     assert descent is not None
     here, taken, evaluations = descent.here, descent.steps, descent.evaluations
-    if least and any(stage.steps for stage in stages):
-        bare, left = Objective(model, boundary, terms, stages[-1], 0.0, excess, even_panels, term, also), until - taken
+    if least and any(phase.steps for phase in phases):
+        bare, left = Objective(model, boundary, terms, phases[-1], 0.0, excess, even_panels, term, also), until - taken
         sized = with_kept_sizes(bare, here.state, bounds, least, left, cancel, descent.stiffness)
         here, taken, evaluations = sized.look, taken + sized.steps, evaluations + sized.evaluations
     poses = here.state[start.size :]
@@ -236,7 +236,7 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(self, objective: Objective, state: FloatArray, bounds: Bounds) -> None:
+    def __init__(self, objective: Objective, state: FloatArray, bounds: ShapeBounds) -> None:
         self.objective, self._bounds, self._poses = objective, bounds, objective.poses
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.
@@ -283,7 +283,7 @@ class _Descent:
                     self.damping = max(eased, SMALLEST_DAMPING)
                     before, self.here = self.here.cost, there
                     self.steps += 1
-                    return before - there.cost > self.objective.stage.least_gain * before
+                    return before - there.cost > self.objective.phase.least_gain * before
             self.damping *= harden
             stiffer *= harden
             harden *= 2.0

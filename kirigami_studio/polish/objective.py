@@ -6,10 +6,10 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
-terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a round
-start, see ``chords``; and, where a stage of the fit asks for them, even panels, see ``even_panels``, none large, see
-``large_panels``, a guide for the inside, see ``guide``, and open junctions, see ``junctions``.  A second target has
-residuals of the same kind at its own angle, in a pose of its own, times its weight.
+terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a
+round start, see ``chords``; and, where a phase of the fit asks for them, even panels, see ``even_panels``, none large,
+see ``large_panels``, a transport map of the inside, see ``transport_map``, and open junctions, see ``junctions``.  A
+second target has residuals of the same kind at its own angle, in a pose of its own, times its weight.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.even_panels import EvenPanels
-from kirigami_studio.polish.guide import Guide
-from kirigami_studio.polish.junctions import OPEN, Junctions, junctions
+from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
-from kirigami_studio.polish.preferences import PreferenceTerms
-from kirigami_studio.polish.sensitivity import Decoded, NodeMotion, OutlineModel
+from kirigami_studio.polish.preferences import FieldPreferenceTerms
+from kirigami_studio.polish.sensitivity import CompactLayout, NodeMotion, OutlineModel
+from kirigami_studio.polish.transport_map import TransportTerm
 
 #: Distance (unit-area lengths) beyond which a residual counts linearly when nothing else is asked for.
 #: Found on 50 outlines, drawn ones and those of random fields: 0.003 to 0.03 differ by 0.002 in mean exact IoU.
 TRUST = 0.005
 
-#: A step that lowers the cost by no more than this share ends a fit: one for the match alone, and a stage of one with
+#: A step that lowers the cost by no more than this share ends a fit: one for the match alone, and a phase of one with
 #: even panels.  In whole runs for 4 shapes the larger share saves a quarter of the decodings; the mean IoU of the first
 #: designs stays within 0.0002.  Where only the match counts it would take 0.0001 off an IoU of 0.9987.
 CONVERGED, SETTLED = 1e-4, 2e-3
@@ -71,7 +71,7 @@ class SecondTerm:
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class FitPhase:
     """What counts for some steps of a fit.
 
     Attributes
@@ -83,10 +83,10 @@ class Stage:
         area.
     even : float
         Weight of even panels, see ``even_panels``.
-    guide : float
-        Weight of the guide for the inside, see ``guide``.
+    transport : float
+        Weight of the transport map of the inside, see ``transport_map``.
     least_gain : float
-        The stage ends with a step that lowers the cost by no more than this share.
+        The phase ends with a step that lowers the cost by no more than this share.
     junctions : float
         Weight of cuts that meet at shallow angles, see ``junctions``.
     """
@@ -94,13 +94,13 @@ class Stage:
     steps: int
     trust: float = TRUST
     even: float = 0.0
-    guide: float = 0.0
+    transport: float = 0.0
     least_gain: float = SETTLED
     junctions: float = 0.0
 
 
 #: Nothing but the match and what the ratios prefer.
-MATCH_ALONE = Stage(0)
+MATCH_ALONE = FitPhase(0)
 
 
 class Objective:
@@ -114,16 +114,16 @@ class Objective:
     ----------
     model : OutlineModel
     target : BoundaryTarget
-    terms : PreferenceTerms
-    stage : Stage
+    terms : FieldPreferenceTerms
+    phase : FitPhase
     least : float, unit cells
         Panel edges and necks should not be smaller; 0 for any size.
     excess : float, 0..1
         Weight of what sticks out of the target: 1 unless it will be trimmed.
     even : EvenPanels, optional
-        Needed where the stage asks for even panels.
-    guide : Guide, optional
-        Needed where the stage asks for a guide.
+        Needed where the phase asks for even panels.
+    transport : TransportTerm, optional
+        Needed where the phase asks for a transport map.
     second : SecondTerm, optional
 
     Attributes
@@ -136,22 +136,22 @@ class Objective:
         self,
         model: OutlineModel,
         target: BoundaryTarget,
-        terms: PreferenceTerms,
-        stage: Stage = MATCH_ALONE,
+        terms: FieldPreferenceTerms,
+        phase: FitPhase = MATCH_ALONE,
         least: float = 0.0,
         excess: float = 1.0,
         even: EvenPanels | None = None,
-        guide: Guide | None = None,
+        transport: TransportTerm | None = None,
         second: SecondTerm | None = None,
     ) -> None:
-        self.model, self.target, self.terms, self.stage, self.least = model, target, terms, stage, least
-        self.even = even if stage.even else None
-        self.guide = guide if stage.guide else None
+        self.model, self.target, self.terms, self.phase, self.least = model, target, terms, phase, least
+        self.even = even if phase.even else None
+        self.transport = transport if phase.transport else None
         self.second, self.poses = second, POSE if second is None else 2 * POSE
-        self._each_junction = stage.junctions / (2 * model.voids)
+        self._each_junction = phase.junctions / (2 * model.voids)
         self._each_large = 0.0
         if self.even is not None:
-            self._each_large = stage.even * self.even.large / ((model.rows + 1) * (model.columns + 1))
+            self._each_large = phase.even * self.even.large / ((model.rows + 1) * (model.columns + 1))
         self.one_sided = None
         if check_excess(excess) < 1.0:
             self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
@@ -165,29 +165,29 @@ class Objective:
         matching = matched(outline, self.target)
         if self.one_sided is not None:
             matching = self.one_sided.weighed(matching, outline, self.target)
-        cost = matching.cost(self.stage.trust)
+        cost = matching.cost(self.phase.trust)
         second = None
         if self.second is not None:
             placed = _posed(self.second.model.outline_of(nodes), second_pose)
             second = SecondLook(placed, matched(placed, self.second.target))
-            cost += self.second.weight * second.matching.cost(self.stage.trust)
+            cost += self.second.weight * second.matching.cost(self.phase.trust)
         cost += self.terms.value(shape[: self.model.voids])
         if self.even is not None:
-            cost += self.stage.even * self.even.value(nodes)
+            cost += self.phase.even * self.even.value(nodes)
         excess = 0.0
         if self.model.chords is not None:
             excess = self.model.chords.excess(self.model.positions(shape))
             cost += self.model.chords.weight * excess**2
         gaps = None
-        if self.guide is not None:
-            gaps = self.guide.gaps(nodes, _similarity(pose))
-            cost += self.stage.guide * float(np.square(gaps).sum()) / len(gaps)
+        if self.transport is not None:
+            gaps = self.transport.gaps(nodes, _similarity(pose))
+            cost += self.phase.transport * float(np.square(gaps).sum()) / len(gaps)
         small = NO_SIZES
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
         shallow = NO_JUNCTIONS
-        if self.stage.junctions:
+        if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
             cost += self._each_junction * float(np.square(shallow.sine - OPEN).sum())
         large = NO_AREAS
@@ -212,9 +212,9 @@ class Objective:
         if self.even is not None and stiffness is None:
             stiffness = motion.curvature(self.even.curvature(look.decoded.nodes), basis)
         centroids = None
-        if self.guide is not None:
-            posed = _posed(self.guide.centroids(look.decoded.nodes), pose)
-            moved = self.guide.slopes(motion.derivative(basis))
+        if self.transport is not None:
+            posed = _posed(self.transport.centroids(look.decoded.nodes), pose)
+            moved = self.transport.slopes(motion.derivative(basis))
             centroids = _state_derivative(posed, moved, pose, 0, self.poses)
         outline = _state_derivative(look.outline, basis.reduced(motion.outline()), pose, 0, self.poses)
         if self.second is not None and look.second is not None:
@@ -229,7 +229,7 @@ class Objective:
         shape, basis, own = self._parts(look.state)[0], slopes.basis, inner[: -self.poses, : -self.poses]
         own += basis.matrix(*self.terms.curvature(shape[: self.model.voids]))
         if self.even is not None and slopes.stiffness is not None:
-            own += self.stage.even * slopes.stiffness
+            own += self.phase.even * slopes.stiffness
         priced = self._priced(look)
         if priced is not None:
             grown = slopes.motion.slopes(*priced[1], basis)
@@ -238,19 +238,19 @@ class Objective:
             slope = basis.reduced(self._cut_by_chords(self.model.chords, shape))
             own += 2.0 * self.model.chords.weight * np.outer(slope, slope)
         if look.gaps is not None and slopes.centroids is not None:
-            inner += 2.0 * self.stage.guide / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
+            inner += 2.0 * self.phase.transport / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
 
     def gradient(self, look: Look, slopes: Slopes) -> FloatArray:
         """Derivative (V + P,) of the cost, P numbers of poses, from the derivatives at the state or nearby."""
-        trust, shape = self.stage.trust, self._parts(look.state)[0]
+        trust, shape = self.phase.trust, self._parts(look.state)[0]
         pull = look.matching.slope(look.outline, trust)
         if self.second is not None and look.second is not None:
             second = look.second.matching.slope(look.second.outline, trust)
             pull = np.concatenate([pull, self.second.weight * second])
         gradient: FloatArray = pull @ slopes.outline
         if look.gaps is not None and slopes.centroids is not None:
-            gradient += 2.0 * self.stage.guide / len(look.gaps) * (look.gaps.ravel() @ slopes.centroids)
+            gradient += 2.0 * self.phase.transport / len(look.gaps) * (look.gaps.ravel() @ slopes.centroids)
         by_shape = np.zeros(shape.size)
         by_shape[: self.model.voids] = self.terms.gradient(shape[: self.model.voids])
         by_nodes = self._force(look)
@@ -269,7 +269,7 @@ class Objective:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those
         at the second target's angle follow the first.
         """
-        trust = self.stage.trust
+        trust = self.phase.trust
         spread = look.matching.curvature(len(look.outline), trust)
         if self.second is None or look.second is None:
             return spread
@@ -279,7 +279,7 @@ class Objective:
     def _force(self, look: Look) -> FloatArray | None:
         """Derivative (N, 2) of the terms on panels by the compact nodes; None where there are none."""
         nodes = look.decoded.nodes
-        force = self.stage.even * self.even.pull(nodes) if self.even is not None else None
+        force = self.phase.even * self.even.pull(nodes) if self.even is not None else None
         priced = self._priced(look)
         if priced is not None:
             grown = np.stack([2.0 * (priced[0] @ along) for along in priced[1]], axis=1)
@@ -321,7 +321,7 @@ class Slopes:
     stiffness : (V, V) float or None
         Second derivative of the term for even panels with weight 1, there or nearby.
     centroids : (2 P, V + 4) float or None
-        Of the panel centroids in the target's frame, where there is a guide.
+        Of the panel centroids in the target's frame, where there is a transport map.
     """
 
     basis: Basis
@@ -347,7 +347,7 @@ class Look:
     ----------
     state : (S + P,) float
         P is 4, or 8 where there is a second target.
-    decoded : Decoded
+    decoded : CompactLayout
         The compact sheet.
     outline : (L, 2) float
         The layout's outline in the target's frame.
@@ -355,24 +355,24 @@ class Look:
     second : SecondLook or None
     small : PanelSizes
         Edges and necks below the least size.
-    shallow : Junctions
-        Where cuts meet at shallow angles, if the stage asks for open junctions.
+    shallow : JunctionAngles
+        Where cuts meet at shallow angles, if the phase asks for open junctions.
     large : PanelAreas
-        Panels that are large, if the stage asks for even ones.
+        Panels that are large, if the phase asks for even ones.
     excess : float
         Share of a round start's area that chords cut off beyond what is allowed.
     gaps : (P, 2) float or None
-        From each panel centroid's image to the centroid, where there is a guide.
+        From each panel centroid's image to the centroid, where there is a transport map.
     cost : float
     """
 
     state: FloatArray
-    decoded: Decoded
+    decoded: CompactLayout
     outline: FloatArray
     matching: Matching
     second: SecondLook | None
     small: PanelSizes
-    shallow: Junctions
+    shallow: JunctionAngles
     large: PanelAreas
     excess: float
     gaps: FloatArray | None

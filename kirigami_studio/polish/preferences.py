@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import astuple, dataclass
+from enum import StrEnum
 from functools import lru_cache
 
 import numpy as np
@@ -42,17 +43,25 @@ class Preference:
             )
 
 
-#: What a person may prefer, from the best match to the lowest total variation: each weighs it ten times as much as the
-#: one before.
+class FitPreference(StrEnum):
+    """Names of preferences, from the best match to the lowest total variation, on the command line and in files."""
+
+    ACCURACY = "accuracy"
+    BALANCED = "balanced"
+    REGULARITY = "regularity"
+    CALM = "calm"
+
+
+#: The weights by name: each weighs the total variation ten times as much as the one before.
 PREFERENCES = {
-    "accuracy": Preference(total_variation=1e-6),
-    "balanced": Preference(),
-    "regularity": Preference(total_variation=1e-4),
-    "calm": Preference(total_variation=1e-3),
+    FitPreference.ACCURACY: Preference(total_variation=1e-6),
+    FitPreference.BALANCED: Preference(),
+    FitPreference.REGULARITY: Preference(total_variation=1e-4),
+    FitPreference.CALM: Preference(total_variation=1e-3),
 }
 
 
-class PreferenceTerms:
+class FieldPreferenceTerms:
     """The terms of one fit: value, gradient and curvature at any field.
 
     Parameters

@@ -65,10 +65,10 @@ class _Plan:
     void: IntArray
     pair: IntArray
     h_count: int
-    h_on_v: _Rests
-    v_on_h: _Rests
-    v_under_h: _Rests
-    h_under_v: _Rests
+    h_on_v: TwoEntryRows
+    v_on_h: TwoEntryRows
+    v_under_h: TwoEntryRows
+    h_under_v: TwoEntryRows
     slot: IntArray
     around: tuple[IntArray, IntArray, IntArray]
     band: Band
@@ -85,7 +85,7 @@ class _Plan:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Rests:
+class TwoEntryRows:
     """A sparse matrix with at most two entries a row, as gathers: entries that are missing have weight 0.
 
     Attributes
@@ -99,7 +99,7 @@ class _Rests:
     column: IntArray
 
     @classmethod
-    def of(cls, entry: IntArray, row: IntArray, column: IntArray, rows: int) -> _Rests:
+    def of(cls, entry: IntArray, row: IntArray, column: IntArray, rows: int) -> TwoEntryRows:
         """The table of a matrix given entry by entry."""
         order = np.argsort(row, kind="stable")
         entry, row, column = entry[order], row[order], column[order]
@@ -152,10 +152,10 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
         void=void,
         pair=np.argsort(void, kind="stable").reshape(-1, 2).T,
         h_count=h,
-        h_on_v=_Rests.of(*h_to_v, h),
-        v_on_h=_Rests.of(*v_to_h, node.size - h),
-        v_under_h=_Rests.of(h_to_v[0], h_to_v[2], h_to_v[1], node.size - h),
-        h_under_v=_Rests.of(v_to_h[0], v_to_h[2], v_to_h[1], h),
+        h_on_v=TwoEntryRows.of(*h_to_v, h),
+        v_on_h=TwoEntryRows.of(*v_to_h, node.size - h),
+        v_under_h=TwoEntryRows.of(h_to_v[0], h_to_v[2], h_to_v[1], node.size - h),
+        h_under_v=TwoEntryRows.of(v_to_h[0], v_to_h[2], v_to_h[1], h),
         slot=slot,
         around=(h_to_v[0][first], v_to_h[0][second], around),
         band=Band.of(h_to_v[1][first], v_to_h[2][second], h),
@@ -248,7 +248,7 @@ class OutlineModel:
         decoded = self.decoded(shape)
         return self.outline_of(decoded.nodes), self.node_motion(decoded).outline()
 
-    def node_motion(self, decoded: Decoded) -> NodeMotion:
+    def node_motion(self, decoded: CompactLayout) -> NodeMotion:
         """How all compact nodes move with the shape."""
         plan, width = self._plan, self.columns + 1
         coupling = np.bincount(plan.around[2], plan.paths(decoded.weights), 2 * self.rows * width * width)
@@ -258,7 +258,7 @@ class OutlineModel:
             share = self._table.share[:, self._table.mouths]
         known = self._known(decoded.weights) @ share
         return NodeMotion(
-            self, _System(decoded.weights, factor), self._pull(decoded.shape, decoded.nodes), along, share, known
+            self, _FactoredField(decoded.weights, factor), self._pull(decoded.shape, decoded.nodes), along, share, known
         )
 
     def _along(self, shape: FloatArray) -> FloatArray:
@@ -285,7 +285,7 @@ class OutlineModel:
     def _deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
         return rotate(even, -self._half) + rotate(whole - even, self._half)
 
-    def decoded(self, shape: FloatArray) -> Decoded:
+    def decoded(self, shape: FloatArray) -> CompactLayout:
         """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
         given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
@@ -297,7 +297,7 @@ class OutlineModel:
         nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
-        return Decoded(shape, nodes, flat)
+        return CompactLayout(shape, nodes, flat)
 
     def _known(self, weights: FloatArray) -> FloatArray:
         """What free nodes get from given ones: (K, G)."""
@@ -306,17 +306,17 @@ class OutlineModel:
         known = np.bincount(row * shape[1] + column, weights[entry], shape[0] * shape[1])
         return np.asarray(known, dtype=np.float64).reshape(shape)
 
-    def _adjoint(self, reach: FloatArray, system: _System) -> FloatArray:
+    def _adjoint(self, reach: FloatArray, system: _FactoredField) -> FloatArray:
         """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
         return self._backward(np.ascontiguousarray(reach[:, self._plan.free].T), system).T
 
-    def _forward(self, right: FloatArray, system: _System) -> FloatArray:
+    def _forward(self, right: FloatArray, system: _FactoredField) -> FloatArray:
         """A^-1 times ``right`` (K, D), both over the free nodes."""
         plan, h = self._plan, self._plan.h_count
         at_h = system.factor.solve(right[:h] + plan.h_on_v.times(system.weights, right[h:]))
         return np.concatenate([at_h, right[h:] + plan.v_on_h.times(system.weights, at_h)])
 
-    def _backward(self, right: FloatArray, system: _System) -> FloatArray:
+    def _backward(self, right: FloatArray, system: _FactoredField) -> FloatArray:
         """The transpose of A^-1 times ``right`` (K, D), both over the free nodes."""
         plan, h = self._plan, self._plan.h_count
         at_h = system.factor.solve_transposed(right[:h] + plan.h_under_v.times(system.weights, right[h:]))
@@ -324,7 +324,7 @@ class OutlineModel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Decoded:
+class CompactLayout:
     """The compact sheet of one shape.
 
     Attributes
@@ -360,7 +360,7 @@ class NodeMotion:
     """
 
     model: OutlineModel
-    system: _System
+    system: _FactoredField
     pull: FloatArray
     along: FloatArray
     share: FloatArray
@@ -479,7 +479,7 @@ class NodeMotion:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _System:
+class _FactoredField:
     """One field's stencil weights (2 K + 1,), the last of them 0, and the factored system of the h nodes."""
 
     weights: FloatArray

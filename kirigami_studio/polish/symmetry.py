@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 
 from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.lattice.symmetry import Symmetry
@@ -21,12 +22,17 @@ from kirigami_studio.outlines.symmetry import (
 )
 from kirigami_studio.polish.flat_sheet import can_have
 
-#: What designs may have to keep: the symmetries that a target shows within a tolerance, none, or the mirror axis or
-#: the turn that a rough sketch may have meant.
-SYMMETRIES = ("auto", "none", "mirror", "turn")
-
 #: A sketch has a second axis when both overlap this much.
 BOTH_MEANT = 0.95
+
+
+class KeptSymmetry(StrEnum):
+    """What designs have to keep; the values are the names on the command line and in files."""
+
+    AUTO = "auto"  #: the symmetries that the target shows within a tolerance
+    NONE = "none"
+    MIRROR = "mirror"  #: the axis that a rough sketch may have meant
+    TURN = "turn"  #: the turn that it may have meant
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +67,7 @@ class SymmetricPose:
 
 
 def shared_symmetries(
-    target: Outline, grid: tuple[int, int], setting: str = "auto", start: StartShape = RECTANGLE
+    target: Outline, grid: tuple[int, int], setting: KeptSymmetry = KeptSymmetry.AUTO, start: StartShape = RECTANGLE
 ) -> list[SymmetricPose]:
     """Symmetries of ``target`` that sheets of ``grid`` and ``start`` have too, at every angle, the most specific first.
 
@@ -73,22 +79,22 @@ def shared_symmetries(
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        A symmetry is asked for that the grid or the start does not have, or there is no such setting.
+        A symmetry is asked for that the grid or the start does not have.
     """
     found: list[SymmetricPose] = []
     for pose in symmetric_poses(target, setting):
         if pose.fits(grid, start) and not any(pose.is_part_of(other) for other in found):
             found.append(pose)
-    if not found and setting in ("mirror", "turn"):
+    if not found and setting in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         rows, columns = grid
         if not start.is_plain:
             raise UsageError("symmetry.not_of_start", name=start.name, rows=rows, columns=columns, symmetry=setting)
-        code = "symmetry.no_mirror_on_grid" if setting == "mirror" else "symmetry.no_turn_on_grid"
+        code = "symmetry.no_mirror_on_grid" if setting == KeptSymmetry.MIRROR else "symmetry.no_turn_on_grid"
         raise UsageError(code, rows=rows, columns=columns, more=columns + 1)
     return found
 
 
-def symmetric_poses(target: Outline, setting: str = "auto") -> tuple[SymmetricPose, ...]:
+def symmetric_poses(target: Outline, setting: KeptSymmetry = KeptSymmetry.AUTO) -> tuple[SymmetricPose, ...]:
     """All symmetric set-ups that are worth trying for a target, the most specific first, whatever the grid.
 
     Axes that a turn of the target onto itself carries to each other count once: a star has one axis, a hexagon two
@@ -97,7 +103,7 @@ def symmetric_poses(target: Outline, setting: str = "auto") -> tuple[SymmetricPo
     Parameters
     ----------
     target : Outline
-    setting : {"auto", "none", "mirror", "turn"}
+    setting : KeptSymmetry
         ``auto``: symmetries with an overlap of at least ``TOLERANCE``; ``mirror`` and ``turn``: the best axis or turn,
         if there is any that overlaps by ``LEAST_MEANT``; ``none``: nothing.
 
@@ -105,16 +111,12 @@ def symmetric_poses(target: Outline, setting: str = "auto") -> tuple[SymmetricPo
     ------
     TargetError
         A symmetry is asked for and the target is far from any.
-    UsageError
-        There is no such setting.
     """
-    if setting not in SYMMETRIES:
-        raise UsageError("request.unknown_symmetry", symmetry=setting, choices=", ".join(SYMMETRIES))
     poses: list[SymmetricPose] = []
-    if setting in ("auto", "mirror"):
-        poses += _mirror_poses(target, forced=setting == "mirror")
-    if setting in ("auto", "turn"):
-        poses += _turn_poses(target, forced=setting == "turn")
+    if setting in (KeptSymmetry.AUTO, KeptSymmetry.MIRROR):
+        poses += _mirror_poses(target, forced=setting == KeptSymmetry.MIRROR)
+    if setting in (KeptSymmetry.AUTO, KeptSymmetry.TURN):
+        poses += _turn_poses(target, forced=setting == KeptSymmetry.TURN)
     return tuple(sorted(poses, key=lambda pose: -len(pose.symmetry.moves)))
 
 

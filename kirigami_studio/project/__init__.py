@@ -3,7 +3,7 @@
 Vocabulary
 ----------
 document
-    The frozen value of everything a person made: target, settings, candidates, the chosen one, fabrication.
+    The frozen value of everything the user made: target, settings, candidates, the chosen one, fabrication.
 edit
     A document with the label of what led to it, as the Undo menu shows it.
 history

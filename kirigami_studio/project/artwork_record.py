@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from PIL import Image
 
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.project.json_record import Record, one_of, read_json
 
@@ -56,8 +56,8 @@ def artwork_of(members: Mapping[str, bytes]) -> Artwork | None:
         record = Record(read_json(members[RECORD], RECORD), RECORD)
         laid = Laid(
             _picture(record, members),
-            one_of(State, record.text("state")),
-            one_of(Fitting, record.text("fitting")),
+            one_of(SheetState, record.text("state")),
+            one_of(PictureFit, record.text("fitting")),
             record.number("scale"),
             record.number("turn"),
             record.pair("shift"),

@@ -15,7 +15,7 @@ from kirigami_studio.project.design_facts import joined_provenance, with_run
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit, set_candidates
 from kirigami_studio.project.labels import Label, cleaned_name, cleaned_note, run_labels
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.settings.design import DesignSettings
 
 #: Designs that a project collects at most; one run may bring as many.
 LARGEST_COLLECTION = 1024

@@ -1,4 +1,4 @@
-"""Document <-> members of a project file: JSON for what a person may read, one array for the ratios."""
+"""Document <-> members of a project file: JSON for what the user may read, one array for the ratios."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.evenness import Evenness, evenness
 from kirigami_studio.evaluate.feasibility import Contact
-from kirigami_studio.evaluate.score import Score
-from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
+from kirigami_studio.evaluate.score import Score, confirmed
+from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, confirmed_match
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
-from kirigami_studio.export.paper import NO_PAPER
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.options import COPY_GAP_MM, ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.lattice.deployment import check_phi, deploy
@@ -32,10 +31,11 @@ from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.project.document import Document, Mark, Void
-from kirigami_studio.project.json_record import Record, one_of, read_json
+from kirigami_studio.project.json_record import Record, one_of, read_json, settings_json, settings_values
 from kirigami_studio.project.labels import Label
 from kirigami_studio.project.migrations import Members
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"
@@ -96,24 +96,25 @@ def decode(members: Members) -> Document:
     seconds = _second_targets_of(design)
     rows, columns = _whole_pair(settings, "grid")
     target = _outline(design.record("target")) if design.holds("target") else None
+    candidates = [
+        replace(
+            _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
+            made_with=_run(record, runs),
+            second=_second(record, seconds),
+        )
+        for record, field in zip(records, fields, strict=True)
+    ]
     return Document(
         target=target,
         drawing=_drawing(design),
         guides=_guides(design),
         settings=DesignSettings(
-            **_plain_fields(settings, DesignSettings),
+            **settings_values(settings, DesignSettings),
             grid=(rows, columns),
             start=_start(settings),
             second=_second_target(settings, seconds),
         ),
-        candidates=tuple(
-            replace(
-                _candidate(record, field, next(sampled) if record.flag("sampled") else None, target),
-                made_with=_run(record, runs),
-                second=_second(record, seconds),
-            )
-            for record, field in zip(records, fields, strict=True)
-        ),
+        candidates=_confirmed(candidates, target),
         chosen=design.whole("chosen") if design.holds("chosen") else None,
         fabrication=_fabrication(design.record("fabrication")),
         provenance=design.texts("provenance"),
@@ -129,8 +130,7 @@ def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dic
     projects stay as they were.
     """
     start = settings.start
-    entries = asdict(replace(settings, start=RECTANGLE, second=None))
-    del entries["start"], entries["second"]
+    entries = {"grid": list(settings.grid), **settings_json(settings)}
     if settings.second is not None:
         entries["second"] = {"number": seconds.index(settings.second)}
     if not start.is_plain:
@@ -258,61 +258,22 @@ def _nodes(record: Record) -> Nodes:
 
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
-    return {
-        "width_mm": settings.width_mm,
-        "material": settings.material,
-        "connector_mm": settings.connector_mm,
-        "kerf_mm": settings.kerf_mm,
-        "options": {
-            "style": options.style.value,
-            "order": options.order.value,
-            "tabs": options.tabs,
-            "tab_mm": options.tab_mm,
-            "hinge_mm": [list(pair) for pair in options.hinge_mm],
-            "removed": list(options.removed),
-            # Not there for one sheet, so that such projects stay as they were.
-            **({} if _single(options) else {"copies": options.copies, "copy_gap_mm": options.copy_gap_mm}),
-        },
-        "profile": settings.profile,
-        "dxf_version": settings.dxf_version,
-        # Not there unless chosen, so that other projects stay as they were.
-        **({} if settings.opened_mm is None else {"opened_mm": settings.opened_mm}),
-        **({} if settings.paper == NO_PAPER else {"paper": settings.paper}),
-        **({"markers": True} if settings.markers else {}),
-        **({"engrave": True} if settings.engrave else {}),
-        "own": None if settings.own is None else asdict(settings.own),
-    }
+    lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
+    own = None if settings.own is None else asdict(settings.own)
+    return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
 
 
 def _fabrication(record: Record) -> FabricationSettings:
     options = record.record("options")
     return FabricationSettings(
-        width_mm=record.number("width_mm"),
-        opened_mm=record.number("opened_mm") if record.holds("opened_mm") else None,
-        material=record.text("material"),
-        connector_mm=record.number("connector_mm") if record.holds("connector_mm") else None,
-        kerf_mm=record.number("kerf_mm") if record.holds("kerf_mm") else None,
+        **settings_values(record, FabricationSettings),
         options=CutOptions(
-            style=one_of(ConnectorStyle, options.text("style")),
-            order=one_of(CutOrder, options.text("order")),
-            tabs=options.whole("tabs"),
-            tab_mm=options.number("tab_mm"),
+            **settings_values(options, CutOptions),
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
-            copies=options.whole("copies") if options.holds("copies") else 1,
-            copy_gap_mm=options.number("copy_gap_mm") if options.holds("copy_gap_mm") else COPY_GAP_MM,
         ),
-        profile=record.text("profile"),
-        dxf_version=record.text("dxf_version"),
-        paper=record.text("paper") if record.holds("paper") else NO_PAPER,
-        markers=record.flag("markers") if record.holds("markers") else False,
-        engrave=record.flag("engrave") if record.holds("engrave") else False,
         own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
     )
-
-
-def _single(options: CutOptions) -> bool:
-    return (options.copies, options.copy_gap_mm) == (1, COPY_GAP_MM)
 
 
 def _hinge(entry: object) -> int:
@@ -330,7 +291,7 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     return _hinge(hinge), float(width)
 
 
-def _plain_fields(record: Record, kind: type[DesignSettings | Material | Score | Evenness]) -> dict[str, Any]:
+def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
     plain = {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
@@ -400,6 +361,22 @@ def _candidate(record: Record, field: RatioField, sampled: RatioField | None, ta
         trim=_trim(record.record("trim"), target) if record.holds("trim") and target is not None else None,
         variant=record.text("variant"),
         origin=one_of(Origin, record.text("origin")),
+    )
+
+
+def _confirmed(candidates: list[Candidate], target: Outline | None) -> tuple[Candidate, ...]:
+    """The designs with scores that they have, whatever the file says."""
+    if target is None:
+        return tuple(candidates)
+    deployments = [deploy(candidate.sheet) for candidate in candidates]
+    scores = confirmed(deployments, [candidate.score for candidate in candidates], target)
+    seconds = [
+        None if candidate.second is None else confirmed_match(deployment, candidate.second)
+        for candidate, deployment in zip(candidates, deployments, strict=True)
+    ]
+    return tuple(
+        replace(candidate, score=score, second=second)
+        for candidate, score, second in zip(candidates, scores, seconds, strict=True)
     )
 
 

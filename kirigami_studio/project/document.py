@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.outlines.drawing import NO_GUIDES, Guides
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.labels import Label, run_labels
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 #: Guides lie within this distance of the middle of the board, mm, and there are no more of them along one axis.
 FARTHEST_GUIDE, MOST_GUIDES = 1e6, 1000
@@ -22,20 +23,16 @@ Void = tuple[int, int]
 
 
 class Mark(Enum):
-    """What a person thinks of a candidate."""
+    """The user's opinion of a candidate."""
 
     NONE = "none"
     PINNED = "pinned"
     REJECTED = "rejected"
 
 
-def _nothing_known() -> Mapping[str, str]:
-    return MappingProxyType({})
-
-
 @dataclass(frozen=True, slots=True)
 class Document:
-    """Everything a person made in one project.
+    """Everything the user made in one project.
 
     Attributes
     ----------
@@ -77,7 +74,7 @@ class Document:
     candidates: tuple[Candidate, ...] = ()
     chosen: int | None = None
     fabrication: FabricationSettings = field(default_factory=FabricationSettings)
-    provenance: Mapping[str, str] = field(default_factory=_nothing_known, hash=False)
+    provenance: Mapping[str, str] = field(default_factory=FrozenMapping, hash=False)
     marks: tuple[Mark, ...] = ()
     locked: frozenset[Void] = frozenset()
     artwork: Artwork | None = None
@@ -90,7 +87,7 @@ class Document:
         object.__setattr__(self, "candidates", tuple(self.candidates))
         object.__setattr__(self, "drawing", tuple(self.drawing))
         self._check_guides()
-        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
+        object.__setattr__(self, "provenance", FrozenMapping(self.provenance))
         if self.candidates and self.target is None:
             raise ProjectError("project.designs_without_target")
         grids = sorted({candidate.sheet.grid for candidate in self.candidates})

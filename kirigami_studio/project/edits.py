@@ -1,23 +1,25 @@
-"""The named changes a person can make: each takes a document and returns an edit, none alters anything."""
+"""The named edits: each takes a document and returns an edit, none alters anything."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TypedDict, Unpack
+from typing import Any, TypedDict, Unpack
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import SecondTarget
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, State
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.export.artwork import ArtPicture, Artwork, PictureFit, SheetState
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import ProjectError
+from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.outlines.drawing import Guides
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import FARTHEST_GUIDE, MOST_GUIDES, Document, Void
 from kirigami_studio.project.labels import run_labels
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.design import DesignChange, DesignSettings
+from kirigami_studio.settings.fabrication import FabricationChange, FabricationSettings, OptionsChange
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,101 +40,29 @@ class Edit:
     merge_key: str | None = None
 
 
-class SettingsChange(TypedDict, total=False):
+class SettingsChange(DesignChange, total=False):
     """Fields of :class:`DesignSettings` that an edit may replace."""
 
     grid: tuple[int, int]
     auto_grid: bool
-    symmetry: str
-    rim: str
-    regular: float
     start: StartShape
     second: SecondTarget | None
-    phi: float
-    k: int
-    seed: int
-    variant: str
-    steps: int
-    polish: int
-    prefer: str
-    search: int
-
-
-class FabricationChange(TypedDict, total=False):
-    """Fields of :class:`FabricationSettings` that an edit may replace."""
-
-    width_mm: float
-    opened_mm: float | None
-    material: str
-    connector_mm: float | None
-    kerf_mm: float | None
-    options: CutOptions
-    profile: str
-    dxf_version: str
-    paper: str
-    markers: bool
-    engrave: bool
-
-
-class OptionsChange(TypedDict, total=False):
-    """Fields of :class:`CutOptions` that hold for the whole sheet, which an edit may replace."""
-
-    style: ConnectorStyle
-    order: CutOrder
-    tabs: int
-    tab_mm: float
-    copies: int
-    copy_gap_mm: float
 
 
 class LaidChange(TypedDict, total=False):
     """Fields of :class:`Laid` that an edit may replace, but the picture."""
 
-    state: State
-    fitting: Fitting
+    state: SheetState
+    fitting: PictureFit
     scale: float
     turn: float
     shift: tuple[float, float]
 
 
+#: What the Undo menu says of a change to a setting that has no words of its own for it.
+OTHER_CHANGE = mark("Change a setting")
 #: Widths of single connectors are rounded to this many decimals of a millimetre.
 DECIMALS = 4
-
-#: What the Undo menu says of a change to one field; of several at once it names the first.
-_LABELS = {
-    "grid": mark("Change the grid"),
-    "auto_grid": mark("Change the grid"),
-    "symmetry": mark("Change the symmetry"),
-    "rim": mark("Change the rim"),
-    "regular": mark("Change match or regular"),
-    "start": mark("Change the start outline"),
-    "second": mark("Change the second target"),
-    "phi": mark("Change the target angle"),
-    "k": mark("Change the number of designs"),
-    "seed": mark("Change the seed"),
-    "variant": mark("Change the model"),
-    "steps": mark("Change the number of sampling steps"),
-    "polish": mark("Change the polish setting"),
-    "prefer": mark("Change the polish preference"),
-    "search": mark("Change the search setting"),
-    "width_mm": mark("Change the sheet width"),
-    "opened_mm": mark("Change the size of the opened shape"),
-    "material": mark("Change the material"),
-    "connector_mm": mark("Change the connector width"),
-    "kerf_mm": mark("Change the kerf"),
-    "options": mark("Change the cut options"),
-    "profile": mark("Change the machine profile"),
-    "dxf_version": mark("Change the DXF version"),
-    "paper": mark("Change the paper of PDFs"),
-    "markers": mark("Change the connector markers"),
-    "engrave": mark("Change the engraving of the name"),
-    "style": mark("Change the connector style"),
-    "order": mark("Change the cutting order"),
-    "tabs": mark("Change the number of tabs"),
-    "tab_mm": mark("Change the tab width"),
-    "copies": mark("Change the number of copies"),
-    "copy_gap_mm": mark("Change the gap between copies"),
-}
 
 
 def set_target(document: Document, target: Outline) -> Edit:
@@ -197,14 +127,15 @@ def set_settings(document: Document, **changes: Unpack[SettingsChange]) -> Edit:
     GridError, AngleError, UsageError
         The number does not fit; see :class:`DesignSettings`.  Or the sheet would not pass the second target on its way.
     """
-    settings = replace(document.settings, **changes)
+    values: dict[str, Any] = {**changes}
+    settings = replace(document.settings, **values)
     if settings.second is not None and changes.keys() & {"phi", "second"}:
         settings.second.check_on_the_way_to(settings.phi)
     if "grid" in changes and "auto_grid" not in changes:
         settings = replace(settings, auto_grid=False)
     changed = replace(document, settings=settings)
     removes = "second" in changes and changes["second"] is None
-    label = tr("Remove the second target") if removes else _label(changes)
+    label = tr("Remove the second target") if removes else _label(DesignSettings, changes)
     return Edit(label, changed, merge_key=_merge_key("settings", changes))
 
 
@@ -218,11 +149,12 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    cut = replace(document.fabrication, **changes)
+    values: dict[str, Any] = {**changes}
+    cut = replace(document.fabrication, **values)
     if "width_mm" in changes and "opened_mm" not in changes:
         cut = replace(cut, opened_mm=None)
     changed = replace(document, fabrication=cut)
-    return Edit(_label(changes), changed, merge_key=_merge_key("fabrication", changes))
+    return Edit(_label(FabricationSettings, changes), changed, merge_key=_merge_key("fabrication", changes))
 
 
 def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edit:
@@ -233,9 +165,10 @@ def set_cut_options(document: Document, **changes: Unpack[OptionsChange]) -> Edi
     FabricationError
         The number does not fit; see :class:`CutOptions`.
     """
-    options = replace(document.fabrication.options, **changes)
+    values: dict[str, Any] = {**changes}
+    options = replace(document.fabrication.options, **values)
     changed = replace(document, fabrication=replace(document.fabrication, options=options))
-    return Edit(_label(changes), changed, merge_key=_merge_key("options", changes))
+    return Edit(_label(CutOptions, changes), changed, merge_key=_merge_key("options", changes))
 
 
 def set_artwork(document: Document, artwork: Artwork | None) -> Edit:
@@ -282,8 +215,11 @@ def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -
     return Edit(tr("Lay {name} between", name=second.name), changed)
 
 
-def _label(changes: Mapping[str, object]) -> str:
-    return tr(_LABELS[next(iter(changes))])
+def _label(kind: type, changes: Mapping[str, object]) -> str:
+    """What the Undo menu says of a change; of several at once the first of the settings, which brings the others."""
+    settings = settings_of(kind)
+    name = next(name for name in settings if name in changes)
+    return tr(settings[name].setting.undo or OTHER_CHANGE)
 
 
 def _merge_key(part: str, changes: Mapping[str, object]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from kirigami_studio.foundation.errors import ProjectError
-from kirigami_studio.foundation.words import again
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
@@ -58,12 +57,12 @@ class History:
     @property
     def undo_label(self) -> str | None:
         """What Undo would take back, or None when there is nothing."""
-        return again(self._done[-1].edit.label) if self._done else None
+        return self._done[-1].edit.label if self._done else None
 
     @property
     def redo_label(self) -> str | None:
         """What Redo would bring again, or None when there is nothing."""
-        return again(self._undone[-1].edit.label) if self._undone else None
+        return self._undone[-1].edit.label if self._undone else None
 
     def apply(self, edit: Edit) -> bool:
         """Make the edit's document the present one.
@@ -91,7 +90,7 @@ class History:
     @property
     def steps(self) -> tuple[str, ...]:
         """Labels of all steps, the oldest first: those that are done, then those that were undone."""
-        return tuple(again(step.edit.label) for step in (*self._done, *reversed(self._undone)))
+        return tuple(step.edit.label for step in (*self._done, *reversed(self._undone)))
 
     @property
     def position(self) -> int:

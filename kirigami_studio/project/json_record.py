@@ -11,6 +11,7 @@ from typing import Any, NoReturn, TypeVar
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
+from kirigami_studio.foundation.settings import NamedSetting, settings_of
 
 LARGEST_NUMBER = 1e300
 _NOT_GIVEN = object()
@@ -151,3 +152,35 @@ def one_of(kind: type[Choice], name: object) -> Choice:
     except ValueError:
         choices = ", ".join(str(choice.value) for choice in kind)
         raise ProjectError("json.not_a_choice", value=name, choices=choices) from None
+
+
+def settings_json(instance: object) -> dict[str, object]:
+    """The plain settings of a dataclass; those that need not be written are left out where they are the default."""
+    kind: type = type(instance)
+    return {
+        name: one.word(getattr(instance, name))
+        for name, one in settings_of(kind).items()
+        if one.is_plain and (one.setting.always_written or getattr(instance, name) != one.default)
+    }
+
+
+def settings_values(record: Record, kind: type) -> dict[str, Any]:
+    """The values that a record has for the plain settings of a dataclass; where one need not be written, it may lack.
+
+    Raises
+    ------
+    ProjectError
+        A setting is missing or of another kind.
+    """
+    return {
+        name: _setting_value(record, one)
+        for name, one in settings_of(kind).items()
+        if one.is_plain and (record.holds(name) or (one.setting.always_written and not one.optional))
+    }
+
+
+def _setting_value(record: Record, one: NamedSetting) -> object:
+    if issubclass(one.kind, Enum):
+        return one_of(one.kind, record.text(one.name))
+    read = {bool: record.flag, int: record.whole, float: record.number, str: record.text}
+    return read[one.kind](one.name)

@@ -24,14 +24,14 @@ ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """What a design is called, and what a person has noted of it.
+    """What a design is called, and what the user has noted of it.
 
     Attributes
     ----------
     code : str
         The name that it got by itself, such as "A1"; it never changes.
     name : str
-        The name that a person gave it, "" for none.
+        The name that the user gave it, "" for none.
     note : str
 
     Raises
@@ -84,7 +84,7 @@ def run_labels(run: int, count: int, taken: Iterable[Label] = ()) -> tuple[Label
 
 
 def reads_as_code(name: str) -> bool:
-    """Whether a person would take it for the name that a design gets by itself: ``B2`` and ``b2``, not ``Heart2``."""
+    """Whether the user would take it for the name that a design gets by itself: ``B2`` and ``b2``, not ``Heart2``."""
     return READS_AS_CODE.fullmatch(name) is not None
 
 

@@ -1,26 +1,49 @@
-"""What a person used last and expects to find in the next new project, as a small TOML file."""
+"""Choices that the next new project begins with, as a small TOML file."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
+from enum import StrEnum
 from pathlib import Path
 
 import tomli_w
 
-from kirigami_studio.export.paper import NO_PAPER
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.files import read_toml, write_atomically
 from kirigami_studio.foundation.plain_text import plain_line
+from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
-#: The desktop's own look, or one of the two palettes.
-THEMES = ("system", "light", "dark")
-#: Which length of a sheet was typed last: the longer side of the opened shape, or the width of the flat sheet.
-SIZES = ("opened", "flat")
-#: Whether what moves by itself follows the desktop's setting for animations, or stands still.
-MOTIONS = ("system", "still")
+
+class Theme(StrEnum):
+    """Look of the window: the desktop's own, or one of the two palettes."""
+
+    SYSTEM = "system"
+    LIGHT = "light"
+    DARK = "dark"
+
+
+class TypedSize(StrEnum):
+    """Which length of a sheet was typed last; the other one follows."""
+
+    OPENED = "opened"  #: longer side of the opened shape
+    FLAT = "flat"  #: width of the flat sheet
+
+
+class Motion(StrEnum):
+    """Whether parts that move by themselves follow the desktop's setting for animations, or stand still."""
+
+    SYSTEM = "system"
+    STILL = "still"
+
+
+_NAME = Setting(code="preferences.not_a_name", error=ProjectError).metadata
+_CHOICE = Setting(code="preferences.unknown_choice", error=ProjectError).metadata
+_FLAG = Setting(code="preferences.not_true_or_false", error=ProjectError).metadata
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,56 +54,42 @@ class Preferences:
     ----------
     profile : str
         Key of the machine profile that was chosen last.
-    dxf_version : str
+    dxf_version : DxfVersion
         DXF dialect that was chosen last.
-    theme : str
-        Look of the window, one of :data:`THEMES`.
+    theme : Theme
     language : str
         Code of the window's language, or "system" for the desktop's.
     tour_seen : bool
         Whether the guided tour was taken before.
     material : str
         Key of the material that was chosen last.
-    paper : str
-        Key of the paper that PDFs are spread over.
-    size : str
-        Which length was typed last, one of :data:`SIZES`; the other one follows.
+    paper : Paper
+        That PDFs are spread over.
+    size : TypedSize
     opened_mm, width_mm : float
         Longer side of the opened shape, and width of the flat sheet.
     machine_asked : bool
         Whether the question for machine and material was answered, or declined.
-    motion : str
-        One of :data:`MOTIONS`.
+    motion : Motion
     """
 
-    profile: str = "any"
-    dxf_version: str = "R2010"
-    theme: str = "system"
-    language: str = "system"
-    tour_seen: bool = False
-    material: str = DEFAULT_PRESET
-    paper: str = NO_PAPER
-    size: str = "opened"
+    profile: str = field(default="any", metadata=_NAME)
+    dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)
+    theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
+    language: str = field(default="system", metadata=_NAME)
+    tour_seen: bool = field(default=False, metadata=_FLAG)
+    material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
+    paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
+    size: TypedSize = field(default=TypedSize.OPENED, metadata=_CHOICE)
     opened_mm: float = 100.0
     width_mm: float = 100.0
-    machine_asked: bool = False
-    motion: str = "system"
+    machine_asked: bool = field(default=False, metadata=_FLAG)
+    motion: Motion = field(default=Motion.SYSTEM, metadata=_CHOICE)
 
     def __post_init__(self) -> None:
-        for name in ("profile", "dxf_version", "theme", "language", "material", "paper", "size", "motion"):
-            value = getattr(self, name)
-            if not isinstance(value, str) or not value:
-                raise ProjectError("preferences.not_a_name", name=name, value=value)
-            object.__setattr__(self, name, plain_line(value))
-        if self.theme not in THEMES:
-            raise ProjectError("preferences.unknown_theme", themes=", ".join(THEMES), value=self.theme)
-        for name, choices in (("size", SIZES), ("motion", MOTIONS)):
-            if getattr(self, name) not in choices:
-                listed = ", ".join(choices)
-                raise ProjectError("preferences.unknown_choice", name=name, choices=listed, value=getattr(self, name))
-        for name in ("tour_seen", "machine_asked"):
-            if not isinstance(getattr(self, name), bool):
-                raise ProjectError("preferences.not_true_or_false", name=name, value=getattr(self, name))
+        check(self)
+        for name in ("profile", "language", "material"):
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
         try:
             FabricationSettings(width_mm=self.width_mm, opened_mm=self.opened_mm)
         except UsageError as error:
@@ -96,7 +105,7 @@ class Preferences:
             dxf_version=self.dxf_version,
             paper=self.paper,
             width_mm=self.width_mm,
-            opened_mm=self.opened_mm if self.size == "opened" else None,
+            opened_mm=self.opened_mm if self.size is TypedSize.OPENED else None,
         )
         return replace(empty, fabrication=machine)
 
@@ -109,8 +118,8 @@ class Preferences:
         """The same with the length that was typed for a document."""
         cut = document.fabrication
         if cut.opened_mm is None:
-            return replace(self, size="flat", width_mm=cut.width_mm)
-        return replace(self, size="opened", opened_mm=cut.opened_mm)
+            return replace(self, size=TypedSize.FLAT, width_mm=cut.width_mm)
+        return replace(self, size=TypedSize.OPENED, opened_mm=cut.opened_mm)
 
 
 def load(path: Path) -> Preferences:

@@ -27,13 +27,13 @@ LARGEST_FILE = 256 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
-class Note:
+class RecoveryNote:
     """Whose work a recovery file holds.
 
     Attributes
     ----------
     name : str
-        What a person calls the project: its file's name, or what the target is called.
+        What the user calls the project: its file's name, or what the target is called.
     path : str
         Where the project was saved last, absolute; "" if it never was.
     changed : str
@@ -58,7 +58,7 @@ def now() -> str:
     return datetime.now(UTC).astimezone().isoformat(timespec="seconds")
 
 
-def keep(document: Document, note: Note, path: Path, picture: TracedPicture | None = None) -> None:
+def keep(document: Document, note: RecoveryNote, path: Path, picture: TracedPicture | None = None) -> None:
     """Write document, picture and note in one go; an older file at ``path`` survives any failure.
 
     Raises
@@ -76,7 +76,7 @@ def keep(document: Document, note: Note, path: Path, picture: TracedPicture | No
     write_atomically(path, stream.getvalue())
 
 
-def read_note(path: Path) -> Note:
+def read_note(path: Path) -> RecoveryNote:
     """Read whose work a recovery file holds, without reading the work.
 
     Raises
@@ -98,7 +98,7 @@ def read_note(path: Path) -> Note:
     try:
         record = Record(read_json(content, NOTE), NOTE)
         digest = record.text("digest") if record.holds("digest") else ""
-        note = Note(record.text("name"), record.verbatim("path"), record.text("changed"), digest)
+        note = RecoveryNote(record.text("name"), record.verbatim("path"), record.text("changed"), digest)
         if note.when.tzinfo is None:
             raise ProjectError("recovery.no_time_zone", name=NOTE)
     except (KirigamiError, ValueError) as error:

@@ -21,7 +21,8 @@ from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import LARGEST_SHEET_MM, DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import LARGEST_SHEET_MM, FabricationSettings
 
 #: Widths this near (relative) are one width.
 SAME_WIDTH = 1e-9

@@ -23,7 +23,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
-from kirigami_studio.project.settings import stored_material
+from kirigami_studio.settings.fabrication import stored_material
 
 SUFFIX = ".kiri"
 #: Kinds of cut file that carry the design they came from.
@@ -79,7 +79,7 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
 
 
 def with_stored_material(document: Document) -> Document:
-    """The document as it is saved: with the numbers of its material, if that is a person's own."""
+    """The document as it is saved: with the numbers of its material, if that is the user's own."""
     settings, known = document.fabrication, library()
     numbers = stored_material(settings)
     if settings.material in known.materials:

@@ -43,7 +43,7 @@ from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, f
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 
 MPA_PER_GPA = 1e3
 #: A sheet within this (radians) of being closed has closed.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import Report
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Severity
@@ -15,7 +15,7 @@ from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 
 
 def plan_of(
@@ -78,7 +78,7 @@ def plan_sheet(
     )
 
 
-def refuse_errors(report: Report) -> None:
+def refuse_errors(report: PlanReport) -> None:
     """Refuse cuts that the sheet would not survive.
 
     Raises

@@ -7,7 +7,7 @@ designs are ranked by how they do as cut, and what project they make.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -31,12 +31,11 @@ from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings, material_for
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
-#: What project settings and request both say.
-SHARED = frozenset(one.name for one in fields(DesignSettings)) & {one.name for one in fields(Request)} - {"grid"}
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
 
@@ -154,11 +153,9 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    shared = {name: getattr(wanted, name) for name in SHARED}
-    return Request(
+    return Request.of(
         target,
-        None if wanted.auto_grid else wanted.grid,
-        **shared,
+        wanted,
         trim=trim,
         budget_seconds=budget_seconds,
         width_mm=cut.width_mm,
@@ -334,9 +331,7 @@ def facts_of(request: Request) -> dict[str, str]:
 def document_of(result: Result, cut: FabricationSettings) -> Document:
     """The project that a run makes of its request: its designs, ranked, the best chosen."""
     request, facts = result.request, facts_of(result.request)
-    shared = {name: getattr(request, name) for name in SHARED}
-    wanted = DesignSettings(request.chosen_grid, **shared, auto_grid=request.grid_chosen)
-    empty = Document(request.target, wanted, fabrication=cut)
+    empty = Document(request.target, request.settings, fabrication=cut)
     return renew_candidates(empty, NewDesigns(result.candidates, facts), result.ranking.key).document
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from kirigami_studio.evaluate.evenness import evenness_of_many
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio.as_cut import estimate
 from kirigami_studio.studio.cutting import least_feature_mm
 

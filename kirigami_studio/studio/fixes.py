@@ -23,11 +23,12 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge

@@ -19,7 +19,7 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.project.settings import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.file_kinds import kind_of
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
-    from kirigami_studio.fabricate.checks import Report
+    from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
     from kirigami_studio.mechanics.gripping import Gripping
@@ -59,7 +59,7 @@ class Planned:
     Attributes
     ----------
     plan : CutPlan
-    report : Report
+    report : PlanReport
     verdict : Verdict
         What is to be expected as long as nobody has closed the sheet on its connectors.
     removed_share : float, 0..1
@@ -69,7 +69,7 @@ class Planned:
     """
 
     plan: CutPlan
-    report: Report
+    report: PlanReport
     verdict: Verdict
     removed_share: float = 0.0
     work: Work | None = None
@@ -284,7 +284,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
 
 
 def closed(request: CutRequest, made: Planned) -> AsCut | str:
-    """How the planned sheet does as cut, closed on its connectors in one go unless that is known, or why not."""
+    """How the planned sheet does as cut, closed in one go unless that is known, or why not."""
     from kirigami_studio.studio.verdict import closed_as_cut
 
     if request.as_cut is not None:
@@ -414,7 +414,7 @@ def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Can
 
 
 def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
-    """What to know before a PDF (width, height; mm) of many pages is written; None for one of few."""
+    """Warning before a PDF (width, height; mm) of many pages is written; None for few."""
     from kirigami_studio.export.paper import page_notes, tile
 
     notes = page_notes(size, paper)
@@ -465,7 +465,7 @@ def exporting_coupon(
 
 
 def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a cut file with the chosen design of a project as the project would cut it, and judge the sheet."""
+    """Compare a cut file with a project's chosen design as it would be cut; judge the sheet."""
     from kirigami_studio.export.verification import verify_export
 
     request = CutRequest.of(document)

@@ -18,7 +18,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
-from kirigami_studio.project.recovery import Note
+from kirigami_studio.project.recovery import RecoveryNote
 from kirigami_studio.studio.targets import Picture, reduced_picture
 
 if TYPE_CHECKING:
@@ -185,18 +185,20 @@ class Leftover:
     Attributes
     ----------
     file : Path
-    note : Note or None
+    note : RecoveryNote or None
         None if it cannot be read.
     fault : str
         Why it cannot be read, a sentence; else "".
     """
 
     file: Path
-    note: Note | None
+    note: RecoveryNote | None
     fault: str = ""
 
 
-def keeping(document: Document, picture: Picture | None, note: Note, path: Path, cancel: Cancel) -> Iterator[Document]:
+def keeping(
+    document: Document, picture: Picture | None, note: RecoveryNote, path: Path, cancel: Cancel
+) -> Iterator[Document]:
     """Keep a document, and yield it once it is on disk; a picture that cannot be kept is reported when it is saved."""
     kept = None
     with suppress(ProjectError):

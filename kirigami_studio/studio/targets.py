@@ -27,8 +27,8 @@ from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import CUT_FILES, load
+from kirigami_studio.settings.design import DesignSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
@@ -155,7 +155,7 @@ class PartChoice:
                 way = Join(join)
             except ValueError:
                 choices = ", ".join(str(one.value) for one in Join)
-                raise UsageError("settings.no_such_choice", name="join", value=repr(join), choices=choices) from None
+                raise UsageError("settings.no_such_choice", name="join", value=join, choices=choices) from None
         if bridge is not None and way is not Join.BRIDGE:
             raise UsageError("option.bridge_without_join")
         several = way is not Join.UNION or stroke is not None
@@ -198,7 +198,7 @@ def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None 
 
 
 def design_of(path: Path) -> Document | None:
-    """The project of the design that a cut file of this program carries; None for any other file."""
+    """Project of the design in a cut file of this program; None for any other file."""
     if path.suffix.lower() not in CUT_FILES:
         return None
     try:

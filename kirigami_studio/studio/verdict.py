@@ -13,7 +13,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import Report, check_plan
+from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
@@ -21,7 +21,7 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
 from kirigami_studio.studio.cutting import plan_of
 
@@ -134,14 +134,14 @@ class Assessment:
     Attributes
     ----------
     plan : CutPlan
-    report : Report
+    report : PlanReport
     as_cut : AsCut or str
         How the sheet does as cut, or a sentence on why that cannot be told.
     verdict : Verdict
     """
 
     plan: CutPlan
-    report: Report
+    report: PlanReport
     as_cut: AsCut | str
     verdict: Verdict
 
@@ -151,7 +151,7 @@ def assess(
     settings: FabricationSettings,
     target: Outline | None = None,
     deployment: Deployment | None = None,
-    planned: tuple[CutPlan, Report] | None = None,
+    planned: tuple[CutPlan, PlanReport] | None = None,
     verifications: Sequence[Verification] = (),
 ) -> Assessment:
     """Plan the cuts of a design, check them, close the sheet on its connectors, and judge, all in one go.
@@ -164,7 +164,7 @@ def assess(
         For the match as cut.
     deployment : Deployment, optional
         Of the candidate's final sheet, if it is known already.
-    planned : (CutPlan, Report), optional
+    planned : (CutPlan, PlanReport), optional
         If they are known already.
     verifications : sequence of Verification
         Of files that were written of it.
@@ -273,7 +273,7 @@ def refused(error: KirigamiError) -> Verdict:
 def judge(
     candidate: Candidate,
     plan: CutPlan,
-    report: Report,
+    report: PlanReport,
     as_cut: AsCut | str | None,
     verifications: Sequence[Verification] = (),
 ) -> Verdict:
@@ -283,7 +283,7 @@ def judge(
     ----------
     candidate : Candidate
         The design.
-    plan, report : CutPlan, Report
+    plan, report : CutPlan, PlanReport
         Its cuts, and what their check found for the design's angle.
     as_cut : AsCut, str or None
         How it does as cut; a sentence on why that cannot be told; None where nobody has looked.
@@ -366,7 +366,7 @@ def _of_jam(as_cut: AsCut) -> list[Problem]:
     return [Problem.error("as_cut.jams_stretched", stretch=as_cut.stretch, **angles)]
 
 
-def _of_strain(plan: CutPlan, report: Report, as_cut: AsCut | None) -> list[Problem]:
+def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
     """One sentence for connectors that break, by the larger of the plan's estimate and the simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
     limit = 100.0 * plan.material.strain_limit

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from kirigami_studio.cli.parser import all_commands, build_parser
-from kirigami_studio.foundation.words import DOMAIN, read_catalogue
+from tests.catalogues import catalogue, forms
 
 #: Folders with documents, beside those in the root.
 FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
@@ -136,9 +136,9 @@ def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, .
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """What the window's modules give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
+    """Sentences of the window and of settings, as ``tr``, ``tr_n`` and ``mark`` get them, without mnemonics."""
     found, sayings = set(), ("tr", "tr_n", "mark")
-    for path in (package / "gui").rglob("*.py"):
+    for path in (one for part in ("gui", "settings", "fabricate") for one in (package / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in sayings:
                 words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
@@ -190,12 +190,8 @@ def test_that_the_german_guide_names_the_keys_of_the_english_one(guides: tuple[s
         assert sorted(named(own, CODE)) == sorted(keys), own
 
 
-@pytest.mark.long
-def test_that_the_german_guide_calls_things_as_the_german_window_does(
-    guides: tuple[str, str], repository: Path
-) -> None:
-    path = repository / "resources" / "locale" / "de" / "LC_MESSAGES" / f"{DOMAIN}.po"
-    texts = read_catalogue(path, "de").texts
+def test_that_the_german_guide_calls_things_as_the_german_window_does(guides: tuple[str, str]) -> None:
+    texts = {forms(message.id)[0]: forms(message.string) for message in catalogue("de") if message.id}
     english, german = (blocks_of(guide) for guide in guides)
     for own, other in zip(german, english, strict=True):
         assert called_otherwise(other, own, texts, BOLD) == [], own

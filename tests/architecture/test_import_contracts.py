@@ -66,6 +66,16 @@ FAULTS = (
     Fault("gui/stage", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
     Fault("gui/make", "import kirigami_studio.gui.gallery", WINDOW, "kirigami_studio.gui.gallery"),
     *(
+        Fault(
+            f"gui/{place}",
+            f"from kirigami_studio.gui.window.{module} import {name}",
+            WINDOW,
+            f"kirigami_studio.gui.window.{module}",
+        )
+        for place in ("stage", "run", "gallery", "make", "target", "files")
+        for module, name in (("main_window", "MainWindow"), ("controller", "Controller"))
+    ),
+    *(
         Fault(package, "import torch", "The exact core never reaches torch", "torch")
         for package in ("foundation", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export")
     ),

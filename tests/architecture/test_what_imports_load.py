@@ -11,7 +11,6 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
 KNOWS_TORCH = {"kirigami_studio.lattice.batched"}
-pytestmark = pytest.mark.slow
 CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export", "project")
 LOADED = """
 import importlib, json, sys

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = [pytest.mark.slow, pytest.mark.torch]
+pytestmark = pytest.mark.torch
 
 SOURCES = ("kirigami_studio", "resources", "pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
 
@@ -48,7 +48,10 @@ def test_that_the_wheel_carries_every_module_and_every_bundled_file(wheel: Path,
         names = archive.namelist()
     assert len(names) == len(set(names))
     expected = {f"kirigami_studio/{name}" for name in files_below(repository / "kirigami_studio")}
-    expected |= {f"kirigami_studio/resources/{name}" for name in files_below(repository / "resources")}
+    bundled = {name.removesuffix(".po") + ".mo" if name.endswith(".po") else name
+               for name in files_below(repository / "resources")}  # fmt: skip
+    assert "locale/de/LC_MESSAGES/kirigami_studio.mo" in bundled
+    expected |= {f"kirigami_studio/resources/{name}" for name in bundled}
     assert any(name.startswith("kirigami_studio/resources/silhouettes/") for name in expected)
     carried = {name for name in names if ".dist-info/" not in name}
     assert carried == expected
@@ -62,7 +65,6 @@ def test_that_the_wheel_states_its_licence_and_its_command(wheel: Path) -> None:
     assert "kirigami-studio = kirigami_studio.cli:main" in text["entry_points.txt"]
 
 
-@pytest.mark.long
 def test_that_the_installed_program_takes_a_silhouette_to_a_checked_cut_file(
     wheel: Path, repository: Path, tmp_path: Path
 ) -> None:

@@ -27,9 +27,7 @@ def kinds(value: object) -> set[str]:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.torch
-@pytest.mark.long
 def test_that_the_notebook_plays(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     notebook = json.loads((repository / "docs" / "first-design.ipynb").read_text(encoding="utf-8"))
     monkeypatch.chdir(tmp_path)

@@ -18,7 +18,6 @@ from kirigami_studio.cli.parser import all_commands
 from kirigami_studio.foundation.resources import resource
 
 pytest.importorskip("mkdocs")
-pytestmark = pytest.mark.slow
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: What a browser fetches by itself; links of a page it only follows.
@@ -84,7 +83,6 @@ def pages(site: Path) -> dict[Path, PageReader]:
     return {path: read_page(path.read_text(encoding="utf-8")) for path in found}
 
 
-@pytest.mark.long
 def test_that_pages_fetch_nothing_from_other_servers(site: Path, pages: dict[Path, PageReader]) -> None:
     assert {path.name: found for path, page in pages.items() if (found := from_elsewhere(page.fetched))} == {}
     for sheet in site.rglob("*.css"):

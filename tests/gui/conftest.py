@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -31,7 +30,8 @@ from kirigami_studio.project.document import Document
 
 #: Said by the off-screen platform itself about what it lacks.
 PLATFORM_SAYS = "This plugin does not support"
-PATIENCE = 30_000
+#: Milliseconds of the clock after which a test gives up: nothing is measured by it.
+PATIENCE = 120_000
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -135,14 +135,17 @@ def until(qtbot: QtBot) -> Callable[[Callable[[], bool]], None]:
 
 
 @pytest.fixture
-def english_afterwards() -> Iterator[None]:
+def english_afterwards(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Speak the desktop's language again when the test is over."""
-    wanted = os.environ.get("LANGUAGE")
     yield
-    os.environ.pop("LANGUAGE", None)
-    if wanted is not None:
-        os.environ["LANGUAGE"] = wanted
+    monkeypatch.undo()
     speak(SYSTEM)
+
+
+@pytest.fixture
+def german(english_afterwards: None) -> None:
+    """Speak German in windows that are made from now on."""
+    speak("de")
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from PySide6.QtGui import QImage
 
-from kirigami_studio.export.artwork import Fitting, State
+from kirigami_studio.export.artwork import PictureFit, SheetState
 from kirigami_studio.export.pdf_pages import page_boxes
 from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -64,7 +64,6 @@ def shares(pixels: np.ndarray) -> tuple[float, float]:
     return float(pure[0].mean()), float(pure[1].mean())
 
 
-@pytest.mark.long
 def test_that_a_picture_is_seen_whole_on_the_opened_sheet_and_cut_up_on_the_flat_one(
     designed: MainWindow, editor: ArtworkEditor
 ) -> None:
@@ -76,12 +75,11 @@ def test_that_a_picture_is_seen_whole_on_the_opened_sheet_and_cut_up_on_the_flat
     middle = opened.shape[1] // 2
     left, right = shares(opened[:, : middle - 20]), shares(opened[:, middle + 20 :])
     assert left[0] > 20 * left[1] and right[1] > 20 * right[0]
-    editor.state.setCurrentIndex(editor.state.findData(State.FLAT))
+    editor.state.setCurrentIndex(editor.state.findData(SheetState.FLAT))
     editor.state.activated.emit(editor.state.currentIndex())
-    assert designed.controller.document.artwork.first.state is State.FLAT
+    assert designed.controller.document.artwork.first.state is SheetState.FLAT
 
 
-@pytest.mark.long
 def test_that_every_change_is_a_step_that_can_be_undone(
     designed: MainWindow, editor: ArtworkEditor, until: Until
 ) -> None:
@@ -93,14 +91,14 @@ def test_that_every_change_is_a_step_that_can_be_undone(
     editor.turn.setValue(90.0)
     editor.turn.editingFinished.emit()
     editor.right.setValue(10.0)
-    editor.fitting.setCurrentIndex(editor.fitting.findData(Fitting.FIT))
+    editor.fitting.setCurrentIndex(editor.fitting.findData(PictureFit.FIT))
     editor.fitting.activated.emit(editor.fitting.currentIndex())
     laid = controller.document.artwork.first
     assert (laid.scale, laid.turn, laid.shift, laid.fitting) == (
         1.6,
         pytest.approx(math.pi / 2),
         (0.1, 0.0),
-        Fitting.FIT,
+        PictureFit.FIT,
     )
     steps = 0
     while controller.history.undo_label == "Place the artwork":
@@ -114,7 +112,6 @@ def test_that_every_change_is_a_step_that_can_be_undone(
     until(lambda: designed.stage.view.artwork is not None)
 
 
-@pytest.mark.long
 def test_that_a_second_picture_shares_the_sheet_until_it_is_removed(
     designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
 ) -> None:
@@ -138,7 +135,6 @@ def test_that_a_second_picture_shares_the_sheet_until_it_is_removed(
     assert controller.document.artwork.second is None and not editor.remove_second.isEnabled()
 
 
-@pytest.mark.long
 def test_that_artwork_travels_with_the_project_and_with_another_design(
     designed: MainWindow, editor: ArtworkEditor, photo: Path, tmp_path: Path, until: Until
 ) -> None:
@@ -172,7 +168,6 @@ def test_that_artwork_is_exported_alone_and_with_everything(
     assert names < {path.name for path in (tmp_path / "all").iterdir()}
 
 
-@pytest.mark.long
 def test_that_a_print_of_many_pages_is_written_only_after_asking(
     designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
 ) -> None:

@@ -74,7 +74,6 @@ def test_that_other_connectors_are_closed_anew_and_known_ones_at_once(jammed: Ma
     assert stage.as_cut.text().startswith("Closes as cut: ") and not reader.busy
 
 
-@pytest.mark.long
 def test_that_other_files_are_no_reason_to_close_the_sheet_again(closed: MainWindow, until: Until) -> None:
     reader = closed.controller.as_cut
     before = reader.state.sheet
@@ -136,7 +135,6 @@ def test_that_the_track_says_where_it_jams(slider: PhiSlider) -> None:
     assert slider.stopped(1800) == value_at(JAM)
 
 
-@pytest.mark.long
 def test_that_connectors_show_their_stretch(jammed: MainWindow) -> None:
     view = jammed.stage.view
     plain = view.grab().toImage()
@@ -153,7 +151,6 @@ def test_that_connectors_show_their_stretch(jammed: MainWindow) -> None:
     assert shown != plain
 
 
-@pytest.mark.long
 def test_that_nothing_is_said_of_a_sheet_that_is_edited(closed: MainWindow, until: Until) -> None:
     closed.commands["hand"].trigger()
     closed.controller.hand.nudge(frozenset({(1, 1)}), 0.2)
@@ -161,7 +158,6 @@ def test_that_nothing_is_said_of_a_sheet_that_is_edited(closed: MainWindow, unti
     until(lambda: closed.controller.as_cut.state.sheet is not None)
 
 
-@pytest.mark.long
 def test_that_force_and_energy_are_plotted(jammed: MainWindow, until: Until) -> None:
     plots = jammed.stage.plots
     jammed.resize(1440, 900)
@@ -178,7 +174,6 @@ def test_that_force_and_energy_are_plotted(jammed: MainWindow, until: Until) -> 
     assert not force.isVisible() and not energy.isVisible() and plots.charts[0].isVisible()
 
 
-@pytest.mark.long
 def test_that_every_card_tells_whether_the_design_closes(closed: MainWindow, until: Until) -> None:
     controller, model = closed.controller, closed.gallery.view.model_
     designs = controller.document.candidates
@@ -220,7 +215,6 @@ def test_that_the_drawing_shows_where_to_hold_and_pull(closed: MainWindow, until
     assert view.grips is None and view.grab().toImage() == plain
 
 
-@pytest.mark.long
 def test_that_grips_belong_to_the_sheet_that_they_were_found_for(closed: MainWindow, until: Until) -> None:
     grips = closed.controller.grips
     closed.commands["show_grips"].trigger()

@@ -16,7 +16,7 @@ from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.drawing import Drawing
-from kirigami_studio.outlines.figures import Box, Figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.project import store
 from tests.gui.test_drawing_board import CTRL, LEFT, NONE, PLAIN, SHIFT, board, drag, pixel, placed, plate, send, use
@@ -202,7 +202,7 @@ def test_that_the_boards_of_other_outlines_hold_several_objects_too(window: Main
     window.dialogs.show_second_board()
     dialog = window.dialogs.second_board
     assert dialog is not None
-    view, shapes = dialog.view, (Box(-20, -10, 20, 10), Box(10, 0, 40, 30))
+    view, shapes = dialog.view, (BoundingBox(-20, -10, 20, 10), BoundingBox(10, 0, 40, 30))
     for shape in shapes:
         made = placed_figure(Figure.RECTANGLE, shape)
         view.context.draw(lambda made=made: made, "rectangle")

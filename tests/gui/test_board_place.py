@@ -16,7 +16,7 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.combining import Combine
-from kirigami_studio.outlines.figures import Box, Figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, placed_figure
 from tests.gui.test_board_points import ALT, CTRL, LEFT, NONE, PLAIN, SHIFT, drag, placed, send, undo_label
 
 Until = Callable[[Callable[[], bool]], None]
@@ -25,7 +25,7 @@ Until = Callable[[Callable[[], bool]], None]
 @pytest.fixture
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, ready to be moved."""
-    made = placed_figure(Figure.RECTANGLE, Box(-20, -10, 20, 10))
+    made = placed_figure(Figure.RECTANGLE, BoundingBox(-20, -10, 20, 10))
     window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POSE)
     QApplication.processEvents()

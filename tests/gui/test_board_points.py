@@ -17,7 +17,7 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.anchors import OUT
-from kirigami_studio.outlines.figures import Box, Figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, placed_figure
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
@@ -75,7 +75,7 @@ def undo_label(window: MainWindow) -> str | None:
 @pytest.fixture
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, its points ready to be moved."""
-    made = placed_figure(Figure.RECTANGLE, Box(-20, -10, 20, 10))
+    made = placed_figure(Figure.RECTANGLE, BoundingBox(-20, -10, 20, 10))
     window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POINTS)
     QApplication.processEvents()
@@ -143,7 +143,7 @@ def test_that_all_points_are_selected_nudged_and_kept_from_being_deleted(plate: 
 
 
 def test_that_selected_points_are_deleted_in_one_step(plate: MainWindow, qtbot: QtBot) -> None:
-    made = placed_figure(Figure.REGULAR, Box(-20, -20, 20, 20), 8)
+    made = placed_figure(Figure.REGULAR, BoundingBox(-20, -20, 20, 20), 8)
     plate.connections.target.reshaping.take(Change("Draw octagon", lambda: made))
     tool = tool_of(plate)
     tool.select({1, 4, 6})
@@ -236,7 +236,7 @@ def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: Ma
 
 
 def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: MainWindow, qtbot: QtBot) -> None:
-    made = placed_figure(Figure.ELLIPSE, Box(-20, -10, 20, 10))
+    made = placed_figure(Figure.ELLIPSE, BoundingBox(-20, -10, 20, 10))
     plate.connections.target.reshaping.take(Change("Draw ellipse", lambda: made))
     plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     tool = tool_of(plate)

@@ -26,7 +26,6 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
     yield from shown(OneOfEach(tmp_path), qtbot)
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_the_collections_states_are_pictured_and_taken_back(sheet: StateSheet) -> None:
     window = sheet.window

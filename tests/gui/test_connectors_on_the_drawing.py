@@ -20,7 +20,7 @@ from kirigami_studio.gui.stage.connector_items import Connectors, paint_connecto
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from tests.gui.test_cut_preview import plan_of
 
 Until = Callable[[Callable[[], bool]], None]
@@ -266,7 +266,6 @@ def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainW
     assert every and page.view.selected == every
 
 
-@pytest.mark.long
 def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
     page = cutting.stage.cuts
     first, second = lonely(page, 2)
@@ -280,7 +279,6 @@ def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, 
     until(lambda: page.hinges.selection_text.text() == "2 connectors")
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("size", [(260, 260), (700, 700), (1600, 1200)])
 @pytest.mark.parametrize("cells", [3, 8, 20])
 def test_that_a_dot_is_no_wider_than_a_third_of_nine_panels_in_ten(cells: int, size: tuple[int, int]) -> None:

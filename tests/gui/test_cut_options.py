@@ -13,10 +13,9 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.gui.make.fabrication_panel import Extent
-from kirigami_studio.gui.make.more_options import ORDERS, STYLES
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -46,11 +45,11 @@ def test_that_the_options_are_folded_until_asked_for(designed: MainWindow, qtbot
 
 def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> None:
     panel = options.fabrication.options
-    assert {row[0] for row in STYLES} == set(ConnectorStyle) and {row[0] for row in ORDERS} == set(CutOrder)
+    for box, choices in ((panel.style_, ConnectorStyle), (panel.order, CutOrder)):
+        assert {box.itemData(row) for row in range(box.count())} == set(choices)
     assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize(
     ("name", "value"),
     [("style_", ConnectorStyle.TEARDROP), ("order", CutOrder.SPREAD), ("profile", "lightburn"), ("dxf_version", "R12")],
@@ -124,7 +123,6 @@ def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(optio
     assert panel.export.isVisible() and options.gallery.view.viewport().height() > 100
 
 
-@pytest.mark.long
 def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     options: MainWindow, until: Until, files: object, tmp_path: Path, qtbot: QtBot
 ) -> None:
@@ -153,7 +151,6 @@ def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     assert panel.rows.text() == ""
 
 
-@pytest.mark.long
 def test_that_as_many_copies_as_fit_follow_the_bed_and_the_sheet_is_not_closed_again(
     options: MainWindow, until: Until
 ) -> None:

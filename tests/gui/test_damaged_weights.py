@@ -19,7 +19,7 @@ from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
-pytestmark = [pytest.mark.torch, pytest.mark.slow]
+pytestmark = pytest.mark.torch
 
 #: Damages, by what the sentence about them says.
 DAMAGES = {
@@ -109,7 +109,6 @@ def test_that_the_window_tells_of_damaged_weights_and_runs_with_another_variant(
     assert controller.document.candidates
 
 
-@pytest.mark.long
 def test_that_a_run_goes_on_when_a_worker_process_is_killed(window: MainWindow, until: Until) -> None:
     controller = window.controller
     controller.start_with("heart")

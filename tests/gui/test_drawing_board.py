@@ -193,7 +193,6 @@ def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> N
 # shapes -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
 def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
     use(board, tool)
@@ -422,7 +421,6 @@ def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, unt
     assert all(unlike < 1e-5 for label, unlike in halves.values() if label != "Flip target")
 
 
-@pytest.mark.long
 def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow) -> None:
     for _ in range(2):
         plate.commands["theme"].trigger()

@@ -45,7 +45,6 @@ def pixels_in(image: QImage, colour: str) -> int:
     return sum(image.pixel(x, y) == wanted for x in range(image.width()) for y in range(image.height()))
 
 
-@pytest.mark.long
 def test_that_the_box_engraves_the_name_and_undo_takes_it_off(shown: MainWindow, until: Until) -> None:
     box = shown.fabrication.options.engrave
     assert not box.isChecked() and engraved_text(shown) == ""
@@ -57,7 +56,6 @@ def test_that_the_box_engraves_the_name_and_undo_takes_it_off(shown: MainWindow,
     assert not box.isChecked() and not shown.controller.document.fabrication.engrave
 
 
-@pytest.mark.long
 def test_that_the_cut_view_shows_the_name_in_its_own_colour(shown: MainWindow, until: Until) -> None:
     shown.commands["cuts"].trigger()
     view = shown.stage.cuts.view
@@ -69,7 +67,6 @@ def test_that_the_cut_view_shows_the_name_in_its_own_colour(shown: MainWindow, u
     assert pixels_in(view.grab().toImage(), LIGHT.engraved) > 10
 
 
-@pytest.mark.long
 def test_that_another_name_is_engraved_at_once_only_where_names_are(shown: MainWindow, until: Until) -> None:
     session = shown.controller.session
     first = plan_of(shown)

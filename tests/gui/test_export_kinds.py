@@ -33,7 +33,6 @@ def test_that_the_window_offers_what_the_exporters_write() -> None:
     assert [kind.extension for kind in FILE_KINDS] == list(exporters())
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("extension", [kind.extension for kind in FILE_KINDS])
 def test_that_the_menu_writes_each_kind(
     designed: MainWindow, files: object, until: Until, tmp_path: Path, extension: str
@@ -47,7 +46,6 @@ def test_that_the_menu_writes_each_kind(
     assert written.startswith(FIRST_BYTES[extension])
 
 
-@pytest.mark.long
 def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: Until) -> None:
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
@@ -56,7 +54,6 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     assert designed.fabrication.more.isEnabled()
 
 
-@pytest.mark.long
 def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_asked_for(
     designed: MainWindow, files: object, qtbot: QtBot, tmp_path: Path
 ) -> None:
@@ -79,7 +76,6 @@ def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_as
             assert (b"MOTION As cut" in image.info["comment"]) is said, name
 
 
-@pytest.mark.long
 def test_that_an_animation_of_cuts_that_cannot_be_planned_is_ideal_and_says_why(
     designed: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
@@ -114,7 +110,6 @@ def test_that_picking_a_file_type_renames_the_proposal(qtbot: QtBot, tmp_path: P
     assert dialog.defaultSuffix() == "svg"
 
 
-@pytest.mark.long
 def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
     designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -142,7 +137,6 @@ def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
     assert controller.document.fabrication.paper == "none"
 
 
-@pytest.mark.long
 def test_that_markers_of_connectors_are_a_choice_that_is_saved(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
@@ -158,7 +152,6 @@ def test_that_markers_of_connectors_are_a_choice_that_is_saved(
     assert store.load(tmp_path / "marked.kiri").fabrication.markers
 
 
-@pytest.mark.long
 def test_that_files_of_an_earlier_export_which_are_gone_are_told(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:

@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.fabricate.material import DEFAULT_PRESET
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.gui.make.export_report import ExportReport, as_text, format_findings, verdict
 from kirigami_studio.gui.session.messages import Tone
@@ -50,7 +51,6 @@ def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
     return window.dialogs.report
 
 
-@pytest.mark.long
 def test_that_an_export_opens_a_report_that_blocks_nothing(
     designed: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -67,7 +67,6 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     assert not report.isVisible()
 
 
-@pytest.mark.long
 def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     first = export(designed, tmp_path / "a.dxf", until)
     designed.controller.export(tmp_path / "b.svg")
@@ -120,7 +119,6 @@ class Desktop(QObject):
         self.opened.append(url.toLocalFile())
 
 
-@pytest.mark.long
 def test_that_show_in_folder_opens_the_files_folder(
     designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
@@ -133,7 +131,6 @@ def test_that_show_in_folder_opens_the_files_folder(
     assert desktop.opened == [str(tmp_path)]
 
 
-@pytest.mark.long
 def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     designed.controller.fabrication.change(profile="lightburn", dxf_version="R12")
     export(designed, tmp_path / "cut.dxf", until)
@@ -142,7 +139,6 @@ def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow
     assert len({entity.dxf.color for entity in drawing.modelspace()}) == 3
 
 
-@pytest.mark.long
 def test_that_one_file_for_each_layer_is_reported_as_its_folder(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
@@ -198,7 +194,6 @@ def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_pat
     assert window.fabrication.options.dxf_version.currentData() == "R12"
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(
     "content",
     [
@@ -242,3 +237,18 @@ def test_that_the_file_that_must_not_be_cut_is_shown_first(designed: MainWindow)
     dialog = ExportReport(designed, (GOOD, BAD), LIGHT)
     assert dialog.shown is BAD and dialog.file.itemText(1).startswith("Do not cut")
     dialog.deleteLater()
+
+
+def test_that_another_file_is_shown_after_the_language_has_changed(
+    window: MainWindow, english_afterwards: None
+) -> None:
+    """Before, the figures were known by their captions, in the language that was spoken when the report opened."""
+    report = ExportReport(window, (GOOD, replace(BAD, path=Path("other.dxf"), pieces=3)), LIGHT)
+    report.show()
+    words.choose("de")
+    report.file.setCurrentIndex(0)
+    assert report.facts["Pieces"].text() == "1" and "Teile: 1" in report.text()
+    report.file.setCurrentIndex(1)
+    assert report.facts["Pieces"].text() == "3"
+    report.close()
+    report.deleteLater()

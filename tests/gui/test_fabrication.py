@@ -11,6 +11,7 @@ import pytest
 from ezdxf.math import Vec3
 from ezdxf.path import make_path
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.session.messages import Tone
@@ -88,7 +89,6 @@ def test_that_export_without_a_design_says_what_to_do_first(heart: MainWindow) -
     assert "Generate one first" in heart.messages.messages[-1].sentence
 
 
-@pytest.mark.long
 def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
@@ -108,3 +108,23 @@ def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
 def length(vertices: Iterable[Vec3]) -> float:
     points = list(vertices)
     return sum(one.distance(other) for one, other in pairwise(points))
+
+
+def test_that_undo_names_the_material_that_was_changed(designed: MainWindow) -> None:
+    """Before, it was "Change the connector width", which a material brings along."""
+    box = designed.fabrication.material
+    other = next(row for row in range(box.count()) if row != box.currentIndex())
+    box.setCurrentIndex(other)
+    box.activated.emit(other)
+    assert designed.controller.document.fabrication.material == box.itemData(other)
+    assert designed.controller.history.undo_label == "Change the material"
+
+
+def test_that_the_summary_no_longer_says_trimmed_once_the_trim_is_off(designed: MainWindow, until: Until) -> None:
+    designed.commands["trim"].trigger()
+    until(lambda: "trimmed" in designed.fabrication.summary.text())
+    designed.commands["trim"].trigger()  # and at once, not when the new plan has been made
+    said = [label.text() for label in designed.findChildren(QLabel) if label.isVisible() and "trimmed" in label.text()]
+    assert said == []
+    tips = [one.toolTip() for one in designed.findChildren(QWidget) if "Trimmed:" in one.toolTip()]
+    assert tips == []

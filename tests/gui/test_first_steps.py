@@ -200,7 +200,6 @@ def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWi
     assert not any("DXF" in effect for effect, _ in sheet.showing())
 
 
-@pytest.mark.long
 def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
     window.controller.use_preferences(kept)

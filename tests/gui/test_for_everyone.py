@@ -101,7 +101,6 @@ def inner(widget: QWidget) -> bool:
     )
 
 
-@pytest.mark.long
 def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow) -> None:
     for opened in (whole, cuts, tour, materials, guide, shortcuts, library, board):
         place = opened(designed)

@@ -48,7 +48,6 @@ def fill(window: MainWindow, size: tuple[int, int]) -> LayoutView:
     return view
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(("size", "more"), list(product(SIZES, COLOURED)))
 def test_that_no_legend_lies_on_the_fitted_design(
     designed: MainWindow, size: tuple[int, int], more: frozenset[Overlay]

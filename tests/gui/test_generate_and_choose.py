@@ -15,7 +15,8 @@ from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import USUAL
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]
@@ -57,7 +58,6 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     assert heart.controller.document.candidates == found
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
     heart.controller.change_settings(grid=SMALL)
@@ -92,7 +92,6 @@ def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
     assert shown == [0, 2]
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
     heart.controller.change_settings(grid=SMALL)
@@ -138,7 +137,6 @@ def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainW
     assert heart.controller.document.candidates == before.candidates == ()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(heart: MainWindow, until: Until) -> None:
     stop_early(heart, until)
@@ -150,7 +148,6 @@ def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(hea
     assert heart.controller.document.candidates == ()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: MainWindow, until: Until) -> None:
     heart.controller.change_settings(grid=SMALL)

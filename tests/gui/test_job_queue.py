@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtCore import QEventLoop, QThread, QTimer
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.errors import KirigamiError, TargetError
 from kirigami_studio.foundation.steps import single
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue
 
@@ -165,3 +165,40 @@ def test_that_a_dialog_opened_by_a_report_hears_the_next_ones(queue: JobQueue, u
     until(lambda: not queue.busy and bool(closed_by))
     times_out.stop()
     assert heard == [0, 1, 2] and closed_by == [0]
+
+
+class UnspeakableError(Exception):
+    """An error whose own text cannot be made."""
+
+    def __str__(self) -> str:
+        raise ValueError("no text")
+
+
+class UnspeakableRefusalError(KirigamiError):
+    """The same of the program's own errors."""
+
+    def __str__(self) -> str:
+        raise RecursionError("no text")
+
+
+@pytest.mark.parametrize(
+    "error",
+    [UnspeakableError(), UnspeakableRefusalError("target.empty"), SystemExit(3)],
+    ids=lambda error: type(error).__name__,
+)
+def test_that_a_job_ends_whatever_its_error_says(
+    queue: JobQueue, until: Until, error: BaseException, caplog: pytest.LogCaptureFixture
+) -> None:
+    def steps(cancel: Callable[[], bool]) -> Iterator[object]:
+        yield 1
+        raise error
+
+    failures: list[tuple[str, str]] = []
+    queue.start("reading heart.svg", steps, JobCallbacks(on_failed=lambda *failure: failures.append(failure)))
+    until(lambda: bool(failures))
+    assert not queue.busy
+    assert failures[0][0] and type(error).__name__ in failures[0][1]
+    done: list[bool] = []
+    queue.start("counting", single(lambda cancel: 1), JobCallbacks(on_finished=lambda: done.append(True)))
+    until(lambda: bool(done))  # and the thread lives
+    caplog.clear()

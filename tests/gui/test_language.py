@@ -1,185 +1,207 @@
-"""The window's language: changed while it is open, remembered, and the same for words and numbers."""
+"""The window's language: chosen in the menu, there at the next start with the project as it was, and remembered."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QLocale
-from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import (
-    QAbstractButton,
-    QAbstractSpinBox,
-    QComboBox,
-    QDialogButtonBox,
-    QLabel,
-    QMenu,
-    QPushButton,
-    QWidget,
-)
+from PySide6.QtCore import QCoreApplication, QEvent, QLocale
+from PySide6.QtGui import QKeySequence
+from PySide6.QtWidgets import QDialogButtonBox, QLabel, QMenu, QPushButton
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.foundation.words import again, language, number, tr
-from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.foundation.words import language, number, tr
+from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.target.target_view import TargetView
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
-from kirigami_studio.gui.widgets.theme import DARK
+from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.submenus import LanguageMenu
-from kirigami_studio.project import edits, preferences
+from kirigami_studio.project import preferences
 from tests.gui.test_parts import LOGO, opened, written
 
 Until = Callable[[Callable[[], bool]], None]
-#: The same in both languages: names, units, abbreviations of the field, numbers, keys; and single letters.
-NEUTRAL = re.compile(
-    r"\b(mm|cm|in|sIoU|IoU|TV|CV|DXF|SVG|PDF|PNG|GIF|R12|R2010|A4|JPG|LightBurn|Kirigami Studio|heart|kiri|Auto|Ideal|"
-    r"System|English|Deutsch|Status|Text|Layout|Prior|Ellipse|[A-Za-z])\b|[^a-zA-Z]"
-)
-#: Names of materials and machines are data.
-DATA = re.compile(r"ComboBox material|ChoiceBox machineProfile|QLabel muted|FittingLabel|QAction $|QAction recent")
-#: What a person reads or is read to, by the property that holds it.
-PROPERTIES = ("toolTip", "statusTip", "accessibleName", "accessibleDescription", "placeholderText", "suffix", "title")
 
 
 @pytest.fixture(autouse=True)
-def languages() -> Iterator[None]:
+def languages(english_afterwards: None) -> None:
     """Speak the desktop's language again when the test is over."""
-    wanted = os.environ.get("LANGUAGE")
-    yield
-    os.environ.pop("LANGUAGE", None)
-    if wanted is not None:
-        os.environ["LANGUAGE"] = wanted
-    speak(SYSTEM)
 
 
-def entry(menu: LanguageMenu, code: str) -> QAction:
-    return menu.choices[code]
+@pytest.fixture
+def started_again(until: Until) -> Iterator[Callable[[MainWindow], MainWindow]]:
+    """Start a window again as the program does, in the language that is preferred."""
+    made: list[MainWindow] = []
+
+    def start(earlier: MainWindow) -> MainWindow:
+        earlier.start_again()
+        assert earlier.starts_again and not earlier.isVisible()
+        speak(earlier.appearance.language)
+        window = create_window(LIGHT, earlier)
+        made[:] = [window]
+        window.show()
+        return window
+
+    yield start
+    for window in made:
+        window.controller.history.mark_saved()
+        assert window.close()
+        window.deleteLater()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
 
 
-def texts(window: MainWindow) -> list[tuple[str, str, str]]:
-    """All that can be read: whose, what, and the text."""
-    found = []
-    parts: list[QWidget | QAction] = [*window.findChildren(QWidget), *window.findChildren(QAction)]
-    for part in parts:
-        whose = f"{type(part).__name__} {part.objectName()}"
-        found += [(whose, name, str(part.property(name) or "")) for name in PROPERTIES]
-        if isinstance(part, QLabel | QAbstractButton | QAbstractSpinBox | QAction):
-            found.append((whose, "text", part.text()))
-        if isinstance(part, QComboBox):
-            found += [(whose, f"item {row}", part.itemText(row)) for row in range(part.count())]
-    return sorted(found)
+@pytest.fixture
+def earlier(until: Until, project_file: Path) -> MainWindow:
+    """A window with three designs that is going to be started again."""
+    window = create_window(LIGHT)
+    window.show()
+    window.controller.open_project(project_file)
+    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    return window
 
 
-def test_that_the_language_menu_changes_every_menu_at_once(window: MainWindow) -> None:
-    assert window.menuBar().actions()[0].text() == "&File"
-    entry(window.language_menu, "de").trigger()
+def offers(window: MainWindow) -> list[Message]:
+    return [one for one in window.messages.messages if "started again" in one.sentence]
+
+
+def test_that_another_language_is_offered_for_the_next_start(window: MainWindow) -> None:
+    window.language_menu.choices["de"].trigger()
+    assert window.menuBar().actions()[0].text() == "&File" and language() == "en"
+    assert window.language_menu.choices["de"].isChecked()
+    assert [label for label, _ in offers(window)[0].actions] == ["Start again now"]
+    window.language_menu.choices["en"].trigger()
+    assert offers(window) == []  # it is the window's own
+
+
+def test_that_starting_again_loses_nothing(
+    earlier: MainWindow, started_again: Callable[[MainWindow], MainWindow], until: Until
+) -> None:
+    controller = earlier.controller
+    controller.choose(controller.document.candidates[1])
+    controller.change_settings(k=5)
+    controller.fabrication.change(width_mm=123.0)
+    controller.undo()
+    document, path, steps = controller.document, controller.path, controller.history.steps
+    earlier.language_menu.choices["de"].trigger()
+    (offer,) = offers(earlier)
+    assert offer.actions[0][1] == earlier.start_again
+    window = started_again(earlier)
     assert window.menuBar().actions()[0].text() == "&Datei"
     assert window.commands["save"].text().replace("&", "") == "Projekt speichern"
     assert "Strg+S" in window.commands["save"].toolTip()
     assert window.run.generate.text() == "Erzeugen"
-    assert entry(window.language_menu, "de").isChecked()
-    entry(window.language_menu, "en").trigger()
-    assert window.menuBar().actions()[0].text() == "&File"
-    assert window.run.generate.text() == "Generate"
+    controller = window.controller
+    assert controller.document is document and controller.path == path and window.isWindowModified()
+    assert controller.history.steps == steps and controller.history.unsaved
+    until(lambda: controller.stage is not None and window.fabrication.export.isEnabled())
+    assert controller.stage is not None and controller.stage.candidate is document.candidates[1]
+    assert len(window.gallery.view.model_.all_entries) == 3
+    window.commands["redo"].trigger()
+    assert controller.document.fabrication.width_mm == 123.0
+    for _ in range(3):
+        window.commands["undo"].trigger()
+    assert controller.document.settings.k != 5 and not controller.history.unsaved
 
 
-def test_that_changing_the_language_loses_nothing(designed: MainWindow) -> None:
-    controller, stage = designed.controller, designed.stage
-    controller.choose(controller.document.candidates[1])
-    controller.change_settings(k=5)
-    stage.deployment.set_phi(1.0)
-    stage.view.set_phi(1.0)
-    document, steps, phi = controller.document, controller.history.undo_label, stage.view.phi
-    index, overlays = designed.gallery.view.currentIndex().row(), stage.view.overlays
-    designed.speak("de")
-    assert controller.document is document
-    assert (stage.view.phi, stage.view.overlays) == (phi, overlays)
-    assert designed.gallery.view.currentIndex().row() == index
-    assert controller.document.settings.k == 5
-    assert controller.stage is not None
-    assert controller.stage.candidate is document.candidates[1]
-    assert again(steps or "") == "Anzahl der Entwürfe ändern"
-    designed.commands["undo"].trigger()
-    assert controller.document.settings.k != 5
+def test_that_the_picture_behind_a_target_is_still_known(
+    photo: Path, started_again: Callable[[MainWindow], MainWindow], until: Until, tmp_path: Path
+) -> None:
+    first = create_window(LIGHT)
+    first.show()
+    first.controller.targeting.open(str(photo))
+    until(lambda: first.controller.document.target is not None)
+    again = started_again(started_again(first))
+    controller = again.controller
+    assert controller.targeting.tracer.picture_of(controller.document.target) is not None
+    before = controller.document.target
+    controller.targeting.change_threshold(0.75)
+    until(lambda: controller.document.target != before)
+    again.controller.save(tmp_path / "traced.kiri")
+    until(lambda: not controller.history.unsaved)
+    assert [one.sentence for one in again.messages.messages if "picture" in one.sentence] == []
 
 
-def test_that_a_run_goes_on_while_the_language_changes(heart: MainWindow, until: Until) -> None:
+def test_that_a_run_is_not_lost_by_starting_again(heart: MainWindow, until: Until) -> None:
     heart.controller.change_settings(k=2, grid=(4, 4), auto_grid=False, polish=0)
     heart.run.generate.click()
-    heart.speak("de")
-    assert heart.controller.running
+    heart.language_menu.choices["de"].trigger()
+    offers(heart)[0].actions[0][1]()
+    assert heart.isVisible() and heart.controller.running and not heart.starts_again
+    assert len(offers(heart)) == 1 and heart.status_text.text().startswith("Wait for the run")
     until(lambda: not heart.controller.running)
     assert len(heart.controller.document.candidates) == 2
-    assert "erzeugt" in heart.status_text.text()
 
 
-def test_that_no_text_of_the_window_is_left_in_the_language_before(designed: MainWindow) -> None:
-    english = {text for _, _, text in texts(designed)}
-    designed.speak("de")
-    kept = {
-        (whose, text)
-        for whose, _, text in texts(designed)
-        if text in english and NEUTRAL.sub("", text.replace("&", ""))
-    }
-    assert {(whose, text) for whose, text in kept if not DATA.match(whose)} == set()
-    designed.speak("en")
-    assert {text for _, _, text in texts(designed)} == english
+#: The program as it is started; while something is unsaved it is asked for German, then for English, and says what
+#: each window has.
+PROGRAM = """
+import json, os, sys
+from functools import partial
+from PySide6.QtCore import QTimer
+from kirigami_studio.gui.window import application
+
+told = []
+def use(window):
+    controller = window.controller
+    if controller.stage is None:
+        return QTimer.singleShot(50, partial(use, window))
+    if not told:
+        controller.change_settings(k=5)
+    told.append([window.menuBar().actions()[0].text(), controller.document.settings.k])
+    if len(told) < 3:
+        window.appearance.choose_language("de" if len(told) == 1 else "en")
+        return window.start_again()
+    controller.undo()
+    told.append(controller.history.unsaved)
+    window.close()
+open_window = application.open_window
+def opened(*arguments):
+    window = open_window(*arguments)
+    QTimer.singleShot(50, partial(use, window))
+    return window
+application.open_window = opened
+print(json.dumps([application.run(["kirigami-studio", sys.argv[1]]), *told]))
+"""
 
 
-def test_that_an_open_question_follows_the_language_and_stays_in_it(window: MainWindow) -> None:
-    sentence, messages = tr("No connector selected"), window.messages
-    messages.add(Message(sentence, Tone.WARNING, actions=((tr("Replace"), window.update),)))
-    window.speak("de")
-    window.set_theme(DARK)  # the bar shows its message anew
-    assert messages.sentence.text() == again(sentence) != sentence
-    assert "Ersetzen" in [button.text() for button in messages.findChildren(QPushButton)]
+def test_that_the_program_goes_on_in_the_other_language(project_file: Path, tmp_path: Path) -> None:
+    folders = {name: str(tmp_path / name) for name in ("XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME", "HOME")}
+    command = [sys.executable, "-c", PROGRAM, str(project_file)]
+    done = subprocess.run(
+        command,
+        env={**os.environ, **folders, "LANGUAGE": "en"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    told = [["&File", 5], ["&Datei", 5], ["&File", 5]]
+    assert json.loads(done.stdout.splitlines()[-1]) == [0, *told, False], done.stderr
 
 
-def test_that_what_is_told_of_the_cut_sheet_follows_the_language(designed: MainWindow, until: Until) -> None:
-    fabrication, ends = designed.fabrication, designed.stage.ends
-    until(lambda: designed.stage.verdict.isVisible() and bool(fabrication.summary.text()))
-    assert "cut" in fabrication.summary.text() and "heart" in ends.target.accessibleName()
-    designed.speak("de")
-    designed.resize(1000, 640)  # a small window shows other texts than a large one
-    designed.resize(1440, 900)
-    until(lambda: "Schnitt" in fabrication.summary.text())
-    level = designed.stage.verdict.headline.text()
-    assert fabrication.warnings.text().startswith(level) and level != "Ready to cut"
-    assert "Herz" in ends.target.accessibleName()
-
-
-def test_that_texts_in_the_drawing_board_follow_the_language(heart: MainWindow) -> None:
-    heart.target.set_editing(True)
-    heart.target.buttons["points"].click()
-    heart.speak("de")
-    assert heart.target.tools.done_button.text() == "Fertig"
-    assert heart.target.editing
-
-
-def test_that_the_empty_gallery_follows_the_language(window: MainWindow) -> None:
-    assert window.gallery.view.hint[0] == "No designs yet"
-    window.speak("de")
+@pytest.mark.usefixtures("german")
+def test_that_the_empty_gallery_is_german(window: MainWindow) -> None:
     assert window.gallery.view.hint[0] == "Noch keine Entwürfe"
     assert window.gallery.view.hint[1].startswith("Hier erscheinen die Entwürfe")
 
 
-def test_that_every_step_of_the_tour_is_said_in_the_language_of_the_moment(designed: MainWindow) -> None:
-    designed.speak("de")
+@pytest.mark.usefixtures("german")
+def test_that_the_tour_is_german(designed: MainWindow) -> None:
     designed.tour.start()
     assert designed.tour.callout.title.text() == "Ein Ziel wählen"
     designed.tour.callout.next.click()
     assert designed.tour.callout.title.text() == "Entwürfe erzeugen"
-    designed.speak("en")
-    assert designed.tour.callout.title.text() == "Generate designs"
     designed.tour.end()
 
 
-@pytest.mark.parametrize("code", ["en", "de"])
-def test_that_what_has_no_room_ends_with_dots(designed: MainWindow, code: str) -> None:
-    designed.speak(code)
+def without_room(designed: MainWindow) -> None:
     designed.resize(1280, 720)
     material, order = designed.fabrication.material, designed.gallery.bar.order
     assert material.currentText().startswith(material.shown_text().removesuffix("…"))
@@ -190,13 +212,19 @@ def test_that_what_has_no_room_ends_with_dots(designed: MainWindow, code: str) -
     assert material.shown_text() == material.currentText()
 
 
-@pytest.mark.long(but=4)
+def test_that_what_has_no_room_ends_with_dots(designed: MainWindow) -> None:
+    without_room(designed)
+
+
+@pytest.mark.usefixtures("german")
+def test_that_what_has_no_room_in_german_ends_with_dots(designed: MainWindow) -> None:
+    without_room(designed)
+
+
 @pytest.mark.parametrize("code", ["en", "de"])
 @pytest.mark.parametrize("height", [40, 120, 190, 264, 500])
-def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(
-    window: MainWindow, code: str, height: int
-) -> None:
-    window.speak(code)
+def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(qtbot: QtBot, code: str, height: int) -> None:
+    speak(code)
     view = TargetView()
     view.resize(146, height)
     picture = view.grab().toImage()
@@ -205,28 +233,25 @@ def test_that_the_hint_of_an_empty_target_is_shown_whole_or_not_at_all(
     view.deleteLater()
 
 
+#: Names of materials and machines are data.
+DATA = re.compile(r"muted|material|machineProfile")
+
+
+@pytest.mark.usefixtures("german")
 def test_that_numbers_have_the_decimal_sign_of_the_language(designed: MainWindow) -> None:
-    designed.speak("de")
     assert number(2.5, ".2f") == "2,50"
     assert tr("{mm:.2f} m", mm=2.5) == "2,50 m"
     assert "," in designed.fabrication.lengths["width_mm"].text()
-    mixed = [(whose, text) for whose, _, text in texts(designed) if has_point(text) and not DATA.match(whose)]
-    assert mixed == []
-    designed.speak("en")
+    labels = {label.objectName(): label.text() for label in designed.findChildren(QLabel)}
+    assert {name: text for name, text in labels.items() if re.search(r"\d\.\d", text) and not DATA.search(name)} == {}
+
+
+def test_that_english_numbers_have_a_point(designed: MainWindow) -> None:
     assert "." in designed.fabrication.lengths["width_mm"].text()
 
 
-def has_point(text: str) -> bool:
-    """Whether a number in a text has a decimal point."""
-    return any(before.isdigit() and after.isdigit() for before, sign, after in triples(text) if sign == ".")
-
-
-def triples(text: str) -> Iterator[tuple[str, str, str]]:
-    yield from zip(text, text[1:], text[2:], strict=False)
-
-
+@pytest.mark.usefixtures("german")
 def test_that_qts_own_buttons_speak_the_language(window: MainWindow, qtbot: QtBot) -> None:
-    window.speak("de")
     box = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
     qtbot.addWidget(box)
     assert box.button(QDialogButtonBox.StandardButton.Cancel).text().replace("&", "") == "Abbrechen"
@@ -236,44 +261,36 @@ def test_that_qts_own_buttons_speak_the_language(window: MainWindow, qtbot: QtBo
 def test_that_the_language_is_remembered(window: MainWindow, tmp_path: Path) -> None:
     path = tmp_path / "preferences.toml"
     window.controller.use_preferences(path)
-    entry(window.language_menu, "de").trigger()
+    window.language_menu.choices["de"].trigger()
     assert preferences.load(path).language == "de"
-    entry(window.language_menu, SYSTEM).trigger()
+    window.language_menu.choices[SYSTEM].trigger()
     assert preferences.load(path).language == SYSTEM
-    assert language() == "en"
 
 
 def test_that_a_desktop_in_german_opens_a_german_window(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANGUAGE", "de_AT.UTF-8:fr")
+    speak("en")
+    assert (language(), tr("Done")) == ("en", "Done")
     speak(SYSTEM)
     assert (language(), tr("Done")) == ("de", "Fertig")
 
 
 def test_that_the_locale_of_the_desktop_stays_where_it_speaks_the_language(window: MainWindow) -> None:
-    window.speak("en")
+    speak("en")
     assert QLocale().decimalPoint() == "."
     assert window.settings.rows.locale().decimalPoint() == "."
 
 
-def test_that_steps_of_the_history_are_listed_in_the_new_language(designed: MainWindow) -> None:
-    designed.controller.session.apply(edits.set_settings(designed.controller.document, k=7))
-    designed.commands["history"].trigger()
-    assert designed.dialogs.history is not None
-    designed.speak("de")
-    steps = designed.dialogs.history.steps
-    assert "Anzahl der Entwürfe ändern" in [steps.item(row).text() for row in range(steps.count())]
-
-
-def test_that_the_sheet_of_shortcuts_is_written_anew(window: MainWindow) -> None:
+@pytest.mark.usefixtures("german")
+def test_that_the_sheet_of_shortcuts_is_german(window: MainWindow) -> None:
     window.commands["shortcuts"].trigger()
-    window.speak("de")
     assert window.dialogs.shortcuts is not None
     lines = dict(window.dialogs.shortcuts.showing())
     assert lines["Das Projekt speichern"] == "Strg+S"
 
 
+@pytest.mark.usefixtures("german")
 def test_that_one_letter_means_one_entry_in_each_german_menu(window: MainWindow) -> None:
-    window.speak("de")
     titles = [action.text() for action in window.menuBar().actions()]
     assert len({QKeySequence.mnemonic(title).toString() for title in titles}) == len(titles)
     for bar_entry in window.menuBar().actions():
@@ -287,10 +304,10 @@ def test_that_one_letter_means_one_entry_in_each_german_menu(window: MainWindow)
     assert [text for text in said if "&" in text and QKeySequence.mnemonic(text).toString() in menus] == []
 
 
+@pytest.mark.usefixtures("german")
 def test_that_sizes_of_parts_have_the_decimal_sign_of_the_language(
     window: MainWindow, until: Until, tmp_path: Path
 ) -> None:
-    window.speak("de")
     window.files.open(str(written(tmp_path, LOGO)))
     picker = opened(window, until)
     assert "40,0 \N{MULTIPLICATION SIGN} 40,0 mm" in picker.size_.text()

@@ -163,10 +163,8 @@ def test_that_many_designs_are_compared_in_the_worker(
     assert model.index(head(window), 0).data(ALIKE_ROLE) == 2
 
 
-def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(
-    stacked: MainWindow, english_afterwards: None
-) -> None:
-    stacked.speak("de")
+@pytest.mark.usefixtures("german")
+def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(stacked: MainWindow) -> None:
     stacked.commands["all_designs"].trigger()
     page = stacked.connections.all_designs.page
     assert page is not None

@@ -183,7 +183,6 @@ def test_that_fitting_again_can_be_stopped_and_leaves_the_new_order(balanced: Ma
     assert balanced.controller.document.settings.regular == 0.8
 
 
-@pytest.mark.long
 def test_that_keys_move_the_balance_and_the_last_one_counts(balanced: MainWindow, until: Until) -> None:
     slider = balanced.settings.regular
     slider.setFocus()
@@ -204,7 +203,6 @@ def test_that_without_designs_the_balance_is_a_setting(window: MainWindow) -> No
     assert not window.controller.regularity.busy
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_the_balance_also_ranks_what_a_run_has_found_so_far_and_what_comes_of_it(
     heart: MainWindow, until: Until

@@ -44,14 +44,11 @@ def test_that_a_preset_can_be_copied_but_not_changed(editor: MaterialEditor, qtb
     assert presets()["film-uv"] == library().materials["film-uv"]
 
 
-def test_that_a_german_window_tells_of_presets_in_german(
-    editor: MaterialEditor, designed: MainWindow, english_afterwards: None
-) -> None:
-    english = editor.form.texts["note"].text()
-    designed.speak("de")
-    editor.form.show_material(editor.chosen, editable=False)
+@pytest.mark.usefixtures("german")
+def test_that_a_german_window_tells_of_presets_in_german(editor: MaterialEditor, designed: MainWindow) -> None:
+    english = editor.chosen.note
     assert editor.form.texts["note"].text().startswith("Schnittfuge nach") and english.startswith("Kerf from")
-    assert editor.form.changes() == {} and editor.chosen.note == english
+    assert editor.form.changes() == {}
     assert "Schnittfuge nach" in designed.fabrication.material.toolTip()
 
 
@@ -130,12 +127,10 @@ def test_that_a_form_that_nobody_touched_changes_nothing(qtbot: QtBot) -> None:
 
 
 def test_that_every_number_says_its_unit(editor: MaterialEditor) -> None:
-    for number in NUMBERS:
-        box = editor.form.numbers[number.field]
-        assert isinstance(box, QDoubleSpinBox)
-        assert (
-            box.suffix() == f" {number.unit}" and number.unit in box.toolTip() and number.unit in box.accessibleName()
-        )
+    for name in NUMBERS:
+        box, unit = editor.form.numbers[name], editor.form.fields.settings[name].setting.unit
+        assert isinstance(box, QDoubleSpinBox) and unit
+        assert box.suffix() == f" {unit}" and unit in box.toolTip() and unit in box.accessibleName()
 
 
 def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtBot) -> None:

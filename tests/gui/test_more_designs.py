@@ -137,7 +137,6 @@ def test_that_again_draws_on_the_designs_own_grid_with_the_chosen_model(drawn: M
     assert sum("Model: prior" in tip for tip in tips) == 3
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow, until: Until, tmp_path: Path) -> None:
     controller = drawn.controller
@@ -171,7 +170,6 @@ def test_that_exports_tell_the_settings_of_the_designs_own_run(drawn: MainWindow
     check("opened")
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_stopped_further_run_leaves_what_was_there(drawn: MainWindow, qtbot: QtBot, until: Until) -> None:
     drawn.controller.change_settings(k=100)
@@ -208,7 +206,6 @@ def test_that_more_like_this_adds_designs_near_the_chosen_one(drawn: MainWindow,
     assert any("generated near another design" in tip for tip in tips)
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_generate_keeps_pinned_designs_of_the_same_grid_only(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller
@@ -259,7 +256,6 @@ def test_that_the_next_seed_is_the_first_that_no_design_has(designs: Document) -
     assert next_seed(replace(designs, settings=replace(designs.settings, seed=7))) == 8
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_run_begun_at_once_after_another_is_not_ended_by_it(drawn: MainWindow, until: Until) -> None:
     controller = drawn.controller

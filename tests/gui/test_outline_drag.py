@@ -129,7 +129,6 @@ def test_that_the_outline_follows_while_the_worker_is_in_a_long_step(by_hand: Ma
     assert by_hand.controller.history.undo_label == LABEL
 
 
-@pytest.mark.long
 def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainWindow, until: Until) -> None:
     view, history, before = large.stage.view, large.controller.history, chosen(large)
     void, vertex = (LARGE // 2, LARGE // 2), top_of(large)
@@ -149,7 +148,6 @@ def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainW
     assert chosen(large).sheet.field.ratio[void] == pytest.approx(1.05**2 * first[void], rel=2e-3)
 
 
-@pytest.mark.long
 def test_that_undo_right_after_letting_go_takes_the_whole_drag_back(large: MainWindow, until: Until) -> None:
     before = chosen(large)
     let_go(large, take(large, top_of(large), *UP))
@@ -161,7 +159,6 @@ def test_that_undo_right_after_letting_go_takes_the_whole_drag_back(large: MainW
     assert seen(large) == before.sheet.field
 
 
-@pytest.mark.long
 def test_that_escape_in_the_middle_of_a_step_leaves_the_design_as_it_was(large: MainWindow, until: Until) -> None:
     before, view = chosen(large), large.stage.view
     for shown in (False, True):
@@ -205,7 +202,6 @@ def test_that_choosing_another_design_keeps_what_was_seen_of_a_drag_as_one_step(
     assert controller.document.candidates[1:] == document.candidates[1:]
 
 
-@pytest.mark.long
 def test_that_a_project_that_is_opened_during_a_drag_gets_nothing_of_it(
     large: MainWindow, until: Until, designs: Document, project_file: Path
 ) -> None:
@@ -221,7 +217,6 @@ def test_that_a_project_that_is_opened_during_a_drag_gets_nothing_of_it(
     assert designs.candidate is not None and seen(large) == designs.candidate.sheet.field
 
 
-@pytest.mark.long
 def test_that_undo_during_a_drag_of_which_nothing_was_seen_undoes_the_step_before(
     large: MainWindow, until: Until
 ) -> None:
@@ -237,7 +232,6 @@ def test_that_undo_during_a_drag_of_which_nothing_was_seen_undoes_the_step_befor
     assert seen(large) == before.sheet.field and large.controller.history.undo_label is None
 
 
-@pytest.mark.long
 def test_that_the_window_closes_in_the_middle_of_a_step(large: MainWindow) -> None:
     assert len(large.findChildren(QThread)) == 1  # no gesture, no thread for it
     take(large, top_of(large), *UP)

@@ -130,7 +130,6 @@ def test_that_the_greatest_distance_of_two_squares_is_where_they_differ_most() -
     assert boundary_gap(square, square).mean == 0.0
 
 
-@pytest.mark.long
 def test_that_the_mean_distance_agrees_with_a_dense_search(designed: MainWindow) -> None:
     view, stage = designed.stage.view, designed.controller.stage
     view.grab()

@@ -298,7 +298,6 @@ def test_that_a_picture_of_two_shapes_asks_and_the_usual_one_keeps_its_threshold
     assert target is not None and target.size is not None and target.size[0] == pytest.approx(200, abs=2)
 
 
-@pytest.mark.long
 def test_that_a_cut_file_is_the_second_target_of_its_design_or_a_start_like_its_sheet_unasked(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:

@@ -84,7 +84,6 @@ def test_that_an_svg_draws_in_lines_and_agrees_with_the_screen(
     assert same.mean() > 0.93
 
 
-@pytest.mark.long
 def test_that_every_view_in_sight_can_be_written(
     designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, files: object
 ) -> None:
@@ -159,7 +158,6 @@ def test_that_copying_takes_the_view_in_use(designed: MainWindow, picturing: Pic
     assert isinstance(largest, Canvas) and largest is designed.stage.view
 
 
-@pytest.mark.long
 def test_that_copied_cuts_are_the_exported_file(
     designed: MainWindow, picturing: PictureMaker, tmp_path: Path, qtbot: QtBot, until: Until
 ) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QPushButton
 from pytestqt.qtbot import QtBot
@@ -14,7 +13,7 @@ from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 Until = Callable[[Callable[[], bool]], None]
 CONTROL = Qt.KeyboardModifier.ControlModifier
@@ -103,7 +102,6 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     assert designed.controller.document == NEW
 
 
-@pytest.mark.long
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(
     designed: MainWindow, until: Until
 ) -> None:

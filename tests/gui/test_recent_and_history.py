@@ -21,6 +21,7 @@ from kirigami_studio.project import edits, recent
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
 from kirigami_studio.project.recent import Recent
+from tests.refusals import refused
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -160,7 +161,6 @@ def test_that_a_list_that_was_cleared_elsewhere_stays_cleared(window: MainWindow
     assert recent.load(kept) == mine.present == Recent((str(tmp_path / "three.kiri"),))
 
 
-@pytest.mark.long
 def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
     kept = tmp_path / "recent.toml"
     script = (
@@ -235,5 +235,5 @@ def test_that_going_to_a_step_undoes_as_often_as_it_takes(designs: Document) -> 
         before = history.position
         assert history.go_to(goal) == (goal != before)
         assert history.document is seen[goal] and history.position == goal and len(history.steps) == 3
-    with pytest.raises(ProjectError, match="no step 4"):
+    with refused(ProjectError, "history.no_such_step", position=4):
         history.go_to(4)

@@ -18,7 +18,8 @@ from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import edits, recovery, store
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.recovery import Note
+from kirigami_studio.project.recovery import RecoveryNote
+from tests.refusals import refused
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -101,7 +102,6 @@ def test_that_a_killed_studio_loses_nothing(
     assert kept_files(folder) == [] and store.load(project_file).fabrication.width_mm == 123.0
 
 
-@pytest.mark.long
 def test_that_work_left_for_later_is_offered_again_from_the_file_menu(
     window: MainWindow, project_file: Path, folder: Path, until: Until
 ) -> None:
@@ -173,7 +173,7 @@ def test_that_discarded_work_is_gone_and_work_kept_for_later_is_asked_about_agai
     window: MainWindow, designs: Document, folder: Path, until: Until
 ) -> None:
     for name in ("one", "two"):
-        recovery.keep(designs, Note(name, "", recovery.now()), folder / f"{name}.kiri")
+        recovery.keep(designs, RecoveryNote(name, "", recovery.now()), folder / f"{name}.kiri")
     recovering = window.controller.filing.recovery
     recovering.use(folder)
     until(lambda: len(asked(window)) == 2)
@@ -191,7 +191,7 @@ def test_that_discarded_work_is_gone_and_work_kept_for_later_is_asked_about_agai
 def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     designed: MainWindow, designs: Document, folder: Path, until: Until
 ) -> None:
-    recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now()), folder / "other.kiri")
+    recovery.keep(edits.choose(designs, 2).document, RecoveryNote("other", "", recovery.now()), folder / "other.kiri")
     designed.controller.fabrication.change(width_mm=88.0)
     before = designed.controller.document
     designed.controller.filing.recovery.use(folder)
@@ -208,7 +208,7 @@ def test_that_recovered_work_stays_until_it_is_kept_itself_not_the_work_before_i
     designed: MainWindow, designs: Document, folder: Path, until: Until
 ) -> None:
     left = folder / "other.kiri"
-    recovery.keep(edits.choose(designs, 2).document, Note("other", "", recovery.now()), left)
+    recovery.keep(edits.choose(designs, 2).document, RecoveryNote("other", "", recovery.now()), left)
     recovering = designed.controller.filing.recovery
     recovering.use(folder)
     until(lambda: len(asked(designed)) == 1)
@@ -261,12 +261,12 @@ def test_that_damaged_work_is_named_and_can_be_discarded(window: MainWindow, fol
 
 
 def test_that_kept_work_is_a_whole_project(designs: Document, tmp_path: Path) -> None:
-    note = Note("heart.kiri", "/somewhere/heart.kiri", recovery.now())
+    note = RecoveryNote("heart.kiri", "/somewhere/heart.kiri", recovery.now())
     recovery.keep(designs, note, tmp_path / "kept.kiri")
     assert store.load(tmp_path / "kept.kiri") == designs
     assert recovery.read_note(tmp_path / "kept.kiri") == note
     store.save(designs, tmp_path / "project.kiri")
-    with pytest.raises(ProjectError, match="damaged"):
+    with refused(ProjectError, "recovery.damaged"):
         recovery.read_note(tmp_path / "project.kiri")
 
 

@@ -71,7 +71,6 @@ def test_that_an_edge_cut_follows_the_pointer_on_the_flat_sheet_and_is_one_undo_
     assert chosen(by_hand) == after
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("mouth", [TOP, RIGHT, BOTTOM, LEFT_SIDE])
 def test_that_the_cut_stays_at_the_pointer_while_the_sheet_is_open(
     by_hand: MainWindow, until: Until, mouth: int
@@ -105,7 +104,6 @@ def test_that_edge_cuts_keep_their_distance_from_neighbours_and_corners(by_hand:
         assert positions(by_hand)[TOP] == pytest.approx(nearest)
 
 
-@pytest.mark.long
 def test_that_arrow_keys_reach_an_edge_cut_and_move_it(by_hand: MainWindow, until: Until) -> None:
     view, gestures = flat(by_hand), by_hand.stage.view.voids
     view.setFocus()

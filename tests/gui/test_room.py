@@ -42,7 +42,6 @@ def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
     assert designed.fabrication.options.fold.isVisible()
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize(
     ("width", "height", "rows"),
     [(1000, 640, 1.5), (1280, 720, 2.0), (1366, 768, 2.0), (1440, 900, 2.0), (1600, 1000, 2.0), (1920, 1080, 2.0)],
@@ -71,7 +70,6 @@ def test_that_the_usual_window_shows_choices_and_sums_the_numbers_up(designed: M
     assert panel.extent is Extent.CHOICES and len(set(said)) == 3
 
 
-@pytest.mark.long
 def test_that_the_choice_of_how_much_is_shown_lasts(designed: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     resized(designed, 1440, 900)
@@ -113,7 +111,6 @@ def test_that_moved_columns_stay_when_the_window_is_resized(designed: MainWindow
     assert abs(designed.columns.sizes()[0] - left) <= 2
 
 
-@pytest.mark.long
 def test_that_the_title_of_a_narrow_stage_is_never_cut_off(designed: MainWindow, qtbot: QtBot) -> None:
     for width in (1000, 1040, 1280):
         resized(designed, width, 640)

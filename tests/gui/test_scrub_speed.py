@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import time
 from io import BytesIO
 
 import numpy as np
 import pytest
+from machine_pace import window_slowness
 from paint_counter import PaintCounter
 from PIL import Image
-from pytest_benchmark.fixture import BenchmarkFixture
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -41,12 +40,11 @@ def printed_sheet(design: PosedDesign, target: Outline) -> ShownArtwork:
     return shown
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize("printed", [False, True], ids=["plain panels", "artwork"])
 @pytest.mark.parametrize("overlays", [USUAL, frozenset(Overlay)], ids=["usual overlays", "all overlays"])
 @pytest.mark.parametrize(("first", "last"), [(math.pi, 0.3), (0.2, 0.0)], ids=["on the way", "near the target"])
 def test_that_every_slider_step_is_drawn(
-    qtbot: QtBot, benchmark: BenchmarkFixture, first: float, last: float, overlays: frozenset[Overlay], printed: bool
+    qtbot: QtBot, first: float, last: float, overlays: frozenset[Overlay], printed: bool
 ) -> None:
     field = RatioField.from_log10(np.random.default_rng(1).normal(size=(24, 24)) * 0.05)
     deployment, target = deploy(field), silhouettes.load("heart")
@@ -62,18 +60,15 @@ def test_that_every_slider_step_is_drawn(
     view.set_overlays(overlays)
     with qtbot.waitExposed(view):
         view.show()
-    angles = itertools.cycle(np.linspace(first, last, 30).tolist())
     painted: list[int] = []
     paints = PaintCounter(view)
     spent: list[float] = []
-
-    def step() -> None:
-        before, start = paints.count, time.process_time()
-        view.set_phi(next(angles))
+    slowness = window_slowness()
+    for phi in np.linspace(first, last, 30).tolist():
+        before, start = paints.count, time.thread_time()
+        view.set_phi(phi)
         view.repaint()
-        spent.append(1000.0 * (time.process_time() - start))
+        spent.append(1000.0 * (time.thread_time() - start))
         painted.append(paints.count - before)
-
-    benchmark.pedantic(step, rounds=30)
     assert set(painted) == {1}
-    assert np.median(spent) < LONGEST_MS
+    assert np.median(spent) < LONGEST_MS * 0.5 * (slowness + window_slowness())

@@ -219,7 +219,6 @@ def test_that_slider_line_status_and_cards_tell_it(shown: MainWindow, qtbot: QtB
     assert all(mark.kind is not MarkKind.SECOND for mark in stage.deployment.slider.marks())
 
 
-@pytest.mark.long
 def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, until: Until) -> None:
     shown.controller.trim(True)
     until(lambda: not shown.controller.trimming.busy)
@@ -229,7 +228,6 @@ def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, unt
     assert "untrimmed" in shown.facts.text()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_generate_uses_it_and_the_project_keeps_it(
     heart: MainWindow, files: object, until: Until, tmp_path: Path

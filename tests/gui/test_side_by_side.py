@@ -17,6 +17,7 @@ from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.sheet_size import cut_for
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -177,3 +178,31 @@ def test_that_a_narrow_side_names_its_design_in_fewer_words(designed: MainWindow
     assert side.title.text() == "A1, chosen"
     side.resize(side.title.fontMetrics().horizontalAdvance("A1, chose") + 40, side.height())
     assert side.title.text() in ("Design A1", "")
+
+
+def test_that_sizes_are_those_of_the_sheet_that_each_design_is_cut_from(
+    designed: MainWindow, designs: Document, qtbot: QtBot, until: Until
+) -> None:
+    """Before, both drawings had lengths of a sheet 100 mm wide, and "Smallest" was that of the chosen one."""
+    designed.controller.fabrication.set_opened_size(230.0)
+    document = designed.controller.document
+    widths = [cut_for(document, candidate).width_mm for candidate in document.candidates]
+    assert len({round(width, 3) for width in widths}) == 3 and 100.0 not in widths
+    compare(designed, qtbot, 2)
+    page = designed.stage.compare
+    for side, candidate, entry in zip((page.left, page.right), pair(designed), page.entries, strict=True):
+        assert entry is not None
+        width = widths[document.candidates.index(candidate)]
+        assert side.view.mm_per_unit == pytest.approx(entry.design.mm_per_world(width))
+        assert side.values[2].text() == f"{width * least_panel_share(entry.design.deployment):.2f} mm"
+    designed.connections.all_designs.show(True)
+    table = designed.connections.all_designs.page
+    assert table is not None
+    for candidate in document.candidates[:2]:
+        table.table.toggle_compared(candidate)
+    table.show_comparison(True)
+    QApplication.processEvents()
+    for side, candidate in zip(table.compare.sides, table.table.compared, strict=False):
+        assert side.view.design is not None
+        width = widths[document.candidates.index(candidate)]
+        assert side.view.mm_per_unit == pytest.approx(side.view.design.mm_per_world(width))

@@ -11,7 +11,6 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.window.main_window import MainWindow
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("field", ["rows", "seed", "angle", "candidates"])
 def test_that_space_plays_from_a_number(designed: MainWindow, qtbot: QtBot, field: str) -> None:
     box = getattr(designed.settings, field)

@@ -38,7 +38,6 @@ def test_that_the_slider_the_number_and_the_view_show_one_angle(designed: MainWi
     assert view.phi == 0.0
 
 
-@pytest.mark.long
 def test_that_a_storm_of_slider_moves_is_painted_once(designed: MainWindow) -> None:
     view, slider = designed.stage.view, designed.stage.deployment.slider
     QApplication.processEvents()
@@ -134,7 +133,6 @@ def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWind
     assert view.transform() == before
 
 
-@pytest.mark.long
 def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:
     light = designed.grab().toImage()
     designed.commands["theme"].trigger()

@@ -90,7 +90,6 @@ def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: 
     assert settings.auto.accessibleDescription() == wanted.reason
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_circle_gives_round_sheets_that_are_saved_and_cut(
     heart: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path

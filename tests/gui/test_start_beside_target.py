@@ -160,7 +160,6 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
     assert window.target.start.name == "rectangle"
 
 
-@pytest.mark.long
 def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWindow, until: Until) -> None:
     controller = heart.controller
     controller.change_settings(grid=(6, 6))
@@ -273,7 +272,6 @@ def test_that_the_tile_tells_the_size_of_the_design_on_the_stage_where_it_starts
     assert "on the stage" not in tile.toolTip()
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart: MainWindow, until: Until) -> None:
     controller, model = heart.controller, heart.gallery.view.model_

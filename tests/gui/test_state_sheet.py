@@ -19,7 +19,6 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
     yield from shown(StateSheet(tmp_path), qtbot)
 
 
-@pytest.mark.long
 def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.all_sizes("empty")
     assert len(sheet.files) == 2 * len(SIZES)
@@ -66,7 +65,6 @@ def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
     assert sheet.window.target.threshold.isVisible()
 
 
-@pytest.mark.long
 def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -77,7 +75,6 @@ def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     assert sheet.window.target.start.name == "circle" and sheet.window.controller.document.candidates
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_the_second_target_is_shown_at_its_angle(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -92,7 +89,6 @@ def test_that_the_second_target_is_shown_at_its_angle(
         assert (tmp_path / f"{name}.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
     sheet.picture_target()
     sheet.messages()
@@ -100,7 +96,6 @@ def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: P
     assert (tmp_path / "question-1000x640-dark.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -112,7 +107,6 @@ def test_that_the_project_states_offer_lost_work_and_leave_none(
         assert (tmp_path / f"{name}.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -125,7 +119,6 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
     assert (tmp_path / "editor-points-1280x720-dark.png").exists()
 
 
-@pytest.mark.long
 def test_that_the_part_states_show_the_picker_and_take_nothing(sheet: StateSheet, tmp_path: Path) -> None:
     before = sheet.window.controller.document
     sheet.parts()

@@ -10,14 +10,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from babel.messages.catalog import Catalog
-from babel.messages.extract import extract_from_dir
-from babel.messages.pofile import read_po, write_po
 
-from kirigami_studio.foundation.words import DOMAIN, FOLDER_VARIABLE
+from kirigami_studio.foundation.words import FOLDER_VARIABLE
+from tests.catalogues import KEYWORDS, template, write_compiled
 
-KEYWORDS = {"tr": None, "mark": None, "tr_n": (1, 2)}
 OPEN, CLOSE = "\N{LEFT WHITE SQUARE BRACKET}", "\N{RIGHT WHITE SQUARE BRACKET}"
 #: Written in no language, or data: names of files and figures, units, abbreviations of the field, keys.
 NEUTRAL = re.compile(
@@ -69,24 +66,12 @@ print(json.dumps(found))
 """
 
 
-def extracted(repository: Path) -> Catalog:
-    """All sentences of the package."""
-    found = Catalog()
-    root = repository / "kirigami_studio"
-    for _, _, message, _, _ in extract_from_dir(root, [("**.py", "python")], keywords=KEYWORDS):
-        found.add(message)
-    return found
+def test_that_translators_get_the_sentences_that_the_tests_compare(repository: Path) -> None:
+    recipe = (repository / "Makefile").read_text(encoding="utf-8")
+    named = re.findall(r" -k (\w+)(?::(\d),(\d))?", recipe)
+    assert {name: (int(one), int(many)) if one else None for name, one, many in named} == KEYWORDS
 
 
-def test_that_the_template_for_translators_holds_every_sentence(repository: Path) -> None:
-    with (repository / "resources" / "locale" / f"{DOMAIN}.pot").open("rb") as stream:
-        template = read_po(stream)
-    written = {str(message.id) for message in template if message.id}
-    said = {str(message.id) for message in extracted(repository) if message.id}
-    assert written == said, "run `make messages`"
-
-
-@pytest.mark.long
 def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:
     """What is said while a module is imported would stay in the language of that moment: mark it, say it later."""
     said = []
@@ -108,20 +93,16 @@ def said_on_import(module: ast.AST) -> list[int]:
     return found
 
 
-@pytest.mark.slow
 def test_that_nothing_in_the_window_is_said_in_english_only(
     repository: Path, tmp_path: Path, project_file: Path
 ) -> None:
     catalogue = Catalog("xx")
-    for message in extracted(repository):
+    for message in template():
         if isinstance(message.id, tuple | list):
             catalogue.add(tuple(message.id), tuple(f"{OPEN}{text}{CLOSE}" for text in message.id))
         elif message.id:
             catalogue.add(message.id, f"{OPEN}{message.id}{CLOSE}")
-    folder = tmp_path / "xx" / "LC_MESSAGES"
-    folder.mkdir(parents=True)
-    with (folder / f"{DOMAIN}.po").open("wb") as stream:
-        write_po(stream, catalogue)
+    write_compiled(catalogue, tmp_path, "xx")
     env = {**os.environ, "LANGUAGE": "xx", FOLDER_VARIABLE: str(tmp_path), "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, str(project_file)],

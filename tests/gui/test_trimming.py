@@ -61,7 +61,6 @@ def trimmed(studio: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
     return studio
 
 
-@pytest.mark.long
 def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     studio: MainWindow, designs: Document, qtbot: QtBot, until: Until
 ) -> None:
@@ -111,7 +110,6 @@ def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off
     assert controller.document.candidates[0] == replace(candidate, trim=None) and not stage.trim.isChecked()
 
 
-@pytest.mark.long
 def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -> None:
     candidate = trimmed.controller.document.candidates[0]
     trim, whole = candidate.trim, f"{100 * candidate.score.iou_exact:.1f} %"
@@ -127,7 +125,6 @@ def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -
     assert trimmed.stage.numbers.text() == "" and "untrimmed" in trimmed.stage.view.caption
 
 
-@pytest.mark.long
 def test_that_a_trimmed_design_is_drawn_and_compared_as_it_is_cut(trimmed: MainWindow) -> None:
     stage = trimmed.controller.stage
     target = trimmed.controller.document.target
@@ -176,7 +173,6 @@ def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes
     assert studio.controller.document is before and not studio.stage.trim.isChecked()
 
 
-@pytest.mark.long
 def test_that_widths_that_the_trim_has_no_room_for_are_refused_with_a_way_out(
     trimmed: MainWindow, until: Until, qtbot: QtBot
 ) -> None:

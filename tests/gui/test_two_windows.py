@@ -14,7 +14,7 @@ from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import recovery, store
-from kirigami_studio.project.recovery import Note
+from kirigami_studio.project.recovery import RecoveryNote
 
 Until = Callable[[Callable[[], bool]], None]
 OVERWRITE, COPY, CANCEL = "Overwrite", "Save a copy …", "Cancel"
@@ -166,7 +166,9 @@ def test_that_recovered_work_does_not_overwrite_what_was_saved_since(
 ) -> None:
     lost = store.load_all(project)
     folder = tmp_path / "recovery"
-    recovery.keep(lost.document, Note("heart.kiri", str(project), recovery.now(), lost.digest), folder / "1-a.kiri")
+    recovery.keep(
+        lost.document, RecoveryNote("heart.kiri", str(project), recovery.now(), lost.digest), folder / "1-a.kiri"
+    )
     opened(other, project, until)
     changed(other, 140.0)
     saved(other, until)
@@ -178,7 +180,6 @@ def test_that_recovered_work_does_not_overwrite_what_was_saved_since(
     assert len(questions(window)) == 1 and width_in(project) == 140.0
 
 
-@pytest.mark.long
 def test_that_two_windows_keep_their_work_in_files_of_their_own(
     window: MainWindow, other: MainWindow, project: Path, until: Until, tmp_path: Path
 ) -> None:

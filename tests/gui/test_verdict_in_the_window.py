@@ -84,7 +84,6 @@ def test_that_nothing_is_called_ready_before_the_sheet_was_closed(ready: MainWin
     assert bar.headline.text() == "Checking the sheet as cut …" and bar.property("level") == ""
 
 
-@pytest.mark.long
 def test_that_a_refused_plan_is_told_with_what_has_room(ready: MainWindow, until: Until) -> None:
     ready.controller.fabrication.change(connector_mm=19.0)
     until(lambda: judged(ready) and not ready.fabrication.export.isEnabled())
@@ -94,7 +93,6 @@ def test_that_a_refused_plan_is_told_with_what_has_room(ready: MainWindow, until
     assert advice is not None and advice.fixes[0].verdict.ok and bar.buttons
 
 
-@pytest.mark.long
 def test_that_a_narrow_banner_puts_fixes_into_a_menu(jamming: MainWindow) -> None:
     bar = jamming.stage.verdict
     jamming.resize(1000, 640)
@@ -110,7 +108,6 @@ def test_that_a_narrow_banner_puts_fixes_into_a_menu(jamming: MainWindow) -> Non
         assert len(wanted) == 1
 
 
-@pytest.mark.long
 def test_that_message_report_and_record_have_the_same_list(
     jamming: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:

@@ -85,7 +85,6 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     assert chosen(by_hand) == after
 
 
-@pytest.mark.long
 def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_scored(
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -160,7 +159,6 @@ def test_that_the_wheel_still_zooms_beside_the_voids_and_outside_the_mode(by_han
     assert not by_hand.controller.hand.busy
 
 
-@pytest.mark.long
 def test_that_a_pulled_void_follows_the_mouse_at_every_angle(by_hand: MainWindow, until: Until) -> None:
     for phi in (OPEN, 0.0, math.pi):
         assert 8.5 < kept_up_with(by_hand, until, phi) < 12.0  # pixels, of 10
@@ -288,7 +286,6 @@ def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until
         assert view.design.deployment.field == before.sheet.field
 
 
-@pytest.mark.long
 def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
     by_hand.controller.trim(True)
     until(lambda: chosen(by_hand).trim is not None)

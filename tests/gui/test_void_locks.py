@@ -166,7 +166,6 @@ def fit_in_vain(window: MainWindow, until: Until) -> None:
     assert chosen(window) == held
 
 
-@pytest.mark.long
 def test_that_a_fit_that_finds_nothing_better_is_taken_only_when_asked(
     by_hand: MainWindow,
     until: Until,
@@ -250,7 +249,6 @@ def test_that_a_void_that_is_locked_during_a_fit_keeps_its_ratio(by_hand: MainWi
     assert chosen(by_hand) == before and "Voids were locked since the fit" in by_hand.status_text.text()
 
 
-@pytest.mark.long
 def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_is_seen(
     by_hand: MainWindow, until: Until
 ) -> None:
@@ -273,7 +271,6 @@ def test_that_fit_again_trims_a_trimmed_design_again_with_what_is_locked_as_it_i
     assert chosen(by_hand) == before
 
 
-@pytest.mark.long
 def test_that_a_trim_that_cannot_be_made_again_is_said_to_be_off(by_hand: MainWindow, until: Until) -> None:
     controller = by_hand.controller
     by_hand.commands["trim"].trigger()

@@ -90,7 +90,7 @@ import sys
 from kirigami_studio.studio import designing, importing
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 request = Request(silhouettes.load("heart"), (4, 4), k=4, polish=1, trim=True)
 assert request.fitted_starts
 importing.import_generator()
@@ -108,7 +108,6 @@ def test_that_a_run_imports_nothing_after_the_generator_was_imported() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.long
 def test_that_collections_leave_out_what_the_start_has_made() -> None:
     script = (
         "import gc; from kirigami_studio.gui.window.application import create_application, create_window;"
@@ -147,7 +146,6 @@ window.close()
 """
 
 
-@pytest.mark.long
 def test_that_opening_the_first_project_imports_nothing_in_the_windows_thread() -> None:
     environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
     done = subprocess.run([sys.executable, "-c", OPENED], env=environment, capture_output=True, text=True, check=True)

@@ -144,7 +144,7 @@ def test_that_a_recovered_project_brings_its_photo(
     window: MainWindow, traced_project: Path, tmp_path: Path, until: Until
 ) -> None:
     opened = store.load_all(traced_project)
-    note = recovery.Note("traced.kiri", str(traced_project), recovery.now())
+    note = recovery.RecoveryNote("traced.kiri", str(traced_project), recovery.now())
     recovery.keep(opened.document, note, tmp_path / "state" / "left.kiri", opened.picture)
     window.controller.filing.recovery.use(tmp_path / "state")
     until(lambda: bool(told(window, "Recover traced.kiri")))
@@ -156,7 +156,6 @@ def test_that_a_recovered_project_brings_its_photo(
     assert own is not None and store.load_all(own).picture == opened.picture
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("fault", ["missing", "Nothing to paste", "no name", "too large", "no number"])
 def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
     fault: str, window: MainWindow, traced_project: Path, until: Until

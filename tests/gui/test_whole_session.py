@@ -17,7 +17,6 @@ from kirigami_studio.project import store
 
 
 @pytest.mark.torch
-@pytest.mark.slow
 def test_that_the_session_without_a_display_makes_pictures_a_cut_file_and_a_project(
     tmp_path: Path, repository: Path
 ) -> None:

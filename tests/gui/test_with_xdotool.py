@@ -34,7 +34,6 @@ SIZE = (1440, 900)
 DESIGNS = 8
 
 pytestmark = [
-    pytest.mark.slow,
     pytest.mark.torch,
     pytest.mark.skipif(bool(MISSING), reason=f"needs {' and '.join(MISSING)} (Debian: apt install xvfb xdotool)"),
 ]
@@ -149,7 +148,6 @@ def saved(path: Path) -> Document | None:
         return None
 
 
-@pytest.mark.long
 def test_that_a_person_draws_designs_chooses_exports_and_saves(
     person: Person, designed: MainWindow, tmp_path: Path
 ) -> None:
@@ -211,7 +209,6 @@ def test_that_a_person_draws_designs_chooses_exports_and_saves(
     assert "Traceback" not in (tmp_path / "log.txt").read_text(encoding="utf-8")
 
 
-@pytest.mark.long
 def test_that_a_new_user_comes_from_a_part_of_a_logo_to_its_cut_file_in_twelve_actions(
     person: Person, tmp_path: Path
 ) -> None:

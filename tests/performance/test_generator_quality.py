@@ -23,7 +23,6 @@ def unseen_targets(family: str) -> tuple[Outline, ...]:
     return tuple(outline_of_mask(mask, family) for mask in split.masks)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("family", "variant", "bar"),
     [
@@ -41,7 +40,6 @@ def test_that_one_sample_matches_unseen_targets(family: str, variant: str, bar: 
     assert figures["infeasible"] == 0
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize(("family", "part", "bar"), [("sobol", slice(16), 0.97), ("structured", slice(16, 32), 0.98)])
 def test_that_one_sample_matches_the_reference_silhouettes(
     oracle_file: Path, family: str, part: slice, bar: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from stopwatch import slowness
 
 from kirigami_studio.foundation.errors import KirigamiError
 
@@ -20,7 +21,7 @@ from kirigami_studio.lab.benchmark.lattice_suite import (  # noqa: E402
 def test_that_a_slider_step_at_24_x_24_leaves_most_of_a_60_hertz_frame_to_drawing() -> None:
     timing = time_slider()
     print(f"\n{timing}")
-    assert timing.layouts_per_second > 300
+    assert timing.layouts_per_second * slowness() > 300
 
 
 def test_that_the_cost_grows_no_faster_than_the_number_of_voids_to_the_power_of_1_5() -> None:
@@ -33,7 +34,7 @@ def test_that_the_cost_grows_no_faster_than_the_number_of_voids_to_the_power_of_
 def test_that_a_batch_of_256_designs_decodes_at_2000_a_second_on_one_core_and_far_above_marching() -> None:
     timing = time_batch()
     print(f"\n{timing}")
-    assert timing.designs_per_second > 2000
+    assert timing.designs_per_second * slowness() > 2000
     assert timing.ratio > 10
 
 

@@ -18,7 +18,6 @@ def slit_travel(plan: CutPlan) -> float:
     return float(travel_lengths(plan.on_layer(Layer.SLITS)).sum())
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("grid", GRIDS)
 @pytest.mark.parametrize("spread", [0.3, 0.7])
 def test_that_the_shortest_order_is_within_a_seventh_of_what_no_order_beats(

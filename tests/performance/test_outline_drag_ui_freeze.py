@@ -1,4 +1,4 @@
-"""A vertex of a large sheet is dragged by 30 moves; the UI never freezes for as long as one step lasts."""
+"""A vertex of a large sheet is dragged by 30 moves; no turn of the loop computes for as long as one step takes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_gestures import LEFT, NONE, OPEN, shapes_of, vertex_at
+from machine_pace import window_slowness
 from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
@@ -24,16 +25,15 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits, store
 from kirigami_studio.project.document import Document
 
-pytestmark = [pytest.mark.qt, pytest.mark.slow]
+pytestmark = pytest.mark.qt
 
 #: Voids each way: at 40 the first step takes 0.85 s of processor time, drawing the sheet 0.05 s.
 VOIDS = (20, 40)
 MOVES, EVERY_MS, LIMIT = 30, 16, 0.3
-#: Drags, of which the best counts: a neighbour that takes the processor is no fault of the program.
+#: Drags, of which the best counts: a cold cache makes the same work cost more, once.
 DRAGS = 3
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("voids", VOIDS)
 def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
     voids: int, qtbot: QtBot, tmp_path: Path
@@ -46,14 +46,15 @@ def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
     window = create_window(LIGHT)
     window.show()
     window.controller.open_project(tmp_path / "large.kiri")
-    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=60_000)
+    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=900_000)
     window.stage.deployment.set_phi(OPEN)
     window.commands["hand"].trigger()
     watch, longest = ThreadWatch(), []
     for _ in range(DRAGS):
+        before = window_slowness()
         watch.begin()
         drag(window, qtbot)
-        longest.append(watch.end().frozen)
+        longest.append(watch.end().frozen / (0.5 * (before + window_slowness())))
         QTest.keyClick(window.stage.view, Qt.Key.Key_Escape)
         if longest[-1] < LIMIT:
             break
@@ -78,6 +79,6 @@ def drag(window: MainWindow, qtbot: QtBot) -> None:
 
     timer.timeout.connect(move)
     timer.start(EVERY_MS)
-    qtbot.waitUntil(lambda: moved[0] > MOVES, timeout=60_000)
+    qtbot.waitUntil(lambda: moved[0] > MOVES, timeout=900_000)
     timer.stop()
-    qtbot.waitUntil(lambda: view.design is not before, timeout=20_000)
+    qtbot.waitUntil(lambda: view.design is not before, timeout=900_000)

@@ -1,9 +1,9 @@
-"""Scoring many candidates at once against one at a time, with one generous bound in seconds."""
+"""Scoring many candidates at once against one at a time, with one generous bound in processor seconds."""
 
 from __future__ import annotations
 
 import numpy as np
-from stopwatch import fastest
+from stopwatch import fastest, slowness
 
 from kirigami_studio.evaluate.feasibility import feasibility_of_many, invalid_quads, overlap_ratio, path_contact
 from kirigami_studio.evaluate.score import evaluate, evaluate_many
@@ -26,7 +26,7 @@ def test_that_a_batch_costs_less_than_half_of_its_members() -> None:
     alone = fastest(lambda: [evaluate(design, target) for design in designs], 2)
     print(f"\n{BATCH} designs: {1e3 * together:.1f} ms together, {1e3 * alone:.1f} ms one by one")
     assert together < 0.5 * alone
-    assert together < 0.25  # found: 0.043 s
+    assert together < 0.25 * slowness()  # found: 0.043 s
 
 
 def test_that_checking_a_batch_costs_less_than_checking_its_members() -> None:

@@ -1,7 +1,8 @@
-"""The window takes events all the time: no turn of its loop lasts 0.1 s, on a large screen with large projects 0.2 s.
+"""The window takes events all the time: no turn of its loop computes for 0.1 s, with large projects on a large screen
+for 0.2 s.
 
-The limits hold on a machine of the pace that ``machine_pace`` names; a slower one is given as much longer.
-``pytest -s`` prints the table.
+The limits are processor seconds on a machine of the pace that ``machine_pace`` names; a slower one is given as much
+longer, and whatever else the machine does makes no turn longer.  ``pytest -s`` prints the table.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from pathlib import Path
 import pytest
 from watched_session import THEME
 
-pytestmark = [pytest.mark.qt, pytest.mark.torch, pytest.mark.slow]
+pytestmark = [pytest.mark.qt, pytest.mark.torch]
 
 #: Dressing every widget anew is one call of Qt's: asked for rarely, while nothing else is going on.
 THEME_LIMIT = 0.3
 #: Sessions played until no step froze the UI, the best turn of each counts: a cache that is cold or a
-#: neighbour that takes memory bandwidth is no fault of the program; what it does itself it does every time.
+#: neighbour that takes memory bandwidth makes the same work cost more; what the program does it does every time.
 #: A session that is played again ends with the last step that is still in doubt.
 SESSIONS = 3
 
@@ -31,25 +32,24 @@ SESSIONS = 3
 SESSION, TOOLS = "watched_session.py", "watched_tools.py"
 SCRIPTS = {(SESSION, "--brief"): (30, 0.1), (SESSION,): (50, 0.1), (TOOLS,): (48, 0.2)}
 
-Turns = dict[str, tuple[float, float, float]]
+#: Step -> processor seconds of its longest turn: the thread's own, and of one that kept it waiting.
+Turns = dict[str, tuple[float, float]]
 
 
 def played(script: str, *arguments: str, folder: Path) -> Turns:
     """Play one session in a process of its own."""
     environment = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
     command = [sys.executable, str(Path(__file__).parents[1] / script), str(folder), *arguments]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=1200, check=False)
     assert done.returncode == 0, done.stderr
-    turns: Turns = json.loads(done.stdout)
-    return turns
+    return {step: (own, kept) for step, (own, kept) in json.loads(done.stdout).items()}
 
 
 def too_long(turns: Turns, limit: float) -> Turns:
     """The steps that held the window up."""
-    return {step: turn for step, turn in turns.items() if turn[2] >= (THEME_LIMIT if step == THEME else limit)}
+    return {step: turn for step, turn in turns.items() if sum(turn) >= (THEME_LIMIT if step == THEME else limit)}
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("script", SCRIPTS, ids=" ".join)
 def test_that_no_step_of_a_session_freezes_the_ui(script: tuple[str, ...], tmp_path: Path) -> None:
     best: Turns = {}
@@ -57,21 +57,25 @@ def test_that_no_step_of_a_session_freezes_the_ui(script: tuple[str, ...], tmp_p
     again: tuple[str, ...] = ()
     for _ in range(SESSIONS):
         for step, turn in played(*script, *again, folder=tmp_path).items():
-            best[step] = min(turn, best.get(step, turn), key=lambda one: one[2])
+            best[step] = min(turn, best.get(step, turn), key=sum)
         in_doubt = list(too_long(best, limit))
         if not in_doubt:
             break
         again = ("--last", in_doubt[-1])
-    print(f"\n{'longest turn of the event loop (ms)':40}{'wall':>8}{'own':>8}{'frozen':>9}")
-    for step, (wall, own, frozen) in best.items():
-        print(f"{step:40}{1000 * wall:8.0f}{1000 * own:8.0f}{1000 * frozen:9.0f}")
+    print(f"\n{'longest turn of the event loop (ms)':40}{'own':>8}{'kept':>8}{'frozen':>9}")
+    for step, (own, kept) in best.items():
+        print(f"{step:40}{1000 * own:8.0f}{1000 * kept:8.0f}{1000 * (own + kept):9.0f}")
     assert len(best) >= steps
     assert too_long(best, limit) == {}
 
 
-def test_that_the_watch_sees_a_busy_handler_and_a_thread_that_keeps_the_lock(tmp_path: Path) -> None:
+def test_that_the_watch_sees_slow_handlers_and_paintings_and_whoever_keeps_the_thread_waiting(tmp_path: Path) -> None:
     turns = played(SESSION, "--block", "0.8", folder=tmp_path)
     _, limit = SCRIPTS[SESSION,]
-    busy, locked = turns["computing in the handler of a timer"], turns["another thread keeps the lock"]
-    assert busy[2] > limit and busy[1] > limit
-    assert locked[2] > limit and locked[1] < limit
+    idle = turns.pop("nothing")
+    assert sum(idle) < limit
+    for step in ("computing in the handler of a timer", "painting"):
+        assert turns.pop(step)[0] > limit, "the thread computes"
+    for step, (own, kept) in turns.items():
+        assert own < limit < kept, step
+    assert set(turns) == {"another thread keeps the lock", "waiting for a process"}

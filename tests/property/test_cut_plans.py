@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pytest
 from cut_sheets import bitten, connector_distances, covered_hinges, drawn_line, finished_pieces, mouths
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -114,7 +113,6 @@ def test_that_trimmed_sheets_are_one_piece_with_no_connector_narrower_than_asked
     assert not any(problem.code == "plan.connectors_narrower" for problem in report.problems)
 
 
-@pytest.mark.long
 @FEWER
 @given(wish=st.one_of(wishes(), wishes(trimmed=True)))
 def test_that_plans_are_finite_above_the_origin_closed_where_they_must_be_and_cut_nothing_twice(wish: Wish) -> None:
@@ -135,7 +133,6 @@ def test_that_plans_are_finite_above_the_origin_closed_where_they_must_be_and_cu
     assert Polygon(plan.outline).is_valid
 
 
-@pytest.mark.long
 @FEWER
 @given(wish=wishes())
 def test_that_cuts_meet_only_where_a_slit_ends_on_its_own_shape(wish: Wish) -> None:
@@ -146,7 +143,6 @@ def test_that_cuts_meet_only_where_a_slit_ends_on_its_own_shape(wish: Wish) -> N
     assert all(inner[one].cut == inner[other].cut for one, other in meeting)
 
 
-@pytest.mark.long
 @FEWER
 @given(wish=wishes())
 def test_that_finished_widths_and_panels_do_not_change_with_the_kerf(wish: Wish) -> None:

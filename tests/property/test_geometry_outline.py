@@ -69,7 +69,6 @@ def test_that_the_sheet_opens_without_touching_itself(field: RatioField) -> None
     assert LinearRing(deploy(field).outline(math.pi - 1e-3)).is_simple
 
 
-@pytest.mark.long
 @given(grids(64))
 def test_that_the_outline_visits_every_edge_panel_and_every_edge_hinge_once(grid: tuple[int, int]) -> None:
     m, n = grid

@@ -15,8 +15,8 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.levenberg import SAMPLES, polish
-from kirigami_studio.polish.objective import Objective, SecondTerm, Stage
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.objective import FitPhase, Objective, SecondTerm
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 STEP = 1e-6
@@ -30,8 +30,8 @@ def test_that_the_gradient_is_the_slope_of_the_cost(
     sheet = Sheet(field, None, None, (1.5, 0.8) if wide else (1.0, 1.0))
     model = OutlineModel.of(sheet, phi, free_rim=True)
     z = field.log10.ravel()
-    terms = PreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
-    stage, even = Stage(0, even=1e-2), EvenPanels.of(sheet)
+    terms = FieldPreferenceTerms(Preference(1e-3, 1e-3, 1e-3), np.zeros_like(z), field.rows, field.columns)
+    stage, even = FitPhase(0, even=1e-2), EvenPanels.of(sheet)
     second = SecondTerm(model.at(phi + 0.4), BoundaryTarget.of(load("star"), SAMPLES), 0.7) if twice else None
     heart = BoundaryTarget.of(load("heart"), SAMPLES)
     objective = Objective(model, heart, terms, stage, 0.1, even=even, second=second)

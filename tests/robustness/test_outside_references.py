@@ -84,7 +84,6 @@ for word in sys.argv[2:]:
 """
 
 
-@pytest.mark.slow
 def test_that_no_reader_opens_what_a_file_refers_to(tmp_path: Path, secret: Path) -> None:
     asked = []
     for kind, to in {"path": str(secret), "url": secret.as_uri(), "web": "http://127.0.0.1:9/secret.png"}.items():

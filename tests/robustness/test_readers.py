@@ -43,7 +43,6 @@ def test_that_the_files_told_of_are_there() -> None:
     assert [name for name in told if not list(ATTACKS.glob(name))] == []
 
 
-@pytest.mark.slow
 @pytest.mark.torch
 def test_that_files_made_to_hurt_are_read_or_refused_in_a_sentence() -> None:
     paths = sorted(path for path in ATTACKS.iterdir() if path.suffix != ".md")
@@ -56,9 +55,7 @@ def test_that_files_made_to_hurt_are_read_or_refused_in_a_sentence() -> None:
     assert all(said.endswith(".") and "\n" not in said and len(said) < 400 for said in sentences)
 
 
-@pytest.mark.slow
 @pytest.mark.torch
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("files", [6, 60])
 def test_that_damaged_files_are_read_or_refused_in_a_sentence(files: int, tmp_path: Path) -> None:
     # One process has every reader read so many files; `make fuzz` has more.
@@ -71,8 +68,6 @@ def test_that_damaged_files_are_read_or_refused_in_a_sentence(files: int, tmp_pa
     assert len(lines) == len(READERS)
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_the_suite_names_files_that_end_a_reader_and_goes_on_behind_them(tmp_path: Path) -> None:
     (share,) = fuzzed("faulty", 6, 1, tmp_path)
     assert [(one.file, one.outcome) for one in share.found] == [
@@ -96,3 +91,13 @@ def test_that_pipes_and_devices_without_end_are_not_read(tmp_path: Path) -> None
     found = outcomes(*asked)
     assert len(found) == 2 * len(by_path)
     assert {name: said for name, (said, _) in found.items() if not said.startswith("refused: ")} == {}
+
+
+@pytest.mark.parametrize("case", ["DXF_hardhang.dxf", "check_DXF_crash_74d599.dxf", "DXF_hang_824ee6.dxf"])
+def test_that_libraries_add_nothing_to_what_a_command_says_of_a_damaged_file(case: str) -> None:
+    words = [sys.executable, "-m", "kirigami_studio", "parts", str(ATTACKS / case)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment.pop("PYTHONWARNINGS", None)
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False, timeout=300)
+    said = done.stderr.splitlines()
+    assert [line for line in said if not line.startswith("kirigami-studio: ")] == [] and len(said) <= 1

@@ -13,8 +13,6 @@ import pytest
 TESTS = Path(__file__).parents[1]
 
 
-@pytest.mark.long
-@pytest.mark.slow
 @pytest.mark.torch
 @pytest.mark.qt
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads and files are counted where Linux tells them")

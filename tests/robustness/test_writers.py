@@ -29,8 +29,6 @@ def lines_of(how: str, folder: Path, *more: str) -> list[dict[str, object]]:
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-@pytest.mark.slow
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("kills", [40, 200])
 def test_that_kills_while_saving_leave_the_old_file_or_the_new_one(kills: int, tmp_path: Path) -> None:
     lines = lines_of("kills", tmp_path, "--count", str(kills))
@@ -66,7 +64,6 @@ def test_that_only_what_killed_writers_left_is_swept(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.slow
 @pytest.mark.torch
 @pytest.mark.parametrize("how", ["full", "readonly"])
 def test_that_every_writer_without_room_or_right_says_so_and_leaves_the_old_file(how: str) -> None:
@@ -90,8 +87,6 @@ def design(out: Path, *, shell: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
-@pytest.mark.long
-@pytest.mark.slow
 @pytest.mark.torch
 def test_that_a_design_folder_without_room_is_told_in_a_sentence(tmp_path: Path) -> None:
     done = design(tmp_path / "out", shell="trap '' XFSZ; ulimit -f 1")

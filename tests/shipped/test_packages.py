@@ -214,7 +214,7 @@ def test_that_resources_libraries_and_licences_stay_in_the_bundle(bundle: Module
     site = "/env/lib/python3.11/site-packages/"
     kept = (
         "kirigami_studio/resources/models/prior.safetensors",
-        "kirigami_studio/resources/locale/de/LC_MESSAGES/kirigami_studio.po",
+        "kirigami_studio/resources/locale/de/LC_MESSAGES/kirigami_studio.mo",
         "PySide6/Qt/plugins/platforms/libqxcb.so",
         "PySide6/Qt/plugins/platforms/libqoffscreen.so",
         "PySide6/Qt/plugins/iconengines/libqsvgicon.so",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -20,7 +21,6 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
 from kirigami_studio.studio.making import CutRequest, Exported, Output, exporting, planned
 

@@ -19,7 +19,8 @@ from kirigami_studio.cli import main
 from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.making import Exported
 
 #: Voids, designs and seed of every case: panels are small enough for some designs to jam or to be refused as cut.
@@ -84,7 +85,6 @@ def of_python(target: str, material: str, folder: Path) -> Answer:
 
 @pytest.mark.torch
 @pytest.mark.qt
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize(("target", "material"), CASES)
 def test_that_three_faces_give_the_same_designs_verdict_and_file(
     qtbot: QtBot, capsys: pytest.CaptureFixture[str], tmp_path: Path, target: str, material: str

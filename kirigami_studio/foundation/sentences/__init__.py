@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import PurePath
 
+from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.sentences import (
     designs,
     export,
@@ -20,8 +21,7 @@ from kirigami_studio.foundation.sentences import (
     project,
     training_and_benchmarks,
 )
-from kirigami_studio.foundation.plain_text import printable
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import fill, tr, tr_n
 
 #: Every sentence by the code of its problem.
 SENTENCES: Mapping[str, str | tuple[str, str]] = {
@@ -41,7 +41,7 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
         one, many = text
         others = {name: value for name, value in fields.items() if name != "count"}
         return tr_n(one, many, int(str(fields["count"])), **others)
-    return tr(text, **fields)
+    return fill(tr(text), fields)
 
 
 def one_line(value: object) -> object:

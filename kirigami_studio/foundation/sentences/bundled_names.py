@@ -56,11 +56,11 @@ MATERIALS = (
     mark("Card 0.3 mm, CO2 laser"),
     mark("Mylar or paper, drag knife"),
     mark("Wool felt 2 mm, CO2 laser"),
-    mark("PA/PI film 50 um, UV laser"),
-    mark("Aluminium foil 50 um, UV laser"),
+    mark("PA/PI film 50 \N{MICRO SIGN}m, UV laser"),
+    mark("Aluminium foil 50 \N{MICRO SIGN}m, UV laser"),
     mark("Leather 1.5 mm, CO2 laser"),
     mark("Paper 120-160 g/m2, scissors or knife"),
-    mark("PET film 75-125 um, CO2 laser"),
+    mark("PET film 75-125 \N{MICRO SIGN}m, CO2 laser"),
     mark("Birch plywood 3 mm, CO2 laser"),
     mark("Polypropylene 0.5 mm, CO2 laser"),
     mark("TPU film 0.5 mm, CO2 laser"),
@@ -95,9 +95,9 @@ NOTES = (
         "and speed: starting values. Cut the coupon before trusting it."
     ),
     mark(  # film-uv
-        "Kerf from published polyimide cuts (20 um); speeds and acceleration are typical values. Cut the coupon "
-        "before trusting it. Strain limit: least elongation of 50 um Kapton HN film in its general specifications "
-        "(typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5 GPa)."
+        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speeds and acceleration are typical values. Cut the "
+        "coupon before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its general "
+        "specifications (typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5 GPa)."
     ),
     mark(  # foil-uv
         "Expect connectors to fail: the aluminium sheet that the paper tried could be cut, but its connectors "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # lattice
@@ -73,8 +73,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Got a weight of {weight:g} for the start. Give one above 0 and up to {most:g}; 1 holds the start firmly."
     ),
     "start.too_long": mark(
-        "The start '{name:.60}' is {length:.3g} times as long as wide, and a sheet may be {longest:g} times as long. Use "
-        "a shape that is less long."
+        "The start '{name:.60}' is {length:.3g} times as long as wide, and a sheet may be {longest:g} times as long. "
+        "Use a shape that is less long."
     ),
     "start.hollow": mark(
         "The start '{name:.60}' is hollow: {percent:.0f} % of its hull is missing, deepest at {across:.0f} % of its "
@@ -170,8 +170,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "pixels is not a multiple of {latent}. Give it fewer levels."
     ),
     "model.baseline_pixels": mark(
-        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. The pixels must be a multiple "
-        "of 4, and divide the mask."
+        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. They must be even at "
+        "every level of the network but the last, and divide the mask."
     ),
     "model.diffusion_steps": mark("A diffusion model samples in 1 to {most} steps, got {steps}."),
     "model.unknown_baseline": mark("There is no generator called '{kind:.40}'. Choose one of {choices}."),
@@ -229,35 +229,31 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.less_trimmed_match": mark("Trimmed, it matches {match:.1f} %, the first design {first:.1f} %."),
     "rank.more_at_limit": mark("Ratios at a limit: {own:.0f} %, in the first design {first:.0f} %."),
     "rank.not_feasible": mark("Panels touch, overlap or collapse before the sheet reaches its angle."),
-    "rank.not_looked_at": (
-        mark("Not looked at closely: {count} design before it cannot be cut."),
-        mark("Not looked at closely: {count} designs before it cannot be cut."),
+    "rank.not_looked_at": mark_n(
+        "Not looked at closely: {count} design before it cannot be cut.",
+        "Not looked at closely: {count} designs before it cannot be cut.",
     ),
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
-    "rank.notch_cut_out": (
-        mark(
-            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-            "are cut out of it with {count} panel."
-        ),
-        mark(
-            "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-            "are cut out of it with {count} panels."
-        ),
+    "rank.notch_cut_out": mark_n(
+        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
+        "are cut out of it with {count} panel.",
+        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
+        "are cut out of it with {count} panels.",
     ),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(
-        "The target angle must be at least 0 and below pi radians, got {phi:g}. The usual choice is 0."
+        "The target angle must be at least 0 and below pi radians, got {value!r:.40}. The usual choice is 0."
     ),
     "request.budget_not_positive": mark(
-        "The time budget must be a finite number of seconds above 0, got {budget!r:.80}."
+        "The time budget must be a finite number of seconds above 0, got {value!r:.80}."
     ),
     "request.grid_not_chosen": mark(
         "No grid is chosen yet: the run does that when it starts. Name a grid, such as 10x11."
     ),
     "request.least_feature_out_of_range": mark(
-        "The smallest panel that the material allows must be a number of at least 0 mm, got {least_mm!r:.80}."
+        "The smallest panel that the material allows must be a number of at least 0 mm, got {value!r:.80}."
     ),
     "request.k_out_of_range": mark(
         "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."

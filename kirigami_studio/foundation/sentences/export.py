@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # What a file is asked for
@@ -154,11 +154,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     # Files that cannot be read
     "dxf.not_readable": mark("{path} is not a readable DXF: {reason!s:.200}. Export it again."),
-    "dxf.audit": (
-        mark("The audit of ezdxf found {count} error in {path}: {first:.120}."),
-        mark("The audit of ezdxf found {count} errors in {path}, the first: {first:.120}."),
+    "dxf.audit": mark_n(
+        "The audit of ezdxf found {count} error in {path}: {first:.120}.",
+        "The audit of ezdxf found {count} errors in {path}, the first: {first:.120}.",
     ),
     "cut_file.damaged": mark("{path} is a damaged DXF. Export it again from its program."),
+    "cut_file.foreign_svg": mark(
+        "{path} is an SVG, but no cut file of this program. Choose one that it exported, or a DXF of any program."
+    ),
     "dxf.too_large": mark("{path} is larger than {limit} MB and cannot be a cut file."),
     "dxf.cannot_open": mark("Cannot read {path}: {reason}. Choose a DXF file."),
     "dxf.no_dxf": mark("Cannot read {path}: it is not a DXF file. Choose a DXF file."),
@@ -203,15 +206,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The drawing is {width_mm:g} x {height_mm:g} mm, outside {smallest_mm:g} to {largest_mm:g} mm. Its unit is "
         "probably wrong."
     ),
-    "cut_file.duplicates": (
-        mark(
-            "{count} line is drawn more than once, at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. Delete the "
-            "duplicate."
-        ),
-        mark(
-            "{count} lines are drawn more than once, the first at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. "
-            "Delete the duplicates."
-        ),
+    "cut_file.duplicates": mark_n(
+        "{count} line is drawn more than once, at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. Delete the "
+        "duplicate.",
+        "{count} lines are drawn more than once, the first at x = {x:.2f}, y = {y:.2f} mm, and would be cut twice. "
+        "Delete the duplicates.",
     ),
     "cut_file.overlap": mark("{length_mm:.3f} mm of the cuts overlap other cuts. Join or trim them."),
     "cut_file.outline_of_lines": mark(
@@ -250,15 +249,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.connector_lost": mark(
         "Cuts run into each other at x = {x:.2f}, y = {y:.2f} mm: no connector is left there."
     ),
-    "cut_file.loose_parts": (
-        mark(
-            "{count} closed cut inside the outline lets a part fall out, about {size_mm:.1f} mm across, at x = "
-            "{x:.2f}, y = {y:.2f} mm. Make sure that it is meant."
-        ),
-        mark(
-            "{count} closed cuts inside the outline let a part fall out, the largest about {size_mm:.1f} mm across, at "
-            "x = {x:.2f}, y = {y:.2f} mm. Make sure that they are meant."
-        ),
+    "cut_file.loose_parts": mark_n(
+        "{count} closed cut inside the outline lets a part fall out, about {size_mm:.1f} mm across, at x = "
+        "{x:.2f}, y = {y:.2f} mm. Make sure that it is meant.",
+        "{count} closed cuts inside the outline let a part fall out, the largest about {size_mm:.1f} mm across, at "
+        "x = {x:.2f}, y = {y:.2f} mm. Make sure that they are meant.",
     ),
     "cut_file.name_differs": mark(
         "The file promises a name engraved in {promised:.20} lines on layer {layer}, and has {count} there. Export it "
@@ -271,15 +266,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
     ),
-    "cut_file.joins_differ": (
-        mark(
-            "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
-            "misses its end. Export it again."
-        ),
-        mark(
-            "{count} cuts end on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
-            "misses its end. Export it again."
-        ),
+    "cut_file.joins_differ": mark_n(
+        "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
+        "misses its end. Export it again.",
+        "{count} cuts end on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
+        "misses its end. Export it again.",
     ),
     # What two readers find in a written file
     "verify.by_one_reader": mark("{reader}: {finding}"),
@@ -312,9 +303,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.cut_once": mark("Nothing is cut twice."),
     "verify.cut_twice": mark("{length_mm:.4f} mm would be cut twice."),
-    "verify.pieces": (
-        mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece."),
-        mark("After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces."),
+    "verify.pieces": mark_n(
+        "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece.",
+        "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces.",
     ),
     "verify.name": mark(
         "The name {name!r} is engraved first, on layer {layer}, {clear_mm:.2f} mm from the nearest cut; it counts as "
@@ -338,12 +329,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.voids_close": mark(
         "Read back from the file: {connectors} connectors of {narrowest_mm:.3f} mm or more, and {voids} voids that "
-        "miss being parallelograms by {miss_um:.1f} um at most."
+        "miss being parallelograms by {miss_um:.1f} \N{MICRO SIGN}m at most."
     ),
     "verify.voids_miss": mark(
-        "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} um at x = {x:.2f}, "
-        "y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred connectors, or a "
-        "larger sheet."
+        "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} \N{MICRO SIGN}m at "
+        "x = {x:.2f}, y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred "
+        "connectors, or a larger sheet."
     ),
     "verify.sheet_closes": mark("With these connectors the sheet closes, by the estimate of the simulator."),
     "verify.sheet_jams": mark(
@@ -353,19 +344,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "
         "planned, {planned_mm:.3f} mm wide or more."
     ),
-    "verify.connectors_narrower": (
-        mark(
-            "Read back from the file: {count} connector is narrower than planned, {width_mm:.3f} instead of "
-            "{planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm."
-        ),
-        mark(
-            "Read back from the file: {count} connectors are narrower than planned, the worst {width_mm:.3f} instead "
-            "of {planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm."
-        ),
+    "verify.connectors_narrower": mark_n(
+        "Read back from the file: {count} connector is narrower than planned, {width_mm:.3f} instead of "
+        "{planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm.",
+        "Read back from the file: {count} connectors are narrower than planned, the worst {width_mm:.3f} instead "
+        "of {planned_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm.",
     ),
-    "verify.tabs_left_out": (
-        mark("Contours for a cutting service have no gaps: {count} tab is left out."),
-        mark("Contours for a cutting service have no gaps: {count} tabs are left out."),
+    "verify.tabs_left_out": mark_n(
+        "Contours for a cutting service have no gaps: {count} tab is left out.",
+        "Contours for a cutting service have no gaps: {count} tabs are left out.",
     ),
     "verify.slots_longer": mark(
         "As slots the cut is {length_mm:.1f} mm long instead of {open_mm:.1f} mm ({times:.2f} times), which is what a "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # Lengths that make no sense
@@ -22,15 +22,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "tabs.width_not_positive": mark("The tab width must be a number of millimetres above 0, got {value!r:.40}."),
     # Choices about the cuts
     "tabs.too_many": mark("The outline can have 0 to {most} tabs, got {tabs}."),
-    "tabs.no_room": (
-        mark(
-            "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
-            "edge slits and connectors. Use {count} tab at most, or narrower ones."
-        ),
-        mark(
-            "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
-            "edge slits and connectors. Use {count} tabs at most, or narrower ones."
-        ),
+    "tabs.no_room": mark_n(
+        "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
+        "edge slits and connectors. Use {count} tab at most, or narrower ones.",
+        "The outline of {length_mm:.1f} mm has no room for {tabs} tabs of {gap_mm:g} mm away from its corners, "
+        "edge slits and connectors. Use {count} tabs at most, or narrower ones.",
     ),
     "tabs.no_room_for_any": mark(
         "The outline of {length_mm:.1f} mm has no room for a tab of {gap_mm:g} mm away from its corners, edge slits "
@@ -46,29 +42,21 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "or double connectors, or a material with a relief radius."
     ),
     # Cuts without room
-    "slit.no_room": (
-        mark(
-            "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
-            "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
-            "connectors narrower."
-        ),
-        mark(
-            "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
-            "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
-            "connectors narrower ({count} cuts are too short)."
-        ),
+    "slit.no_room": mark_n(
+        "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
+        "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
+        "connectors narrower.",
+        "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
+        "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
+        "connectors narrower ({count} cuts are too short).",
     ),
-    "edge_cut.no_room": (
-        mark(
-            "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
-            "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
-            "the connectors narrower."
-        ),
-        mark(
-            "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
-            "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
-            "the connectors narrower ({count} cuts are too short)."
-        ),
+    "edge_cut.no_room": mark_n(
+        "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
+        "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
+        "the connectors narrower.",
+        "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
+        "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
+        "the connectors narrower ({count} cuts are too short).",
     ),
     # Trimmed sheets
     "hinge.no_cut_left": mark("No cut is left at x = {x:.2f}, y = {y:.2f} mm. Keep more material when trimming."),
@@ -100,13 +88,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "material.unknown": mark("There is no material {name!r:.60}. Choose one of {known}."),
     "material.folder_not_readable": mark("Cannot read your own materials in {folder}: {reason}."),
     "material.file_not_readable": mark("Cannot read the material file {path}: {reason!s:.200}. Correct or remove it."),
-    "material.entries_missing": (
-        mark("The material file {path} lacks the entry {names}. Add it."),
-        mark("The material file {path} lacks the entries {names}. Add them."),
+    "material.entries_missing": mark_n(
+        "The material file {path} lacks the entry {names}. Add it.",
+        "The material file {path} lacks the entries {names}. Add them.",
     ),
-    "material.entries_unknown": (
-        mark("The material file {path} has an unknown entry: {names:.80}. Remove it."),
-        mark("The material file {path} has unknown entries: {names:.80}. Remove them."),
+    "material.entries_unknown": mark_n(
+        "The material file {path} has an unknown entry: {names:.80}. Remove it.",
+        "The material file {path} has unknown entries: {names:.80}. Remove them.",
     ),
     "material.key_not_usable": mark(
         "A material's key has 1 to 40 of the characters a-z, 0-9, - and _ and is not the name of a device, got "
@@ -152,17 +140,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The connectors cannot be centred on their nodes: the cuts are too near to each other. They are straight "
         "instead. Use a larger sheet, narrower connectors or a more regular design."
     ),
-    "plan.off_centre": (
-        mark(
-            "{count} of {total} connectors has no room to be centred, and a void misses being a parallelogram by "
-            "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
-            "regular design."
-        ),
-        mark(
-            "{count} of {total} connectors have no room to be centred, and voids miss being parallelograms by up to "
-            "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
-            "regular design."
-        ),
+    "plan.off_centre": mark_n(
+        "{count} of {total} connectors has no room to be centred, and a void misses being a parallelogram by "
+        "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
+        "regular design.",
+        "{count} of {total} connectors have no room to be centred, and voids miss being parallelograms by up to "
+        "{miss_mm:.3f} mm: the sheet jams before it closes. Use a larger sheet, narrower connectors or a more "
+        "regular design.",
     ),
     "plan.room_made": mark(
         "To make room for the connectors, the panels that are cut differ from the design by up to {moved_mm:.2f} mm. "
@@ -172,56 +156,36 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "This sheet is trimmed, so its panels cannot be changed to make room for the connectors, and some are crowded: "
         "the sheet may jam. Use a larger sheet, narrower connectors or a design that is not trimmed."
     ),
-    "plan.connectors_narrowed": (
-        mark(
-            "{count} of {total} connectors is narrower than asked for, {width_mm:.3f} instead of {asked_mm:.3f} mm, at "
-            "x = {x:.1f}, y = {y:.1f} mm: a wider one has no room there. Use a larger sheet or a more regular design."
-        ),
-        mark(
-            "{count} of {total} connectors are narrower than asked for, the narrowest {width_mm:.3f} instead of "
-            "{asked_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm: wider ones have no room there. Use a larger sheet or a "
-            "more regular design."
-        ),
+    "plan.connectors_narrowed": mark_n(
+        "{count} of {total} connectors is narrower than asked for, {width_mm:.3f} instead of {asked_mm:.3f} mm, at "
+        "x = {x:.1f}, y = {y:.1f} mm: a wider one has no room there. Use a larger sheet or a more regular design.",
+        "{count} of {total} connectors are narrower than asked for, the narrowest {width_mm:.3f} instead of "
+        "{asked_mm:.3f} mm, at x = {x:.1f}, y = {y:.1f} mm: wider ones have no room there. Use a larger sheet or a "
+        "more regular design.",
     ),
-    "plan.straight_because_slanted": (
-        mark(
-            "{count} of {total} slit ends is straight instead of {style}: the slit is too slanted, or the cut it ends "
-            "on too short. Use a larger sheet, narrower connectors or a more regular design."
-        ),
-        mark(
-            "{count} of {total} slit ends are straight instead of {style}: the slits are too slanted, or the cuts they "
-            "end on too short. Use a larger sheet, narrower connectors or a more regular design."
-        ),
+    "plan.straight_because_slanted": mark_n(
+        "{count} of {total} slit ends is straight instead of {style}: the slit is too slanted, or the cut it ends "
+        "on too short. Use a larger sheet, narrower connectors or a more regular design.",
+        "{count} of {total} slit ends are straight instead of {style}: the slits are too slanted, or the cuts they "
+        "end on too short. Use a larger sheet, narrower connectors or a more regular design.",
     ),
-    "plan.straight_because_short": (
-        mark(
-            "{count} of {total} slit ends is straight instead of {style}: the slit is too short. Use a larger sheet, "
-            "narrower connectors or a more regular design."
-        ),
-        mark(
-            "{count} of {total} slit ends are straight instead of {style}: the slits are too short. Use a larger "
-            "sheet, narrower connectors or a more regular design."
-        ),
+    "plan.straight_because_short": mark_n(
+        "{count} of {total} slit ends is straight instead of {style}: the slit is too short. Use a larger sheet, "
+        "narrower connectors or a more regular design.",
+        "{count} of {total} slit ends are straight instead of {style}: the slits are too short. Use a larger "
+        "sheet, narrower connectors or a more regular design.",
     ),
-    "plan.straight_because_crowded": (
-        mark(
-            "{count} of {total} slit ends is straight instead of {style}: another cut is too near. Use a larger sheet, "
-            "narrower connectors or a more regular design."
-        ),
-        mark(
-            "{count} of {total} slit ends are straight instead of {style}: other cuts are too near. Use a larger "
-            "sheet, narrower connectors or a more regular design."
-        ),
+    "plan.straight_because_crowded": mark_n(
+        "{count} of {total} slit ends is straight instead of {style}: another cut is too near. Use a larger sheet, "
+        "narrower connectors or a more regular design.",
+        "{count} of {total} slit ends are straight instead of {style}: other cuts are too near. Use a larger "
+        "sheet, narrower connectors or a more regular design.",
     ),
-    "plan.connectors_wider": (
-        mark(
-            "{count} of {total} connectors is wider than asked for, because the slit it rests on ends before it: "
-            "{widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors."
-        ),
-        mark(
-            "{count} of {total} connectors are wider than asked for, because the slits they rest on end before them: "
-            "up to {widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors."
-        ),
+    "plan.connectors_wider": mark_n(
+        "{count} of {total} connectors is wider than asked for, because the slit it rests on ends before it: "
+        "{widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors.",
+        "{count} of {total} connectors are wider than asked for, because the slits they rest on end before them: "
+        "up to {widest_mm:.3f} mm near x = {x:.1f}, y = {y:.1f} mm. Use a larger sheet or narrower connectors.",
     ),
     "plan.gaps_may_be_joined": mark(
         "Cut ends are {gap_mm:.3f} mm apart, and programs that join gaps up to {tolerance_mm:g} mm may close them. "
@@ -241,25 +205,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = {y:.2f} "
         "mm. Widen the connectors or use a smaller kerf."
     ),
-    "plan.falls_apart_after_removal": (
-        mark(
-            "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
-            "{y:.2f} mm. {count} connector was removed: put it back."
-        ),
-        mark(
-            "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
-            "{y:.2f} mm. {count} connectors were removed: put some of them back."
-        ),
+    "plan.falls_apart_after_removal": mark_n(
+        "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
+        "{y:.2f} mm. {count} connector was removed: put it back.",
+        "With a kerf of {kerf_mm:g} mm the sheet falls into {pieces} pieces, one of them at x = {x:.2f}, y = "
+        "{y:.2f} mm. {count} connectors were removed: put some of them back.",
     ),
-    "plan.connectors_narrower": (
-        mark(
-            "{count} connector is narrower than asked for: {finished_mm:.3f} instead of {asked_mm:.3f} mm at x = "
-            "{x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has."
-        ),
-        mark(
-            "{count} connectors are narrower than asked for, the worst {finished_mm:.3f} instead of {asked_mm:.3f} mm "
-            "at x = {x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has."
-        ),
+    "plan.connectors_narrower": mark_n(
+        "{count} connector is narrower than asked for: {finished_mm:.3f} instead of {asked_mm:.3f} mm at x = "
+        "{x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has.",
+        "{count} connectors are narrower than asked for, the worst {finished_mm:.3f} instead of {asked_mm:.3f} mm "
+        "at x = {x:.2f}, y = {y:.2f} mm. Plan the cuts with the kerf that the machine really has.",
     ),
     "plan.connector_gone": mark(
         "Nothing is left of the connector at x = {x:.2f}, y = {y:.2f} mm: the sheet would fall into pieces there. "
@@ -269,15 +225,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The connector at x = {x:.2f}, y = {y:.2f} mm is {finished_mm:.3f} mm wide and may tear: {material!r} needs "
         "{least_mm:g} mm or more."
     ),
-    "plan.removed_not_cut_through": (
-        mark(
-            "{count} removed connector is not cut through, at x = {x:.2f}, y = {y:.2f} mm. Keep it or make the sheet "
-            "larger."
-        ),
-        mark(
-            "{count} removed connectors are not cut through, the first at x = {x:.2f}, y = {y:.2f} mm. Keep them or "
-            "make the sheet larger."
-        ),
+    "plan.removed_not_cut_through": mark_n(
+        "{count} removed connector is not cut through, at x = {x:.2f}, y = {y:.2f} mm. Keep it or make the sheet "
+        "larger.",
+        "{count} removed connectors are not cut through, the first at x = {x:.2f}, y = {y:.2f} mm. Keep them or "
+        "make the sheet larger.",
     ),
     "plan.cut_twice": mark(
         "{length_mm:.4f} mm would be cut twice near x = {x:.2f}, y = {y:.2f} mm. This should not happen: please "
@@ -301,15 +253,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "copies.none_fits": mark(
         "Not one copy fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm; the file holds one."
     ),
-    "copies.fewer_fit": (
-        mark(
-            "Of {asked} copies {count} fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
-            "{gap_mm:g} mm; the file holds {count}."
-        ),
-        mark(
-            "Of {asked} copies {count} fit on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
-            "{gap_mm:g} mm; the file holds {count}."
-        ),
+    "copies.fewer_fit": mark_n(
+        "Of {asked} copies {count} fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
+        "{gap_mm:g} mm; the file holds {count}.",
+        "Of {asked} copies {count} fit on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm with gaps of "
+        "{gap_mm:g} mm; the file holds {count}.",
     ),
     "plan.larger_than_bed": mark(
         "The cuts cover {width_mm:.1f} x {height_mm:.1f} mm, but the machine reaches {bed_width_mm:g} x "
@@ -319,15 +267,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Connectors of {material!r} break before a sheet is closed: no style, width and size is known that holds. Cut "
         "a tougher sheet, such as film, felt or polypropylene."
     ),
-    "plan.slits_short": (
-        mark(
-            "{count} cut is shorter than the {least_mm:g} mm that {material!r} needs: {length_mm:.3f} mm at x = "
-            "{x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design."
-        ),
-        mark(
-            "{count} cuts are shorter than the {least_mm:g} mm that {material!r} needs, the shortest {length_mm:.3f} "
-            "mm at x = {x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design."
-        ),
+    "plan.slits_short": mark_n(
+        "{count} cut is shorter than the {least_mm:g} mm that {material!r} needs: {length_mm:.3f} mm at x = "
+        "{x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design.",
+        "{count} cuts are shorter than the {least_mm:g} mm that {material!r} needs, the shortest {length_mm:.3f} "
+        "mm at x = {x:.2f}, y = {y:.2f} mm. Use a larger sheet or a more regular design.",
     ),
     "plan.panel_edge_small": mark(
         "A panel at x = {x:.2f}, y = {y:.2f} mm has a finished edge of {size_mm:.3f} mm; {material!r} needs "

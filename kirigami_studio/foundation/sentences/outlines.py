@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # Sources of any kind
@@ -165,25 +165,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The contour touches itself and splits into {pieces} pieces, the largest with only {percent:.0f} % of the "
         "area. Draw a line that does not cross itself, or one piece only."
     ),
-    "contour.splits_at": (
-        mark(
-            "The contour crosses itself near ({x:.4g}, {y:.4g}) and splits into {pieces} pieces, the largest with only "
-            "{percent:.0f} % of the area. Move the vertices so that the line no longer crosses itself, or draw one "
-            "piece only."
-        ),
-        mark(
-            "The contour crosses itself at {count} places, the first near ({x:.4g}, {y:.4g}), and splits into {pieces} "
-            "pieces, the largest with only {percent:.0f} % of the area. Move the vertices so that the line no longer "
-            "crosses itself, or draw one piece only."
-        ),
+    "contour.splits_at": mark_n(
+        "The contour crosses itself near ({x:.4g}, {y:.4g}) and splits into {pieces} pieces, the largest with only "
+        "{percent:.0f} % of the area. Move the vertices so that the line no longer crosses itself, or draw one "
+        "piece only.",
+        "The contour crosses itself at {count} places, the first near ({x:.4g}, {y:.4g}), and splits into {pieces} "
+        "pieces, the largest with only {percent:.0f} % of the area. Move the vertices so that the line no longer "
+        "crosses itself, or draw one piece only.",
     ),
     "contour.touches": mark("The contour touches itself. Move the lines apart."),
-    "contour.touches_at": (
-        mark("The contour touches itself near ({x:.4g}, {y:.4g}). Move the lines apart there."),
-        mark(
-            "The contour touches itself at {count} places, the first near ({x:.4g}, {y:.4g}). Move the lines apart "
-            "there."
-        ),
+    "contour.touches_at": mark_n(
+        "The contour touches itself near ({x:.4g}, {y:.4g}). Move the lines apart there.",
+        "The contour touches itself at {count} places, the first near ({x:.4g}, {y:.4g}). Move the lines apart there.",
     ),
     "outline.not_normalised": mark(
         "An outline must be counter-clockwise with area 1 around the origin, got signed area {area:.6g} around "

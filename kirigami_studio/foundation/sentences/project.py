@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, mark_n
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # Fixes that were tried on a design
@@ -17,15 +17,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "fix.hinges": mark("Give all connectors the same width."),
     "fix.strain": mark("{change}: strain {strain_percent:.1f} %."),
     "fix.then": mark("{change} Then: {level}."),
-    "fix.none": (
-        mark(
-            "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
-            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
-        ),
-        mark(
-            "Nothing that was tried works: {count} changes, with {styles} styles, connectors of {narrowest_mm:g} to "
-            "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials."
-        ),
+    "fix.none": mark_n(
+        "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
+        "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials.",
+        "Nothing that was tried works: {count} changes, with {styles} styles, connectors of {narrowest_mm:g} to "
+        "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials.",
     ),
     # The photo behind a target
     "photo.too_large": mark("{name} has {size_mb:.0f} MB; the limit is {most_mb} MB."),
@@ -55,29 +51,22 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "history.no_such_step": mark("There is no step {position} in the history; the last one is {last}."),
     # Settings
     "settings.grid_not_two_numbers": mark("A grid is two whole numbers (rows, columns), got {value!r:.60}."),
-    "settings.angle_out_of_range": mark(
-        "The target angle must be at least 0 and below pi radians, got {value!r:.40}. The usual choice is 0."
-    ),
-    "settings.no_such_choice": mark("There is no {name} {value:.40}. Choose one of {choices}."),
+    "settings.does_not_fit": mark("{name} cannot be {value!r:.40}; the command line's help says what it can be."),
+    "settings.no_such_choice": mark("There is no {name} {value!r:.40}. Choose one of {choices}."),
     "settings.variant_not_a_name": mark("The generator variant must be a name, got {value!r:.40}."),
-    "settings.preference_not_a_name": mark("The preference of the polish must be a name, got {value!r:.40}."),
-    "settings.symmetry_not_a_name": mark("The symmetry of designs must be a name, got {value!r:.40}."),
-    "settings.rim_not_a_name": mark("The rim must be a name, got {value!r:.40}."),
     "project.no_such_second_target": mark("Second target {number} is not among the {targets} that the project has."),
-    "settings.sheet_width": mark("The sheet's width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."),
+    "settings.sheet_width": mark("The sheet's width must be above 0 and at most {most:g} mm, got {value!r:.40}."),
     "settings.opened_size": mark(
-        "The size of the opened shape must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."
+        "The size of the opened shape must be above 0 and at most {most:g} mm, got {value!r:.40}."
     ),
     "settings.material_not_a_name": mark("The material must be the name of a preset, got {value!r:.40}."),
     "settings.profile_not_a_name": mark("The machine profile must be a name, got {value!r:.40}."),
-    "settings.dxf_version_not_a_name": mark("The DXF version must be a name, got {value!r:.40}."),
-    "settings.paper_not_a_name": mark("The paper must be a name, got {value!r:.40}."),
+    "settings.dxf_version_not_a_name": mark("There is no DXF version {value!r:.40}. Choose one of {choices}."),
+    "settings.paper_not_a_name": mark("There is no paper {value!r:.40}. Choose one of {choices}."),
     "settings.engrave_not_true_or_false": mark("Engraving the name is on or off (true or false), got {value!r:.40}."),
     "settings.markers_not_true_or_false": mark("Connector markers are on or off (true or false), got {value!r:.40}."),
-    "settings.connector_width": mark(
-        "The connector width must be above 0 and at most {largest_mm:g} mm, got {value!r:.40}."
-    ),
-    "settings.kerf_width": mark("The kerf must be from 0 to {largest_mm:g} mm, got {value!r:.40}."),
+    "settings.connector_width": mark("The connector width must be above 0 and at most {most:g} mm, got {value!r:.40}."),
+    "settings.kerf_width": mark("The kerf must be from 0 to {most:g} mm, got {value!r:.40}."),
     # Project files
     "project.not_readable": mark("Cannot read the project {path}: {reason}. Check its name."),
     "project.not_a_file_name": mark("{path!r} is not a file name. Choose a .kiri file."),
@@ -133,7 +122,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "picture.left_out": mark("The picture in this project cannot be read and was left out. {reason}"),
     # Preferences, recent files, recovery files
     "preferences.not_a_name": mark("The preference {name} must be a name, got {value!r:.40}."),
-    "preferences.unknown_theme": mark("The preference theme must be one of {themes}, got {value!r:.40}."),
     "preferences.not_true_or_false": mark("The preference {name} must be true or false, got {value!r:.40}."),
     "preferences.unknown_choice": mark("The preference {name} must be one of {choices}, got {value!r:.40}."),
     "preferences.not_a_length": mark("A length among the preferences cannot be used: {reason:.120}"),

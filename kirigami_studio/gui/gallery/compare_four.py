@@ -9,9 +9,8 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.compare_page import Side, number_texts
+from kirigami_studio.gui.gallery.compare_page import ComparedDesign, Side, number_texts
 from kirigami_studio.gui.session.overlays import Overlay
-from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.outlines.outline import Outline
@@ -57,22 +56,19 @@ class CompareFour(QWidget):
         column.addLayout(row, 1)
         column.addWidget(self.bar)
 
-    def show_designs(self, designs: Sequence[tuple[Entry, str]], target: Outline | None, width_mm: float) -> None:
-        """Show these designs, each with its name; angle, zoom and place stay."""
+    def show_designs(self, designs: Sequence[ComparedDesign], target: Outline | None) -> None:
+        """Show these designs; angle, zoom and place stay."""
         self.shown = len(designs)
-        first = designs[0][0] if designs else None
+        first = designs[0] if designs else None
         for place, side in enumerate(self.sides):
             side.setVisible(place < len(designs))
             if place >= len(designs):
                 side.view.show_design(None, None, None)
                 continue
-            entry, name = designs[place]
+            one, name = designs[place], designs[place].name
             side.name(tr("{place}   Design {name}", place=place + 1, name=name), f"{place + 1}   {name}", name)
-            candidate = entry.candidate
-            scored = candidate.final_sheet == candidate.sheet
-            known = (candidate.score, candidate.second) if scored else (None, None)
-            side.view.show_design(entry.design, known[0], target, known[1])
-            side.show_numbers(*number_texts(entry, None if place == 0 else first, width_mm))
+            side.show_design(one, target)
+            side.show_numbers(*number_texts(one, None if place == 0 else first))
         bounds = [side.view.own_bounds() for side in self.sides[: len(designs)]]
         shared = None
         for box in bounds:
@@ -81,10 +77,10 @@ class CompareFour(QWidget):
             side.view.share(shared)
         self.bar.set_ready(first is not None)
         if first is not None:
-            contacts = [entry.candidate.score.contact for entry, _ in designs]
+            contacts = [one.entry.candidate.score.contact for one in designs]
             touches = max((contact.phi for contact in contacts if contact is not None), default=None)
-            second = first.candidate.second
-            self.bar.set_marks(first.design.phi_target, touches, None if second is None else second.target.phi)
+            second = first.entry.candidate.second
+            self.bar.set_marks(first.entry.design.phi_target, touches, None if second is None else second.target.phi)
 
     def fit(self) -> None:
         """Show everything of all."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -21,6 +22,14 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Figures after the point of the numbers that can be subtracted, row by row.
 DIGITS = (1, 0, 2, 1, 2)
+
+
+class ComparedDesign(NamedTuple):
+    """A design beside others, what it is called, and the width of its flat sheet, mm."""
+
+    entry: Entry
+    name: str
+    width_mm: float
 
 
 class ComparedView(LayoutView):
@@ -99,6 +108,15 @@ class Side(QWidget):
     def _fit(self) -> None:
         self.title.fit(self.width() - self._button.sizeHint().width() - 12)
 
+    def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
+        """Show the layout of a design over the target."""
+        candidate = one.entry.candidate
+        # Contacts and the second target's pose are known of the sheet that was scored.
+        scored = candidate.final_sheet == candidate.sheet
+        known = (candidate.score, candidate.second) if scored else (None, None)
+        self.view.set_sheet_width(one.width_mm)
+        self.view.show_design(one.entry.design, known[0], target, known[1])
+
     def show_numbers(self, values: Sequence[str], gaps: Sequence[str]) -> None:
         """Show the numbers of this design, and by how much they are above or below the other's."""
         for labels, texts in ((self.values, values), (self.gaps, gaps)):
@@ -109,17 +127,14 @@ class Side(QWidget):
 class ComparePage(QWidget):
     """Shows the chosen design on the left and another one on the right, at one angle, zoom and place."""
 
-    swap_wanted = Signal()
-    leave_wanted = Signal()
+    pair_changed = Signal()
     phi_changed = Signal(float)  #: radians
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._entries: tuple[Entry | None, Entry | None] = (None, None)
         self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
-        self.swap.clicked.connect(self.swap_wanted)
         self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K)."))
-        self.leave.clicked.connect(self.leave_wanted)
         self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
         self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
         self.bar = DeploymentBar()
@@ -155,12 +170,10 @@ class ComparePage(QWidget):
         """The chosen design and the one it is compared with."""
         return self._entries
 
-    def show_pair(
-        self, chosen: tuple[Entry, str] | None, other: tuple[Entry, str] | None, target: Outline | None, width_mm: float
-    ) -> None:
-        """Show two designs, each with its name; zoom and place stay."""
+    def show_pair(self, chosen: ComparedDesign | None, other: ComparedDesign | None, target: Outline | None) -> None:
+        """Show two designs; zoom and place stay."""
         pair = (chosen, other)
-        self._entries = None if chosen is None else chosen[0], None if other is None else other[0]
+        self._entries = None if chosen is None else chosen.entry, None if other is None else other.entry
         for side, one in zip(self.sides, pair, strict=True):
             self._show_side(side, one, target)
         bounds = [side.view.own_bounds() for side in self.sides]
@@ -169,29 +182,26 @@ class ComparePage(QWidget):
             shared = bounds[0].united(bounds[1])
         for place, side in enumerate(self.sides):
             side.view.share(shared)
-            side.show_numbers(*number_texts(self._entries[place], self._entries[1 - place], width_mm))
+            side.show_numbers(*number_texts(pair[place], pair[1 - place]))
         self.bar.set_ready(chosen is not None)
         if chosen is not None:
-            contacts = [one[0].candidate.score.contact for one in pair if one is not None]
+            contacts = [one.entry.candidate.score.contact for one in pair if one is not None]
             first = max((contact.phi for contact in contacts if contact is not None), default=None)
-            second = chosen[0].candidate.second
-            self.bar.set_marks(chosen[0].design.phi_target, first, None if second is None else second.target.phi)
+            second = chosen.entry.candidate.second
+            self.bar.set_marks(chosen.entry.design.phi_target, first, None if second is None else second.target.phi)
+        self.pair_changed.emit()
 
-    def _show_side(self, side: Side, one: tuple[Entry, str] | None, target: Outline | None) -> None:
+    def _show_side(self, side: Side, one: ComparedDesign | None, target: Outline | None) -> None:
         if one is None:
             side.name("")
             side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card in the gallery."))
             side.view.show_design(None, None, None)
             return
-        entry, name = one
+        name = one.name
         chosen = side is self.left
         alone = tr("Design {name}", name=name)
         side.name(*((tr("Design {name}, chosen", name=name), tr("{name}, chosen", name=name)) if chosen else ()), alone)
-        candidate = entry.candidate
-        # Contacts and the second target's pose are known of the sheet that was scored.
-        scored = candidate.final_sheet == candidate.sheet
-        known = (candidate.score, candidate.second) if scored else (None, None)
-        side.view.show_design(entry.design, known[0], target, known[1])
+        side.show_design(one, target)
 
     def set_phi(self, phi: float) -> None:
         """Show both at another angle, radians."""
@@ -238,25 +248,25 @@ def _rows() -> tuple[tuple[str, str], ...]:
     )
 
 
-def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tuple[list[str], list[str]]:
+def number_texts(one: ComparedDesign | None, other: ComparedDesign | None) -> tuple[list[str], list[str]]:
     """What is said below one design, and by how much it is above or below another; one text for every row."""
     rows = len(_rows())
     if one is None:
         return [""] * rows, [""] * rows
-    mine = _numbers(one, width_mm)
+    mine, candidate = _numbers(one), one.entry.candidate
     values = [
         tr("{match:.1f} %", match=mine[0]),
         tr("±{variation:.0f} %", variation=mine[1]),
         tr("{size:.2f} mm", size=mine[2]),
         tr("{gain:+.1f}", gain=mine[3]),
         tr("{tv:.2f}", tv=mine[4]),
-        tr("no") if one.candidate.symmetry is None else tr("yes"),
-        tr("even") if one.candidate.final_sheet.has_even_rim else tr("free"),
-        tr("yes") if one.candidate.score.feasible else tr("no"),
+        tr("no") if candidate.symmetry is None else tr("yes"),
+        tr("even") if candidate.final_sheet.has_even_rim else tr("free"),
+        tr("yes") if candidate.score.feasible else tr("no"),
     ]
     if other is None:
         return values, [""] * rows
-    gaps = [here - there for here, there in zip(mine, _numbers(other, width_mm), strict=True)]
+    gaps = [here - there for here, there in zip(mine, _numbers(other), strict=True)]
     gap_texts = [
         number(gap, f"+.{digits}f") if abs(gap) >= 0.5 * 0.1**digits else "="
         for gap, digits in zip(gaps, DIGITS, strict=True)
@@ -264,7 +274,7 @@ def number_texts(one: Entry | None, other: Entry | None, width_mm: float) -> tup
     return values, [*gap_texts, "", "", ""]
 
 
-def _numbers(entry: Entry, width_mm: float) -> tuple[float, float, float, float, float]:
-    score = entry.candidate.score
-    smallest_mm = width_mm * least_panel_share(entry.design.deployment)
+def _numbers(one: ComparedDesign) -> tuple[float, float, float, float, float]:
+    score = one.entry.candidate.score
+    smallest_mm = one.width_mm * least_panel_share(one.entry.design.deployment)
     return 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, smallest_mm, 100.0 * score.siou_gain, score.tv

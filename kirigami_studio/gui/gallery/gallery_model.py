@@ -33,7 +33,7 @@ RISE_ROLE = Qt.ItemDataRole.UserRole + 3
 NAME_ROLE = Qt.ItemDataRole.UserRole + 4  #: what it is called; its number while it has no name
 MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
-NOTE_ROLE = Qt.ItemDataRole.UserRole + 14  #: what a person has noted of it
+NOTE_ROLE = Qt.ItemDataRole.UserRole + 14  #: what the user has noted of it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
 CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its panels are wide enough to be cut
@@ -324,7 +324,7 @@ class GalleryModel(QAbstractListModel):
         return str(number) if number else ""
 
     def note_of(self, candidate: Candidate) -> str:
-        """What a person has noted of a design."""
+        """The user's note on a design."""
         label = self._labels.get(candidate)
         return "" if label is None else label.note
 

@@ -1,260 +1,243 @@
-"""Designs: the run that generates them, their gallery, and the menu of a card."""
+"""The gallery: its cards, their order, and the menu of a card."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QPoint, QRect, Qt
+from PySide6.QtCore import QObject, QPoint, QRect, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QMenu
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, OPEN_ROLE
-from kirigami_studio.gui.gallery.side_by_side import SideBySide
-from kirigami_studio.gui.session.messages import Tone
-from kirigami_studio.gui.session.session import Entry
+from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
+from kirigami_studio.gui.run.generation import Generation
+from kirigami_studio.gui.run.look_alikes import LookAlikes
+from kirigami_studio.gui.run.regularity import Regularity
+from kirigami_studio.gui.run.settings_panel import SettingsPanel
+from kirigami_studio.gui.session.collection import DesignMarks
+from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.gui.stage.as_cut import AsCutEstimates
+from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
-    from kirigami_studio.studio.as_cut import AsCut
+from kirigami_studio.studio.as_cut import AsCut
 
 
-class DesignConnections(QObject):
-    """Connects the Generate button and the gallery with the controller."""
+class GalleryPresenter(QObject):
+    """Shows the designs of the document, or of a run, as cards, and passes requests on.
 
-    def __init__(self, window: MainWindow, controller: Controller, side_by_side: SideBySide) -> None:
-        super().__init__(window)
-        self._window = window
-        self._controller = controller
-        self._side_by_side = side_by_side
+    Parameters
+    ----------
+    panel : GalleryPanel
+    balance : SettingsPanel
+        Moves the balance of match and regularity, which the cards follow.
+    session : Session
+    generation, marks, alikes, estimates, regularity, hand
+        The parts that make designs, mark them, and find out what is known of them.
+    choose, change : callable
+        Puts a design on the stage; changes settings of the next run.
+    """
+
+    named = Signal(str)  #: what the design on the stage is called
+    compare_wanted = Signal(Candidate)  #: with the design on the stage
+    label_wanted = Signal(object, QRect)  #: Candidate or None, and the place of its card on the screen, if in sight
+
+    def __init__(
+        self,
+        panel: GalleryPanel,
+        balance: SettingsPanel,
+        session: Session,
+        *,
+        generation: Generation,
+        marks: DesignMarks,
+        alikes: LookAlikes,
+        estimates: AsCutEstimates,
+        regularity: Regularity,
+        hand: HandEditor,
+        choose: Callable[[Candidate], None],
+        change: Callable[..., None],
+    ) -> None:
+        super().__init__(panel)
+        self._panel, self._view, self._session = panel, panel.view, session
+        self._generation, self._marks, self._alikes, self._estimates = generation, marks, alikes, estimates
+        self._regularity, self._hand, self._choose, self._change = regularity, hand, choose, change
         self.menu: QMenu | None = None
         self._ranked_as_cut = False
-        self._connect_run()
-        self._connect_gallery()
-        controller.session.document_changed.connect(self._show_document)
-        controller.session.display.stage_changed.connect(self._show_chosen)
-        self._show_document(controller.document)
-        self._show_idle()
+        self._connect(balance)
+        self.show_document(session.document)
+        self.show_idle()
 
-    def _connect_run(self) -> None:
-        window, run = self._window, self._controller.run
-        window.run.generate_wanted.connect(self._controller.generation.generate)
-        window.run.cancel_wanted.connect(self._controller.cancel)
-        run.started.connect(self._show_run)
-        run.progressed.connect(window.run.show_progress)
-        run.ended.connect(self._show_idle)
-        regularity, settings = self._controller.regularity, window.settings
-        settings.regular_moved.connect(self._move_balance)
-        settings.regular_chosen.connect(self._choose_balance)
-        self._controller.estimates.changed.connect(self._show_estimates)
-        regularity.ranked.connect(lambda ranking: window.gallery.view.rank_by(self._as_cut(ranking)))
-        regularity.busy_changed.connect(self._show_fitting)
-        regularity.progressed.connect(window.run.show_progress)
-
-    def _connect_gallery(self) -> None:
-        controller, view, bar = self._controller, self._window.gallery.view, self._window.gallery.bar
-        view.chosen.connect(controller.choose)
-        view.pin_wanted.connect(controller.marks.pin)
+    def _connect(self, balance: SettingsPanel) -> None:
+        view, bar = self._view, self._panel.bar
+        view.chosen.connect(self._choose)
+        view.pin_wanted.connect(self._marks.pin)
         view.reject_wanted.connect(self.reject)
         view.menu_wanted.connect(self.show_menu)
-        bar.again_wanted.connect(controller.generation.again)
-        bar.alike_wanted.connect(controller.generation.more_like)
-        controller.session.display.gallery_reset.connect(self._show_gallery)
-        controller.session.display.candidate_found.connect(self._add_card)
-        controller.alikes.known.connect(view.set_groups)
+        view.compare_wanted.connect(self.compare_wanted)
+        bar.again.clicked.connect(self._generation.again)
+        bar.draw.clicked.connect(lambda: self._generation.more_like(bar.nearness_value))
+        balance.regular_moved.connect(self._move_balance)
+        balance.regular_chosen.connect(self._choose_balance)
+        self._regularity.ranked.connect(lambda ranking: view.rank_by(self._estimated(ranking)))
+        self._estimates.changed.connect(self._show_estimates)
+        self._alikes.known.connect(view.set_groups)
+
+    @property
+    def _running(self) -> bool:
+        return self._generation.run.running
 
     # the run -------------------------------------------------------------------------------------------------------
 
-    def _show_run(self, total: int) -> None:
-        window = self._window
-        window.run.show_running(total)
-        window.gallery.bar.set_ready(False)
-        window.stage.set_trimmable(False)
-        window.gallery.view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
-        window.stage.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
-        window.stage.allow_sample(False)
-        window.fabrication.show_waiting()
-        window.stage.cuts.show_plan(None)
-        window.messages.dismiss(Tone.HINT, Tone.DONE)
+    def show_run(self) -> None:
+        """A run has begun."""
+        self._panel.bar.set_ready(False)
+        self._view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
 
-    def _show_idle(self) -> None:
+    def show_idle(self) -> None:
         """No run is in progress."""
-        window = self._window
-        window.run.show_idle()
-        window.stage.set_trimmable(True)
-        window.stage.allow_sample(True)
         hint = tr("Designs appear here, best first, as they are generated.")
-        window.gallery.view.set_hint(tr("No designs yet"), hint)
-        self._show_ready(self._controller.document)
+        self._view.set_hint(tr("No designs yet"), hint)
+        self._show_ready(self._session.document)
 
     def _show_ready(self, document: Document) -> None:
-        """Show whether designs can be generated or added."""
-        window, running = self._window, self._controller.running
-        window.gallery.bar.set_ready(bool(document.candidates) and not running)
-        window.run.show_ready(document.target is not None)
-        if running:
-            return
-        if document.target is not None:
-            window.stage.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
-        else:
-            hint = tr(
-                "Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left. "
-                "File > Examples of pairs has finished designs."
-            )
-            window.stage.set_hint("target", tr("Start with a target"), hint)
+        """Show whether designs can be added."""
+        self._panel.bar.set_ready(bool(document.candidates) and not self._running)
 
     def _move_balance(self, regular: float) -> None:
         """The balance of match and regularity is being moved: the cards follow, also those of a run."""
-        controller = self._controller
-        if controller.running:
-            display = controller.session.display
+        if self._running:
+            display = self._session.display
             display.ranking = replace(display.ranking, regular=regular)
-            self._window.gallery.view.rank_by(display.ranking)
+            self._view.rank_by(display.ranking)
         else:
-            controller.regularity.preview(regular)
+            self._regularity.preview(regular)
 
     def _choose_balance(self, regular: float) -> None:
         """The balance was let go."""
-        controller, model = self._controller, self._window.gallery.view.model_
-        if controller.running:
-            controller.change_settings(regular=regular)
-        elif not controller.hand.postpones(lambda: self._choose_balance(regular)):
-            controller.regularity.choose(regular, tuple(entry.candidate for entry in model.taken))
-
-    def _show_fitting(self, busy: bool) -> None:
-        """Designs are being fitted again, or no longer."""
-        if busy:
-            self._window.run.show_fitting()
-        elif not self._controller.running:
-            self._show_idle()
+        if self._running:
+            self._change(regular=regular)
+        elif not self._hand.postpones(lambda: self._choose_balance(regular)):
+            self._regularity.choose(regular, tuple(entry.candidate for entry in self._view.model_.taken))
 
     # the gallery ---------------------------------------------------------------------------------------------------
 
     def _show_estimates(self, known: Mapping[Candidate, AsCut]) -> None:
         """Designs were estimated as cut: the cards say so, and are ranked by it too."""
-        view = self._window.gallery.view
-        view.model_.set_as_cut(known, self._controller.estimates.strain_limit)
-        if self._controller.running or not known:
+        self._view.model_.set_as_cut(known, self._estimates.strain_limit)
+        if self._running or not known:
             return
         ranking = self._ranking
         jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
         if jams or self._ranked_as_cut:  # the document's order stays where all designs close
-            view.rank_by(ranking)
+            self._view.rank_by(ranking)
             self._show_chosen()
         self._ranked_as_cut = jams
 
-    def _as_cut(self, ranking: Ranking) -> Ranking:
-        """The ranking with what is estimated of the designs as cut."""
-        known = self._controller.estimates.known
-        estimated = {candidate: found.jam_phi for candidate, found in known.items()}
-        return replace(ranking, jam_phi={**ranking.jam_phi, **estimated})
-
     @property
     def _ranking(self) -> Ranking:
-        """That of the document."""
-        return self._as_cut(self._controller.session.ranking)
+        """That of the document, with what is estimated of its designs as cut."""
+        return self._estimated(self._session.ranking)
 
-    def _show_document(self, document: Document) -> None:
-        gallery = self._window.gallery
-        running = self._controller.running
-        gallery.view.set_measure(document.fabrication.width_mm, None if running else self._ranking)
+    def _estimated(self, ranking: Ranking) -> Ranking:
+        found = {candidate: one.jam_phi for candidate, one in self._estimates.known.items()}
+        return replace(ranking, jam_phi={**ranking.jam_phi, **found})
+
+    def show_document(self, document: Document) -> None:
+        """The document has changed: marks, names and order of the cards."""
+        view, running = self._view, self._running
+        view.set_measure(document.fabrication.width_mm, None if running else self._ranking)
         marks = dict(zip(document.candidates, document.marks, strict=True))
-        gallery.view.model_.set_labels(dict(zip(document.candidates, document.labels, strict=True)))
-        gallery.view.show_marks(marks, self._controller.generation.planner.added)
-        gallery.bar.show_count(document.settings.k)
+        view.model_.set_labels(dict(zip(document.candidates, document.labels, strict=True)))
+        view.show_marks(marks, self._generation.planner.added)
+        self._panel.bar.show_count(document.settings.k)
         if not running:
-            gallery.view.mark(document.candidate)
+            view.mark(document.candidate)
         self._show_ready(document)
         self._show_chosen()
 
-    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
-        view, document = self._window.gallery.view, self._controller.document
-        running = self._controller.running
-        ranking = self._controller.session.display.ranking if running else self._ranking
+    def show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        """Show other designs."""
+        view, document = self._view, self._session.document
+        ranking = self._session.display.ranking if self._running else self._ranking
         view.model_.set_ranking(ranking)
         view.show_entries(list(entries), document.target)
-        self._controller.alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)
+        self._alikes.look_at(tuple(entry.candidate for entry in entries), view.model_.ranking)
         view.mark(document.candidate)
         self._show_chosen()
 
-    def _add_card(self, entry: Entry) -> None:
-        self._window.gallery.view.add(entry)
+    def add(self, entry: Entry) -> None:
+        """A run has found a design, or improved one."""
+        self._view.add(entry)
         self._show_chosen()
 
     def _show_chosen(self) -> None:
         """Tell the bar and the stage which design is chosen, and what it is called."""
         candidate = self.chosen
-        name = self._window.gallery.view.model_.name_of(candidate)
-        self._window.stage.set_name(name)
-        self._window.gallery.bar.set_chosen(None if candidate is None or not name else (candidate.sheet, name))
+        name = self._view.model_.name_of(candidate)
+        self._panel.bar.set_chosen(None if candidate is None or not name else (candidate.sheet, name))
+        self.named.emit(name)
+
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
+        self._view.mark(None if entry is None else entry.candidate)
+        self._show_chosen()
 
     @property
     def chosen(self) -> Candidate | None:
         """The design on the stage."""
-        stage = self._controller.stage
+        stage = self._session.stage
         return None if stage is None else stage.candidate
 
     def reject(self, candidate: Candidate | None) -> None:
         """Reject a design; where that hides the chosen one, the next card is chosen instead."""
-        view = self._window.gallery.view
-        hides = not view.model_.selection.show_rejected
-        self._controller.marks.reject(candidate, view.beside(candidate) if hides else None)
+        hides = not self._view.model_.selection.show_rejected
+        self._marks.reject(candidate, self._view.beside(candidate) if hides else None)
 
     def rename(self, candidate: Candidate | None) -> None:
-        """Open the name and the note of a design, at its card where that is in sight."""
-        table = self._window.connections.all_designs
-        if table.shown and candidate is not None:
-            self._window.dialogs.show_label(candidate, table.card(candidate))
-            return
-        view, title = self._window.gallery.view, self._window.stage.title
+        """Ask for the name and the note of a design, at its card where that is in sight."""
+        view = self._view
         row = view.model_.row_of(candidate)
         card = view.visualRect(view.model_.index(row, 0)) if row >= 0 else QRect()
-        if card.isValid() and view.isVisible() and view.viewport().rect().intersects(card):
-            beside = QRect(view.viewport().mapToGlobal(card.topLeft()), card.size())
-        else:
-            beside = QRect(title.mapToGlobal(QPoint(0, 0)), title.size())
-        self._window.dialogs.show_label(candidate, beside)
+        in_sight = card.isValid() and view.isVisible() and view.viewport().rect().intersects(card)
+        corner = view.viewport().mapToGlobal(card.topLeft())
+        self.label_wanted.emit(candidate, QRect(corner, card.size()) if in_sight else QRect())
 
     # the menu of a card --------------------------------------------------------------------------------------------
 
-    def rename_current(self) -> None:
-        """Open the name and the note of the chosen design, or of the one that is marked in the table of all."""
-        table = self._window.connections.all_designs
-        page = table.page
-        self.rename(page.table.current if table.shown and page is not None else self.chosen)
+    def show_menu(self, candidate: Candidate, place: QPoint) -> None:
+        """Open the context menu of a card."""
+        compare = ("compare", tr("Compare with chosen"), lambda: self.compare_wanted.emit(candidate))
+        self.open_menu(candidate, place, compare, lambda: self.rename(candidate))
 
-    def show_menu(self, candidate: Candidate, place: QPoint, compare: Callable[[], None] | None = None) -> None:
-        """Open the context menu of a card; ``compare`` is what comparing it means where it is."""
-        menu = QMenu(self._window)
+    def open_menu(
+        self,
+        candidate: Candidate,
+        place: QPoint,
+        compare: tuple[str, str, Callable[[], None]],
+        rename: Callable[[], None],
+    ) -> None:
+        """Open the menu of a design, with comparing and renaming as the place has them."""
+        menu = QMenu(self._panel)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)
-        controller = self._controller
-        view = self._window.gallery.view
+        view = self._view
         row = view.model_.index(max(view.model_.row_of(candidate), 0), 0)
         alike: int = row.data(ALIKE_ROLE) if row.isValid() else 0
         mark = view.model_.mark_of(candidate)
-        ready = not controller.running and candidate in controller.document.candidates
-        comparing = (
-            (("compare", tr("Compare with chosen"), lambda: self._side_by_side.compare_with(candidate)),)
-            if compare is None
-            else (("compare", tr("Mark to compare"), compare),)
-        )
+        ready = not self._running and candidate in self._session.document.candidates
         for name, text, run in (
-            ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: controller.marks.pin(candidate)),
+            ("pin", tr("Unpin") if mark is Mark.PINNED else tr("Pin"), lambda: self._marks.pin(candidate)),
             ("reject", tr("Restore") if mark is Mark.REJECTED else tr("Reject"), lambda: self.reject(candidate)),
-            ("note", tr("Name and note … (F2)"), lambda: self.rename(candidate)),
+            ("note", tr("Name and note … (F2)"), rename),
             ("alike", tr("More like this"), lambda: self.more_like(candidate)),
-            *comparing,
+            compare,
             ("dice", tr("Use seed {seed}", seed=candidate.seed), lambda: self._use_seed(candidate)),
         ):
-            action = QAction(icons.icon(name, self._window.palette_), text, menu)
+            action = QAction(icons.icon(name, view.cards.palette_), text, menu)
             action.setObjectName(name)
             action.setEnabled(ready)
             action.triggered.connect(lambda _=False, run=run: run())
@@ -275,9 +258,9 @@ class DesignConnections(QObject):
 
     def more_like(self, candidate: Candidate) -> None:
         """Choose a design and draw more like it."""
-        self._controller.choose(candidate)
-        self._controller.generation.more_like(self._window.gallery.bar.nearness_value)
+        self._choose(candidate)
+        self._generation.more_like(self._panel.bar.nearness_value)
 
     def _use_seed(self, candidate: Candidate) -> None:
-        self._controller.change_settings(seed=candidate.seed)
-        self._controller.end_drag()
+        self._change(seed=candidate.seed)
+        self._session.history.end_drag()

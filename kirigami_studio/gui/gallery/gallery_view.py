@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QListView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import again, tr
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.card_delegate import (
     GAP,
     SCROLL_BAR,
@@ -67,12 +67,6 @@ class GalleryView(QListView):
         """Draw in other colours."""
         self.cards.palette_ = palette
         self.viewport().update()
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        """What is drawn in the empty gallery follows the language."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self.set_hint(again(self._hint[0]), again(self._hint[1]))
 
     def set_hint(self, headline: str, hint: str) -> None:
         """Say in the empty gallery what to do next."""

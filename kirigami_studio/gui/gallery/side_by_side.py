@@ -2,42 +2,54 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QSignalBlocker
+from PySide6.QtCore import QObject
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.gallery.compare_page import ComparedDesign, ComparePage
+from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
 from kirigami_studio.gui.session.messages import Message, Tone
-from kirigami_studio.gui.session.session import Entry
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
 
 class SideBySide(QObject):
-    """Keeps the compared design, which is no part of the document: comparing is not undone."""
+    """Keeps the compared design, which is no part of the document: comparing is not undone.
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
-        super().__init__(window)
-        self._window = window
-        self._controller = controller
+    Parameters
+    ----------
+    panel : GalleryPanel
+    page : ComparePage
+        Shows both.
+    session : Session
+    choose : callable
+        Puts a design on the stage.
+    turn : callable
+        Turns the stage to the page, or back; :meth:`follow` is told of it.
+    """
+
+    def __init__(
+        self,
+        panel: GalleryPanel,
+        page: ComparePage,
+        session: Session,
+        *,
+        choose: Callable[[Candidate], None],
+        turn: Callable[[bool], None],
+    ) -> None:
+        super().__init__(page)
+        self._view, self._switch, self._page, self._session = panel.view, panel.bar.compare.switch, page, session
+        self._choose, self._turn = choose, turn
+        self._comparing = False
         self._compared: Candidate | None = None
         self._chosen: Candidate | None = None
-        self._shown: tuple[tuple[Entry, str], tuple[Entry, str], Outline | None, float] | None = None
-        stage, gallery = window.stage, window.gallery
-        gallery.view.compare_wanted.connect(self.compare_with)
-        gallery.bar.compare.clicked.connect(self.show)
-        stage.compare.swap_wanted.connect(self.swap)
-        stage.compare.leave_wanted.connect(lambda: self.show(False))
-        stage.comparing_changed.connect(self._show_switches)
-        controller.session.display.stage_changed.connect(self._take_stage)
-        controller.session.display.gallery_reset.connect(self._show_pair)
-        controller.session.display.candidate_found.connect(self._show_pair)
-        controller.session.document_changed.connect(self._show_pair)
-        self._show_switches(stage.comparing)
+        self._shown: tuple[ComparedDesign, ComparedDesign, Outline | None] | None = None
+        self._switch.triggered.connect(self.show)
+        page.swap.clicked.connect(self.swap)
+        page.leave.clicked.connect(lambda: self.show(False))
+        self._show_switches(False)
 
     @property
     def compared(self) -> Candidate | None:
@@ -46,70 +58,74 @@ class SideBySide(QObject):
 
     def compare_with(self, candidate: Candidate) -> None:
         """Show a design beside the chosen one."""
-        stage = self._controller.stage
+        stage = self._session.stage
         if stage is None or candidate == stage.candidate:
             sentence = tr("This is the chosen design. Ctrl+click another card to compare.")
-            self._controller.session.post(Message(sentence, Tone.HINT))
+            self._session.post(Message(sentence, Tone.HINT))
             return
         self._compared = candidate
         self.show(True)
 
     def show(self, on: bool) -> None:
         """Show two designs, the chosen one and the next card unless another was named, or the chosen one alone."""
-        view, stage = self._window.gallery.view, self._controller.stage
+        stage = self._session.stage
         if on and self.compared is None and stage is not None:
-            self._compared = view.beside(stage.candidate)
+            self._compared = self._view.beside(stage.candidate)
         if on and (stage is None or self.compared is None):
             self._show_switches(False)
             sentence = tr("Nothing to compare yet. The gallery needs two designs.")
-            self._controller.session.post(Message(sentence, Tone.HINT))
+            self._session.post(Message(sentence, Tone.HINT))
             return
-        if on and not self._window.stage.comparing:
-            self._window.stage.compare.fit()
-        self._window.stage.set_comparing(on)
-        self._show_pair()
+        if on and not self._comparing:
+            self._page.fit()
+        self._turn(on)
+        self.show_pair()
+
+    def follow(self, comparing: bool) -> None:
+        """The stage shows two designs now, or one."""
+        self._comparing = comparing
+        self._show_switches(comparing)
 
     def swap(self) -> None:
         """Choose the compared design and compare the chosen one."""
-        if self.compared is not None and self._window.stage.comparing:
-            self._controller.choose(self.compared)
+        if self.compared is not None and self._comparing:
+            self._choose(self.compared)
 
-    def _take_stage(self, entry: Entry | None) -> None:
+    def show_design(self, entry: Entry | None) -> None:
         """Another design was chosen; where that is the compared one, the two change sides."""
         candidate = None if entry is None else entry.candidate
         if candidate is not None and candidate == self._compared:
             self._compared = self._chosen
         self._chosen = candidate
-        self._show_pair()
+        self.show_pair()
 
     def _entry(self, candidate: Candidate | None) -> Entry | None:
-        model = self._window.gallery.view.model_
+        model = self._view.model_
         number = model.number_of(candidate)
         return model.all_entries[number - 1] if number else None
 
-    def _show_pair(self) -> None:
-        window = self._window
-        if not window.stage.comparing:
-            window.gallery.view.show_compared(None)
+    def show_pair(self) -> None:
+        """Show both as they are now, or one alone where the other is gone."""
+        if not self._comparing:
+            self._view.show_compared(None)
             return
-        stage, other = self._controller.stage, self._entry(self._compared)
+        session, name_of = self._session, self._view.model_.name_of
+        stage, other = session.stage, self._entry(self._compared)
         if stage is None or other is None:
-            window.stage.set_comparing(False)
+            self._turn(False)
             return
-        name_of = window.gallery.view.model_.name_of
-        left, right = (stage, name_of(stage.candidate)), (other, name_of(other.candidate))
-        document = self._controller.document
-        shown = left, right, document.target, document.fabrication.width_mm
+        left, right = (
+            ComparedDesign(entry, name_of(entry.candidate), session.width_of(entry.candidate))
+            for entry in (stage, other)
+        )
+        shown = left, right, session.document.target
         if shown != self._shown:
             self._shown = shown
-            window.stage.compare.show_pair(*shown)
-            window.stage.show_title()
-        window.gallery.view.show_compared(other.candidate)
+            self._page.show_pair(*shown)
+        self._view.show_compared(other.candidate)
 
     def _show_switches(self, on: bool) -> None:
-        """The button shows whether two designs are on the stage."""
-        button = self._window.gallery.bar.compare
-        with QSignalBlocker(button):
-            button.setChecked(on)
+        """The switch says whether two designs are on the stage."""
+        self._switch.setChecked(on)
         if not on:
-            self._window.gallery.view.show_compared(None)
+            self._view.show_compared(None)

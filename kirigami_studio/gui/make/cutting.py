@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -21,9 +21,9 @@ from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit, FabricationChange, OptionsChange
-from kirigami_studio.project.settings import stored_material
+from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.sheet_size import set_opened_size
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_material
 from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
@@ -322,7 +322,7 @@ class MaterialStore(QObject):
             )
             keep = (tr("Add to my materials"), partial(self.keep, material))
             self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
-        elif known != material:
+        elif known != replace(material, name=known.name, note=known.note):  # words do not cut
             sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
             self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
 

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_length, readable_range
@@ -116,10 +116,10 @@ class ExportReport(QDialog):
         table = QGridLayout()
         table.setVerticalSpacing(1)
         for column, (name, label) in enumerate(self.facts.items()):
-            caption = QLabel(name)
+            caption = QLabel(tr(name))
             caption.setObjectName("muted")
             label.setObjectName("number")
-            label.setAccessibleName(name)
+            label.setAccessibleName(tr(name))
             table.addWidget(caption, 0, column)
             table.addWidget(label, 1, column)
             table.setColumnStretch(column, 3 if column == 0 else 2)
@@ -211,14 +211,15 @@ def format_problems(judged: Verdict | None) -> list[tuple[str, str, str]]:
 
 
 def format_facts(verification: Verification) -> dict[str, str]:
-    """Size, pieces, cut length and time by their captions."""
+    """Size, pieces, cut length and time by their captions, which are not translated yet."""
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
+    size = tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height)
     return {
-        tr("Size with overcuts"): tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height),
-        tr("Pieces"): pieces,
-        tr("Cut length"): readable_length(verification.cut_length_mm),
-        tr("Time"): readable_range(verification.seconds_low, verification.seconds_high),
+        mark("Size with overcuts"): size,
+        mark("Pieces"): pieces,
+        mark("Cut length"): readable_length(verification.cut_length_mm),
+        mark("Time"): readable_range(verification.seconds_low, verification.seconds_high),
     }
 
 
@@ -237,6 +238,6 @@ def _finding_line(finding: Finding) -> tuple[str, str, str]:
 
 def as_text(verification: Verification) -> str:
     """The whole report as plain text."""
-    facts = [f"{name}: {text}" for name, text in format_facts(verification).items()]
+    facts = [f"{tr(name)}: {text}" for name, text in format_facts(verification).items()]
     lines = [f"{word}: {text}" for word, _, text in format_findings(verification)]
     return "\n".join([str(verification.path), verdict(verification), *facts, *lines])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QGridLayout,
@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.material import library
-from kirigami_studio.foundation.words import again, mark, tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.make.more_options import MoreOptions
 from kirigami_studio.gui.make.verdict import VerdictState
@@ -28,12 +28,10 @@ from kirigami_studio.gui.widgets.card import (
     Card,
     ScrolledWhenShort,
     ToolButton,
-    captioned,
-    compact,
     muted_label,
 )
 from kirigami_studio.gui.widgets.choice_box import ComboBox
-from kirigami_studio.gui.widgets.number_field import LengthField
+from kirigami_studio.gui.widgets.form import Form
 from kirigami_studio.gui.widgets.readable import (
     TIMES,
     UNKNOWN,
@@ -42,49 +40,15 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.project.settings import FabricationSettings, stored_material
+from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
     from kirigami_studio.studio.making import Planned
 
-#: Field, label, accessible name, lowest, highest, step (mm), decimals, tooltip.
-LENGTHS = (
-    (
-        "width_mm",
-        mark("Flat &width, mm"),
-        mark("Width of the flat sheet in millimetres"),
-        5.0,
-        3000.0,
-        5.0,
-        1,
-        mark(
-            "Width of the flat sheet, mm (5 to 3000). It follows the opened size, beside the target; a width typed "
-            "here stays. The grid sets the height."
-        ),
-    ),
-    (
-        "connector_mm",
-        mark("&Connector, mm"),
-        mark("Connector in millimetres"),
-        0.02,
-        20.0,
-        0.05,
-        2,
-        mark("Finished width of the material left at each hinge, mm."),
-    ),
-    (
-        "kerf_mm",
-        mark("&Kerf, mm"),
-        mark("Kerf in millimetres"),
-        0.0,
-        5.0,
-        0.01,
-        3,
-        mark("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
-    ),
-)
+#: Settings that are shown at once.
+LENGTHS = ("width_mm", "connector_mm", "kerf_mm")
 #: Lengths of slots and of open cuts differ by much more than this share.
 SAME_LENGTH = 1e-3
 #: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
@@ -145,7 +109,10 @@ class FabricationPanel(Card):
         self.reload_materials()
         self.material.activated.connect(self._take_material)
         self.material_row = self._material_row()
-        self.lengths = {row[0]: self._length(row[0], *row[2:]) for row in LENGTHS}
+        self.form = Form(FabricationSettings, 82, parent=self)
+        self.form.changed.connect(self.changed)
+        self.form.edited.connect(self.edited)
+        self.lengths = {name: self.form.decimal(name) for name in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
@@ -211,22 +178,6 @@ class FabricationPanel(Card):
         if self._by_hand:
             settings.setValue("fabrication", self._extent.value)
 
-    def _length(
-        self, field: str, accessible: str, low: float, high: float, step: float, digits: int, tip: str
-    ) -> LengthField:
-        box = LengthField()
-        box.setObjectName(field)
-        box.setRange(low, high)
-        box.setSingleStep(step)
-        box.setDecimals(digits)
-        box.setToolTip(tr(tip))
-        box.setAccessibleName(tr(accessible))
-        box.setKeyboardTracking(False)
-        compact(box, 82)
-        box.valueChanged.connect(lambda value: self.changed.emit({field: value}))
-        box.editingFinished.connect(self.edited)
-        return box
-
     def _material_row(self) -> QWidget:
         """The material stands where designs are asked for: what it can bear decides how they are made."""
         row = QWidget()
@@ -249,8 +200,8 @@ class FabricationPanel(Card):
         rows.setSpacing(5)
         row = QHBoxLayout()
         row.setSpacing(8)
-        for field, label, *_ in LENGTHS:
-            row.addLayout(captioned(tr(label), self.lengths[field], self.lengths[field]), 1)
+        for name in LENGTHS:
+            row.addLayout(self.form.captioned(name), 1)
         rows.addLayout(row)
         self.table = QWidget()
         self.table.setObjectName("plain")
@@ -305,14 +256,12 @@ class FabricationPanel(Card):
                     note=tr(material.note),
                 )
             )
-        own = {
+        shown = {
             "width_mm": settings.width_mm,
             "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),
             "kerf_mm": settings.kerf_mm if settings.kerf_mm is not None else (material.kerf_mm if material else 0.0),
         }
-        for field, value in own.items():
-            with QSignalBlocker(self.lengths[field]):
-                self.lengths[field].setValue(value)
+        self.form.show(shown)
         self.options.show_settings(settings)
         extension = ".pdf" if material is not None and material.by_hand else ".dxf"
         self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version, extension)
@@ -380,12 +329,6 @@ class FabricationPanel(Card):
         self.summary.setText(text)
         self.summary.setVisible(bool(text))
 
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            with_numbers, without = self._summaries
-            self._summaries = (again(with_numbers), again(without))
-
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""
         self.show_plan(None)
@@ -397,9 +340,18 @@ class FabricationPanel(Card):
         self._forget_numbers()
         self._warn(sentence, calm=False)
 
-    def _forget_numbers(self) -> None:
+    def show_untrimmed(self) -> None:
+        """Forget the words on a trimmed design at once, before the plan of the whole one is made."""
+        if self.summary.toolTip():
+            self._forget_summary()
+
+    def _forget_summary(self) -> None:
         self._summaries = ("", "")
+        self.summary.setToolTip("")
         self._show_summary()
+
+    def _forget_numbers(self) -> None:
+        self._forget_summary()
         for label in self.numbers.values():
             label.setText(UNKNOWN)
 

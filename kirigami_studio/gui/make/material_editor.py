@@ -168,7 +168,7 @@ class MaterialEditor(QDialog):
     def _edited(self) -> Material:
         """The chosen material with the values of the form."""
         material, changes = self.chosen, self.form.changes()
-        words = {field for field, *_ in TEXTS}
+        words = set(TEXTS)
         if changes.keys() <= words:
             texts: dict[str, Any] = {field: str(entry) for field, entry in changes.items()}
             return replace(material, **texts)

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.making import CutRequest, Planned, fixing, judging
 
@@ -140,7 +141,7 @@ class VerdictKeeper(QObject):
             self._start(tr("judging the sheet"), request, made.verdict, steps)
 
     def _alternatives(self, request: CutRequest) -> tuple[dict[str, Candidate], Request | None]:
-        """Other designs by their names, and the run that coarser ones are asked for by, if there can be one."""
+        """Other designs by their names, and the run that would find coarser ones, if any."""
         document = self._session.document
         try:
             run = None if document.target is None else request_for(document.target, document.settings, request.settings)
@@ -159,7 +160,7 @@ class VerdictKeeper(QObject):
         if report is None:
             return
         # What files are written for does not matter to the sheet.
-        key = request.candidate, replace(request.settings, profile="any", dxf_version="R2010")
+        key = request.candidate, replace(request.settings, profile="any", dxf_version=DxfVersion.R2010)
         if not isinstance(report, Verdict):
             self._known[key] = report
             while len(self._known) > CAPACITY:

@@ -18,9 +18,10 @@ from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.pipeline.events import Progress
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import candidate_edits, edits
 from kirigami_studio.project.document import Document, Mark
+from kirigami_studio.settings.design import POLISH_STEPS
 from kirigami_studio.studio.designing import Decoded, FittedAgain, KnownAsCut, RefitReport, fitting_again, request_for
 
 

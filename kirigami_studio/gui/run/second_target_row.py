@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from PySide6.QtCore import QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QIcon, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from kirigami_studio.evaluate.second_target import HEAVIEST, USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.run.start_tile import OTHER_STARTS
 from kirigami_studio.gui.stage.layout_items import target_pixmap
-from kirigami_studio.gui.widgets.card import ToolButton, captioned, compact
+from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.file_drops import FileDrops
-from kirigami_studio.gui.widgets.number_field import DecimalField
+from kirigami_studio.gui.widgets.form import Form
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Values of the entries for no second target, and for the present one.
 NONE, PRESENT = "none", "present"
 #: The angle (degrees) is above that of the first target by this at least.
 ANGLE_STEP = 0.1
-LIGHTEST = 0.01
 PICTURE = QSize(20, 20)
 ABOUT = mark(
     "Second target: a shape that the sheet should also show on its way, in any size and rotation. Choose it here, or "
@@ -51,21 +51,8 @@ class SecondTargetRow(QWidget):
         self.shape.add_choices(OTHER_STARTS)
         self.shape.setIconSize(PICTURE)
         self.remove = ToolButton("removeSecond", "close", tr("Do without the second target."))
-        self.angle = DecimalField()
-        self.angle.setObjectName("secondAngle")
-        self.angle.setDecimals(1)
-        self.angle.setSingleStep(5.0)
-        self.angle.setSuffix("°")
-        self.angle.setAccessibleName(tr("Angle of the second target in degrees"))
-        self.weight = DecimalField()
-        self.weight.setObjectName("secondWeight")
-        self.weight.setRange(LIGHTEST, HEAVIEST)
-        self.weight.setDecimals(2)
-        self.weight.setSingleStep(0.1)
-        self.weight.setAccessibleName(tr("Weight of the second target"))
-        self.weight.setToolTip(
-            tr("How much the second target counts; the first has 1 ({low:g} to {most:g}).", low=LIGHTEST, most=HEAVIEST)
-        )
+        self.form = Form(SecondTarget, 50, parent=self)
+        self.angle, self.weight = self.form.decimal("phi"), self.form.decimal("weight")
         self.drops = FileDrops(self)
         self.drops.file_dropped.connect(self.file_dropped)
         self._lay_out()
@@ -89,18 +76,14 @@ class SecondTargetRow(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(8)
         row.addLayout(shape, 14)
-        row.addLayout(captioned(tr("At"), self.angle, self.angle), 9)
-        row.addLayout(captioned(tr("&Weight"), self.weight, self.weight), 7)
+        row.addLayout(self.form.captioned("phi"), 9)
+        row.addLayout(self.form.captioned("weight"), 7)
 
     def _connect(self) -> None:
         self.shape.activated.connect(self._choose)
         self.remove.clicked.connect(self._remove)
-        self.angle.valueChanged.connect(self._take_angle)
-        self.weight.valueChanged.connect(self._take_weight)
-        for number in (self.angle, self.weight):
-            number.setKeyboardTracking(False)
-            compact(number, 50)
-            number.editingFinished.connect(self.edited)
+        self.form.changed.connect(self._take)
+        self.form.edited.connect(self.edited)
         self.weight.lineEdit().setTextMargins(2, 0, 0, 0)  # its column is narrow
 
     def show_second(self, second: SecondTarget | None, phi: float) -> None:
@@ -108,10 +91,10 @@ class SecondTargetRow(QWidget):
         outline_before = None if self._second is None else self._second.outline
         self._second = second
         low = math.degrees(phi) + ANGLE_STEP
-        with QSignalBlocker(self.angle), QSignalBlocker(self.weight):
+        with QSignalBlocker(self.angle):
             self.angle.setRange(low, 180.0 - ANGLE_STEP)
-            self.angle.setValue(math.degrees(USUAL_PHI if second is None else second.phi))
-            self.weight.setValue(USUAL_WEIGHT if second is None else second.weight)
+        usual = {"phi": USUAL_PHI, "weight": USUAL_WEIGHT}
+        self.form.show(usual if second is None else {name: getattr(second, name) for name in usual})
         self.angle.setToolTip(
             tr("Angle at which the sheet should show it, in degrees; 180° is flat ({low:.1f} to 179.9).", low=low)
         )
@@ -154,13 +137,9 @@ class SecondTargetRow(QWidget):
             self.changed.emit(None)
             self.edited.emit()
 
-    def _take_angle(self, degrees: float) -> None:
+    def _take(self, change: dict[str, Any]) -> None:
         if self._second is not None:
-            self.changed.emit(replace(self._second, phi=math.radians(degrees)))
-
-    def _take_weight(self, weight: float) -> None:
-        if self._second is not None:
-            self.changed.emit(replace(self._second, weight=weight))
+            self.changed.emit(replace(self._second, **change))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         super().paintEvent(event)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import secrets
 from dataclasses import replace
 
 from PySide6.QtCore import QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
-    QCheckBox,
     QHBoxLayout,
     QLabel,
     QSlider,
@@ -18,76 +16,26 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import again, mark, tr, tr_n
+from kirigami_studio.foundation.settings import Choice
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.run.second_target_row import SecondTargetRow
 from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_start
 from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
-from kirigami_studio.gui.widgets.number_field import DecimalField
+from kirigami_studio.gui.widgets.form import Form
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
-from kirigami_studio.outlines.starts import HEAVIEST, RECTANGLE, USUAL_WEIGHT, StartShape
-from kirigami_studio.pipeline.request import LARGEST_K
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
+from kirigami_studio.settings.design import DesignSettings
 
-LARGEST_SEED = 2**31 - 1
-
-#: What is known about a generator by its name; others are listed by name alone.
-VARIANTS = {
-    "prior": (mark("Varied"), mark("Trained on random sheets only: most variety, rougher layouts.")),
-    "accuracy": (mark("For match"), mark("Tuned for the closest match.")),
-    "regularity": (mark("For evenness"), mark("Tuned for even panels that are easy to cut; slightly lower match.")),
-    "balanced": (mark("For both"), mark("Tuned for both match and even panels. Recommended.")),
-    "paper": (
-        mark("As in the paper"),
-        mark("The paper's own way: a small U-Net, trained with optimal-transport pairing. To compare with."),
-    ),
-    "paper-accuracy": (mark("Paper, for match"), mark("As in the paper, tuned by its GRPO for the closest match.")),
-    "paper-balanced": (mark("Paper, for both"), mark("As in the paper, tuned by its GRPO for match and even panels.")),
-    "paper-regularity": (mark("Paper, for evenness"), mark("As in the paper, tuned by its GRPO for even panels.")),
-}
-
-
-#: How thoroughly designs are fitted on the exact geometry: name, steps, what it means.
-POLISH = (
-    (mark("Off"), 0, mark("Keep designs as generated.")),
-    (mark("Light"), 5, mark("A quick fit: most of the improvement, close to the generated design.")),
-    (mark("Full"), 15, mark("Nearly converged. Recommended.")),
-    (mark("Deep"), 60, mark("Continues until nothing improves; for sharp corners and thin arms.")),
+ROWS = mark(
+    "Rows of voids, from top to bottom. More voids match the target more closely but are smaller ({low} to {high})."
 )
-
-#: What a fit prefers among nearly equal matches: name of the preference, label, what it means.
-PREFER = (
-    ("accuracy", mark("Match"), mark("The closest match, regardless of panel shape.")),
-    ("balanced", mark("Balanced"), mark("Recommended: nearly as close, with smoother ratios (lower TV).")),
-    ("regularity", mark("Smooth"), mark("Lower TV than Balanced, at a slightly lower match.")),
-    ("calm", mark("Smoothest"), mark("The lowest TV, at a lower match.")),
-)
-#: What designs have to keep: value of the setting, label, what it means.
-SYMMETRIES = (
-    ("auto", mark("Auto"), mark("Symmetric designs for symmetric targets, beside free ones.")),
-    ("none", mark("Off"), mark("Ignore the target's symmetry.")),
-    ("mirror", mark("Mirror"), mark("Every design is its own mirror image, as a sketched heart is meant to be.")),
-    ("turn", mark("Turn"), mark("Every design looks the same after a half or quarter turn.")),
-)
-#: Where cuts meet the rim: value of the setting, label, what it means.
-RIMS = (
-    ("free", mark("Free"), mark("Cuts meet the sheet's sides where that helps the match.")),
-    ("even", mark("Even"), mark("Cuts meet the sheet's sides at even distances.")),
+COLUMNS = mark(
+    "Columns of voids, from left to right. More voids match the target more closely but are smaller ({low} to {high})."
 )
 #: Value of the entry for a shape that was loaded.
 LOADED_START = "loaded"
-#: Least weight of a start that can be set here.
-LIGHTEST_START = 0.01
 START = mark("What the sheet looks like while it is flat.")
-AUTO_GRID = mark("Choose the grid for each target: as coarse as its shape allows.")
-REGULAR = mark(
-    "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks the designs "
-    "again at once; letting it go fits them again."
-)
-START_WEIGHT = mark(
-    "How firmly the flat sheet is held to a round or hollow start ({low:g} to {most:g}). Below 1 the target is matched "
-    "more closely and the start less."
-)
 RECTANGLES_ARE_EXACT = mark("A rectangle is matched exactly at any weight.")
 #: Pixels that the rows get at least, where a small window scrolls them.
 LEAST_HEIGHT = 148
@@ -95,10 +43,6 @@ LEAST_HEIGHT = 148
 POSITIONS = 100
 #: Milliseconds after the last key or notch that mean the slider has been let go.
 LET_GO_MS = 600
-SEARCH = mark(
-    "Search for one more design, from more poses and in more ways. Takes a few seconds; helps with thin arms and "
-    "notches."
-)
 KEEP_SEED = mark("Keep this seed. On: Generate repeats the same designs. Off: each run uses the next seed.")
 
 
@@ -118,69 +62,29 @@ class SettingsPanel(Card):
         self._chosen_grid: tuple[int, int] | None = None
         self._start = RECTANGLE
         self._has_second = False
+        self.form = Form(DesignSettings, 48, parent=self)
+        #: What is known about generators by their names; others are listed by name alone.
+        self._variants = {str(one.value): one for one in self.form.settings["variant"].setting.choices}
+        auto, regular = self.form.settings["auto_grid"].setting, self.form.settings["regular"].setting
         self.auto = QToolButton()
-        self.auto.setObjectName("autoGrid")
+        self.auto.setObjectName(auto.widget)
         self.auto.setText(tr("Auto"))
         self.auto.setCheckable(True)
         self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.auto.setFixedHeight(29)
-        self.auto.setAccessibleName(tr("Choose the grid automatically"))
-        self.auto.setToolTip(tr(AUTO_GRID))
-        self.rows = _whole(
-            "rows",
-            tr("Rows"),
-            SMALLEST_GRID,
-            LARGEST_GRID,
-            tr(
-                "Rows of voids, from top to bottom. More voids match the target more closely but are smaller "
-                "({low} to {high}).",
-                low=SMALLEST_GRID,
-                high=LARGEST_GRID,
-            ),
-        )
-        self.columns = _whole(
-            "columns",
-            tr("Columns"),
-            SMALLEST_GRID,
-            LARGEST_GRID,
-            tr(
-                "Columns of voids, from left to right. More voids match the target more closely but are smaller "
-                "({low} to {high}).",
-                low=SMALLEST_GRID,
-                high=LARGEST_GRID,
-            ),
-        )
-        self.candidates = _whole(
-            "candidates",
-            tr("Designs"),
-            1,
-            LARGEST_K,
-            tr("Number of designs to generate and compare (1 to {most}).", most=LARGEST_K),
-        )
-        self.seed = _whole(
-            "seed",
-            tr("Seed"),
-            0,
-            LARGEST_SEED,
-            tr("Random seed. The same seed gives the same designs."),
-        )
-        self.angle = DecimalField()
-        self.angle.setObjectName("targetAngle")
-        self.angle.setRange(0.0, 179.0)
-        self.angle.setDecimals(1)
-        self.angle.setSuffix("°")
-        self.angle.setAccessibleName(tr("Target angle in degrees"))
-        self.angle.setToolTip(
-            tr("Deployment angle at which the sheet matches the target, in degrees; 0° is fully turned.")
-        )
+        self.auto.setAccessibleName(tr(auto.spoken))
+        self.auto.setToolTip(tr(auto.about))
+        self.rows = _voids("rows", tr("Rows"), tr(ROWS, low=SMALLEST_GRID, high=LARGEST_GRID))
+        self.columns = _voids("columns", tr("Columns"), tr(COLUMNS, low=SMALLEST_GRID, high=LARGEST_GRID))
+        self.candidates, self.seed = self.form.whole("k"), self.form.whole("seed")
+        self.angle = self.form.decimal("phi")
         self.dice = ToolButton("newSeed", "dice", tr("New random seed."))
         self.dice.setFixedSize(29, 29)
         self.keep = ToolButton("keepSeed", "keep", tr(KEEP_SEED), checkable=True)
         self.keep.setChecked(True)
         self.keep.setFixedSize(29, 29)
         self.keep.toggled.connect(self.keep_changed)
-        self.symmetry = ChoiceBox("symmetry", tr("Symmetry of the designs"), SYMMETRIES)
-        self.rim = ChoiceBox("rim", tr("Rim: where cuts meet the sheet's sides"), RIMS)
+        self.symmetry, self.rim = self.form.choice("symmetry"), self.form.choice("rim")
         self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)
         self.start.insertSeparator(self.start.count())
         self.start.add_choices(OTHER_STARTS)
@@ -190,8 +94,8 @@ class SettingsPanel(Card):
         self.regular.setSingleStep(POSITIONS // 20)
         self.regular.setPageStep(POSITIONS // 4)
         self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.regular.setAccessibleName(tr("Match or regular"))
-        self.regular.setToolTip(tr(REGULAR))
+        self.regular.setAccessibleName(tr(regular.spoken))
+        self.regular.setToolTip(tr(regular.about))
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
             "moreSettings",
@@ -201,20 +105,12 @@ class SettingsPanel(Card):
         )
         self.more.setText(tr("More"))
         self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.variant = ChoiceBox("variant", tr("Generator variant"))
-        self.polish = ChoiceBox("polish", tr("Polish"), [(steps, title, about) for title, steps, about in POLISH])
-        self.prefer = ChoiceBox("prefer", tr("What polishing prefers"), PREFER)
-        self.start_weight = DecimalField()
-        self.start_weight.setObjectName("startWeight")
-        self.start_weight.setRange(LIGHTEST_START, HEAVIEST)
-        self.start_weight.setDecimals(2)
-        self.start_weight.setSingleStep(0.1)
-        self.start_weight.setAccessibleName(tr("Weight of the start"))
-        self.search = QCheckBox(tr("Tr&y harder"))
-        self.search.setObjectName("search")
-        self.search.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.search.setAccessibleName(tr("Try harder: search for one more design"))
-        self.search.setToolTip(tr(SEARCH))
+        self.variant = self.form.choice("variant", (), self._choose_variant)
+        self.polish = self.form.choice("polish", show=self._choose_polish)
+        self.prefer = self.form.choice("prefer")
+        self.start_form = Form(StartShape, 48, parent=self)
+        self.start_weight = self.start_form.decimal("weight")
+        self.search = self.form.switch("search")
         self.search.setMinimumHeight(29)
         self.second = SecondTargetRow()
         self._lay_out()
@@ -255,21 +151,24 @@ class SettingsPanel(Card):
         rows.addWidget(self.hidden)
         self.hidden.hide()
         self.second.hide()
+        caption = self.form.captioned
         first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
-        first.addLayout(captioned(tr("S&ymmetric"), self.symmetry, self.symmetry), 5)
+        first.addLayout(caption("symmetry"), 5)
         slider.addWidget(match)
         slider.addWidget(self.regular, 1)
         slider.addWidget(even)
         second.addLayout(captioned(tr("S&tart as"), self.start, self.start), 14)
-        second.addLayout(captioned(tr("Ang&le"), self.angle, self.angle), 9)
-        second.addLayout(captioned(tr("Desig&ns"), self.candidates, self.candidates), 7)
-        third.addLayout(captioned(tr("&Seed"), self.seed, seed), 4)
-        third.addLayout(captioned(tr("&Model"), self.variant, self.variant), 3)
-        fourth.addLayout(captioned(tr("Pol&ish"), self.polish, self.polish), 1)
-        fourth.addLayout(captioned(tr("&Prefer"), self.prefer, self.prefer), 1)
-        fifth.addLayout(captioned(tr("Rim"), self.rim, self.rim), 2)
-        fifth.addLayout(captioned(tr("Start weight"), self.start_weight, self.start_weight), 2)
-        fifth.addLayout(captioned("", self.search, self.search), 3)
+        second.addLayout(caption("phi"), 9)
+        second.addLayout(caption("k"), 7)
+        third.addLayout(caption("seed", seed), 4)
+        third.addLayout(caption("variant"), 3)
+        fourth.addLayout(caption("polish"), 1)
+        fourth.addLayout(caption("prefer"), 1)
+        fifth.addLayout(caption("rim"), 2)
+        fifth.addLayout(self.start_form.captioned("weight"), 2)
+        fifth.addLayout(caption("search"), 3)
+        for other in self.form.remaining():
+            below.addLayout(other)
 
     def _connect(self) -> None:
         self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
@@ -277,10 +176,8 @@ class SettingsPanel(Card):
             lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
         )
         self.auto.clicked.connect(self._switch_auto)
-        for name, choice in (("symmetry", self.symmetry), ("rim", self.rim)):
-            choice.activated.connect(
-                lambda _, name=name, choice=choice: self.changed.emit({name: choice.currentData()})
-            )
+        self.form.changed.connect(self.changed)
+        self.form.edited.connect(self.edited)
         self.start.activated.connect(self._choose_start)
         self.regular.valueChanged.connect(self._move_regular)
         self.regular.sliderReleased.connect(self._choose_regular)
@@ -288,20 +185,12 @@ class SettingsPanel(Card):
         self.more.toggled.connect(self._fold)
         self.second.changed.connect(lambda second: self.changed.emit({"second": second}))
         self.second.edited.connect(self.edited)
-        self.angle.valueChanged.connect(lambda value: self.changed.emit({"phi": math.radians(value)}))
-        self.candidates.valueChanged.connect(lambda value: self.changed.emit({"k": value}))
-        self.seed.valueChanged.connect(lambda value: self.changed.emit({"seed": value}))
-        self.variant.activated.connect(lambda _: self.changed.emit({"variant": self.variant.currentData()}))
-        self.polish.activated.connect(lambda _: self.changed.emit({"polish": self.polish.currentData()}))
-        self.prefer.activated.connect(lambda _: self.changed.emit({"prefer": self.prefer.currentData()}))
-        self.search.toggled.connect(lambda on: self.changed.emit({"search": int(on)}))
         self.dice.clicked.connect(lambda: self.seed.setValue(secrets.randbelow(1_000_000)))
-        self.start_weight.valueChanged.connect(
-            lambda weight: self.changed.emit({"start": replace(self._start, weight=weight)})
-        )
-        for box in (self.rows, self.columns, self.angle, self.candidates, self.seed, self.start_weight):
+        self.start_form.changed.connect(lambda change: self.changed.emit({"start": replace(self._start, **change)}))
+        self.start_form.edited.connect(self.edited)
+        for box in (self.rows, self.columns):
             box.setKeyboardTracking(False)
-            compact(box, 42 if box in (self.rows, self.columns) else 48)  # two digits, and a scroll bar beside the row
+            compact(box, 42)  # two digits
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
@@ -355,7 +244,9 @@ class SettingsPanel(Card):
     def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
         """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
         self._chosen_grid = grid
-        self.auto.setToolTip(f"{tr(AUTO_GRID)}\n{reason}" if reason else tr(AUTO_GRID))
+        auto = self.form.settings["auto_grid"].setting
+        about = tr(auto.about)
+        self.auto.setToolTip(f"{about}\n{reason}" if reason else about)
         self.auto.setAccessibleDescription(reason)
         if grid is not None and self.auto.isChecked():
             self._show_grid(grid)
@@ -366,54 +257,33 @@ class SettingsPanel(Card):
                 box.setValue(count)
 
     def _show_symmetry_tip(self) -> None:
-        found = again(self._symmetry_found)  # the language may have changed since
-        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, found) if part))
-        self.symmetry.setAccessibleDescription(found)
+        self.symmetry.setToolTip("\n".join(part for part in (self.symmetry.about, self._symmetry_found) if part))
+        self.symmetry.setAccessibleDescription(self._symmetry_found)
 
     def set_variants(self, names: tuple[str, ...]) -> None:
         """Offer these generators; the chosen one stays."""
         chosen = self.variant.currentData()
         with QSignalBlocker(self.variant):
             self.variant.clear()
-            for name in names:
-                title, about = VARIANTS.get(name, (name, ""))
-                self.variant.insert_choice(self.variant.count(), name, title, about)
+            self.variant.add_choices([self._variants.get(name, Choice(name, name)) for name in names])
             if chosen is not None:
                 self._choose_variant(chosen)
 
     def show_settings(self, settings: DesignSettings) -> None:
         """Show the document's settings without reporting them as gestures."""
-        values = (
-            (self.candidates, settings.k),
-            (self.seed, settings.seed),
-        )
-        for box, value in values:
-            with QSignalBlocker(box):
-                box.setValue(value)
-        with QSignalBlocker(self.angle):
-            self.angle.setValue(math.degrees(settings.phi))
+        self.form.show_settings(settings)
         self.auto.setChecked(settings.auto_grid)
         self._show_grid(self._chosen_grid if settings.auto_grid and self._chosen_grid else settings.grid)
         if not self.regular.isSliderDown() and not self._let_go.isActive():
             with QSignalBlocker(self.regular):
                 self.regular.setValue(round(POSITIONS * settings.regular))
-        for choice, name in ((self.symmetry, settings.symmetry), (self.rim, settings.rim)):
-            with QSignalBlocker(choice):
-                choice.choose(name)
         self._show_start(settings.start)
         self._has_second = settings.second is not None
         self.second.show_second(settings.second, settings.phi)
         self._show_second()
         self._show_symmetry_tip()
         self.rim.setToolTip(self.rim.about)
-        with QSignalBlocker(self.variant):
-            self._choose_variant(settings.variant)
-        with QSignalBlocker(self.polish):
-            self._choose_polish(settings.polish)
-        with QSignalBlocker(self.prefer):
-            self._choose_preference(settings.prefer, settings.polish > 0 or settings.search > 0)
-        with QSignalBlocker(self.search):
-            self.search.setChecked(settings.search > 0)
+        self._show_preference(fitted=settings.polish > 0 or settings.search > 0)
 
     def _show_start(self, start: StartShape) -> None:
         """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
@@ -430,35 +300,31 @@ class SettingsPanel(Card):
                 self.start.insert_choice(listed, LOADED_START, start.name, "")
             self.start.setCurrentIndex(listed)
         self.start.setToolTip(f"{tr(START)}\n{self.start.about}")
-        with QSignalBlocker(self.start_weight):
-            self.start_weight.setValue(start.weight)
-        held = start.outline is not None
+        self.start_form.show_settings(start)
+        held, weight = start.outline is not None, self.start_form.settings["weight"]
         self.start_weight.setEnabled(held)
-        self.start_weight.setToolTip(
-            tr(START_WEIGHT, low=LIGHTEST_START, most=HEAVIEST) if held else tr(RECTANGLES_ARE_EXACT)
-        )
+        self.start_weight.setToolTip(tr(weight.setting.about, **weight.numbers) if held else tr(RECTANGLES_ARE_EXACT))
 
     def _choose_polish(self, steps: int) -> None:
         self.polish.choose(steps, tr_n("{count} step", "{count} steps", steps))
         self.polish.setToolTip(tr("How thoroughly designs are fitted to the target: up to {steps} steps.", steps=steps))
 
-    def _choose_preference(self, name: str, fitted: bool) -> None:
-        self.prefer.choose(name)
+    def _show_preference(self, fitted: bool) -> None:
         self.prefer.setEnabled(fitted)
         tip = tr("What polishing prefers among nearly equal matches. {about}", about=self.prefer.about)
         self.prefer.setToolTip(tip if fitted else tr("What polishing prefers. Turn on Polish to use it."))
 
     def _choose_variant(self, name: str) -> None:
-        self.variant.choose(name, VARIANTS.get(name, (name, ""))[0])
-        self.variant.setToolTip(
-            tr("Model that generates the designs. {about}", about=tr(VARIANTS.get(name, ("", ""))[1])).strip()
-        )
+        known = self._variants.get(name)
+        self.variant.choose(name, name if known is None else known.label)
+        about = "" if known is None else tr(known.about)
+        self.variant.setToolTip(tr("Model that generates the designs. {about}", about=about).strip())
 
 
-def _whole(name: str, accessible: str, low: int, high: int, tip: str) -> QSpinBox:
+def _voids(name: str, accessible: str, tip: str) -> QSpinBox:
     box = QSpinBox()
     box.setObjectName(name)
-    box.setRange(low, high)
+    box.setRange(SMALLEST_GRID, LARGEST_GRID)
     box.setToolTip(tip)
     box.setAccessibleName(accessible)
     return box

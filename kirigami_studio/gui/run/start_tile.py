@@ -21,6 +21,7 @@ from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -222,8 +223,6 @@ class StartTile(QAbstractButton):
         for number, text in enumerate(texts):
             place = QRectF(6, self.height() - (lines - number) * LINE - 4.0, self.width() - 12, LINE)
             painter.setPen(QColor(palette.text if number == 0 else palette.muted))
-            if metrics.horizontalAdvance(text) > place.width():
-                text = self.brief_size if number else text
-            elided = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(place.width()))
-            painter.drawText(place, centred, elided)
+            versions = (text, self.brief_size) if number else (text,)
+            painter.drawText(place, centred, fitted(metrics, versions, place.width()))
         painter.end()

@@ -55,7 +55,7 @@ def _what_happened(name: str, before: Mark, now: Mark) -> str:
 
 
 class DesignLabels:
-    """Names designs, and notes what a person thinks of them."""
+    """Names designs, and notes what the user thinks of them."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

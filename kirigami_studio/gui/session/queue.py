@@ -18,7 +18,7 @@ from typing import Any, Generic
 
 from PySide6.QtCore import QMetaObject, QObject, Qt, QThread, QTimer, Signal, Slot
 
-from kirigami_studio.foundation.errors import Cancelled, KirigamiError
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError, text_of
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.foundation.steps import Steps, T
 from kirigami_studio.foundation.words import tr
@@ -93,15 +93,11 @@ class Worker(QObject):
         except Cancelled:
             self.cancelled.emit(job.number)
         except KirigamiError as error:
-            log.info("job %d (%s) refused: %s", job.number, job.name, error)
-            self.failed.emit(job.number, str(error), traceback.format_exc())
-        except Exception as error:  # a thread's last line of defence: it must reach the user, not end the thread
+            log.info("job %d (%s) refused: %s", job.number, job.name, text_of(error))
+            self.failed.emit(job.number, text_of(error), traceback.format_exc())
+        except BaseException as error:  # a thread's last line of defence: it must reach the user, not end the thread
             log.exception("job %d (%s) failed", job.number, job.name)
-            sentence = tr(
-                "Unexpected error while {name}: {value}.",
-                name=job.name,
-                value=error or type(error).__name__,
-            )
+            sentence = tr("Unexpected error while {name}: {value}.", name=job.name, value=text_of(error))
             self.failed.emit(job.number, sentence, traceback.format_exc())
         else:
             self.reported.emit(job.number, report)

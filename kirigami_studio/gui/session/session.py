@@ -27,7 +27,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
-from kirigami_studio.project.sheet_size import sized
+from kirigami_studio.project.sheet_size import cut_for, sized
 from kirigami_studio.studio.designing import Decoded, KnownAsCut, decoding, ranking_of
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
@@ -128,11 +128,13 @@ class DesignDisplay(QObject):
     def begin_run(self, kept: tuple[Candidate, ...] = (), stays: bool = False, ranking: Ranking | None = None) -> None:
         """Make room for new designs beside those that are kept, which are ranked as ``ranking`` says.
 
-        ``stays`` leaves the chosen one on the stage.
+        ``stays`` leaves the chosen one on the stage; else a design that is not kept leaves it.
         """
         self.ranking = ranking or Ranking()
         self._session.queue.abandon(self._decoding)  # the document is shown again when the run is over
         self._preview, self._best_of_run = self._session.document.candidate if stays else None, None
+        if not stays and self._stage is not None and self._stage.candidate not in kept:
+            self._put_on_stage(None)  # it may be for another target, of another grid
         self.gallery_reset.emit(tuple(replace(self._session.cache.entry(candidate), kept=True) for candidate in kept))
 
     def look_at(self, candidate: Candidate) -> None:
@@ -191,6 +193,12 @@ class DesignDisplay(QObject):
 class Session(QObject):
     """The open project, the one way to change it and to report to the user.
 
+    Parameters
+    ----------
+    parent : QObject, optional
+    earlier : Session, optional
+        Of a closed window, whose project is the open one, with its history.
+
     Attributes
     ----------
     queue : JobQueue
@@ -214,16 +222,16 @@ class Session(QObject):
     message_withdrawn = Signal(Message)
     status_changed = Signal(str)
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
         self.queue = JobQueue(self)
-        self.history = History()
-        self.cache = DesignCache()
+        self.history: History = History() if earlier is None else earlier.history
+        self.cache: DesignCache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
-        self.path: Path | None = None
-        self.on_disk: dict[Path, str] = {}
-        self.project = 0
-        self.as_cut: KnownAsCut | None = None
+        self.path: Path | None = None if earlier is None else earlier.path
+        self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
+        self.project: int = 0 if earlier is None else earlier.project
+        self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
 
     @property
     def ranking(self) -> Ranking:
@@ -239,6 +247,11 @@ class Session(QObject):
     def stage(self) -> Entry | None:
         """The design that is shown large."""
         return self.display.stage
+
+    def width_of(self, candidate: Candidate | None) -> float:
+        """Width of the flat sheet of a design, mm: each design opens to the size asked for."""
+        document = self.document
+        return (document.fabrication if candidate is None else cut_for(document, candidate)).width_mm
 
     # changing the document -----------------------------------------------------------------------------------------
 

@@ -11,7 +11,7 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.preferences import Preferences
+from kirigami_studio.project.preferences import Preferences, Theme
 
 #: Fields of the fabrication settings that new projects share with the last one.
 MACHINE_FIELDS = frozenset({"material", "profile", "dxf_version", "paper"})
@@ -47,8 +47,8 @@ class UserPreferences:
         if SIZE_FIELDS.intersection(fields):
             self._save(self.present.with_size_of(document))
 
-    def choose_theme(self, theme: str) -> None:
-        """The window is to look like this from now on: "system", "light" or "dark"."""
+    def choose_theme(self, theme: Theme) -> None:
+        """Set the look of the window from now on."""
         self._save(replace(self.present, theme=theme))
 
     def keep(self, wanted: Preferences) -> None:

@@ -15,8 +15,8 @@ from kirigami_studio.export.artwork import (
     SMALLEST_SCALE,
     ArtPicture,
     Artwork,
-    Fitting,
-    State,
+    PictureFit,
+    SheetState,
 )
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets.card import muted_label
@@ -27,12 +27,12 @@ WIDTH = 330
 #: Farthest a picture is shifted, in sides of the box.
 FARTHEST = 5.0
 STATES = (
-    (State.TARGET, mark("Opened sheet"), mark("Seen whole when the sheet is open, cut up while it is flat")),
-    (State.FLAT, mark("Flat sheet"), mark("Seen whole while the sheet is flat, cut up when it is open")),
+    (SheetState.TARGET, mark("Opened sheet"), mark("Seen whole when the sheet is open, cut up while it is flat")),
+    (SheetState.FLAT, mark("Flat sheet"), mark("Seen whole while the sheet is flat, cut up when it is open")),
 )
 FITTINGS = (
-    (Fitting.FILL, mark("Fill"), mark("Cover all of the sheet")),
-    (Fitting.FIT, mark("Fit"), mark("Show all of the picture")),
+    (PictureFit.FILL, mark("Fill"), mark("Cover all of the sheet")),
+    (PictureFit.FIT, mark("Fit"), mark("Show all of the picture")),
 )
 NO_PICTURE = mark("No picture yet. Choose a photo, a PNG or an SVG: it is printed in register with the cuts.")
 
@@ -88,7 +88,7 @@ class ArtworkEditor(QWidget):
         self.move(parent.mapToGlobal(QPoint(round(0.74 * parent.width()) - WIDTH, 120)))
 
     @staticmethod
-    def _choices(table: tuple[tuple[State | Fitting, str, str], ...]) -> QComboBox:
+    def _choices(table: tuple[tuple[SheetState | PictureFit, str, str], ...]) -> QComboBox:
         box = QComboBox()
         for row, (value, text, tip) in enumerate(table):
             box.addItem(tr(text), value)

@@ -43,14 +43,14 @@ def painting_artwork(
     """Paint the flat sheet of a design as it would be printed."""
     importing.import_exporters()
     from kirigami_studio.export.artwork_patches import PrintedSheet, printed_patches
-    from kirigami_studio.export.artwork_raster import Page, paint
+    from kirigami_studio.export.artwork_raster import BitmapFrame, paint
     from kirigami_studio.foundation.units import MM_PER_INCH
 
     sheet = PrintedSheet.uncut(design, None if target is None else target.points, WIDTH_MM)
     points = sheet.corners.reshape(-1, 2)
     low, high = points.min(axis=0), points.max(axis=0)
     dpi = SHOWN_SIDE / float((high - low).max()) * MM_PER_INCH
-    page = Page((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
+    page = BitmapFrame((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
     pixels = np.asarray(paint(printed_patches(artwork, sheet, 0.0, 0.0), page))
     height, width, _ = pixels.shape
     image = QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)

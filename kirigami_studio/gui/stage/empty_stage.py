@@ -36,7 +36,7 @@ from kirigami_studio.outlines.outline import Outline
 SWING_SECONDS = 10.0
 #: Thirty pictures a second are enough for a slow motion.
 FRAME_MS = 33
-#: Anything that a person does to the window; the sample stands still from then on.
+#: Anything that the user does to the window; the sample stands still from then on.
 ACTS = frozenset(
     {QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.Wheel, QEvent.Type.Drop, QEvent.Type.TouchBegin}
 )
@@ -50,11 +50,10 @@ MACHINES = (
 
 
 class EmptyStage(QWidget):
-    """Moves from when it is started until a person does anything; then it stands still."""
+    """Moves from when it is started until the user does anything; then it stands still."""
 
     chosen = Signal(str)  #: key of a material
     declined = Signal()
-    tour_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -81,7 +80,6 @@ class EmptyStage(QWidget):
         self.tour.setObjectName("link")
         self.tour.setToolTip(tr("Six steps through the window, with a finished design."))
         self.tour.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.tour.clicked.connect(self.tour_wanted)
         self.question = MachineQuestion()
         self.question.chosen.connect(self.chosen)
         self.question.declined.connect(self.declined)
@@ -123,7 +121,7 @@ class EmptyStage(QWidget):
         self.hint.setText(hint)
 
     def start(self) -> None:
-        """Open and close until a person does something in the window."""
+        """Open and close until the user does something in the window."""
         application = QApplication.instance()
         if self.ready and self.isVisible() and not self.moving and application is not None:
             application.installEventFilter(self)

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -100,9 +101,7 @@ class EndButton(QAbstractButton):
 
     def drawn_text(self) -> str:
         """What is shown at the present width."""
-        metrics, room, texts = self.fontMetrics(), self.width() - PICTURE - GAP - 4, self._texts
-        fitting = next((text for text in texts if metrics.horizontalAdvance(text) <= room), texts[-1])
-        return metrics.elidedText(fitting, Qt.TextElideMode.ElideRight, room)
+        return fitted(self.fontMetrics(), self._texts, self.width() - PICTURE - GAP - 4)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         if self._outline is None:

@@ -64,7 +64,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
-from kirigami_studio.gui.widgets.target_items import paint_target_line
+from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
@@ -215,7 +215,10 @@ class LayoutView(Canvas):
         target: Outline | None,
         second: SecondMatch | None = None,
     ) -> None:
-        """Show another design; None shows the empty state.  ``second`` is how this very sheet shows a second target."""
+        """Show another design; without one the target, without that the empty state.
+
+        ``second`` is how this very sheet shows a second target.
+        """
         self._design, self._target, self._cut, self._second = design, target, None, None
         self._areas, self._faults = None, ()
         before, self._bounds = self._bounds, None
@@ -232,6 +235,8 @@ class LayoutView(Canvas):
                 self._bounds = self._bounds.united(Bounds.of(self._second[1]))
             if self.voids.on and before is not None:
                 self._bounds = steady(before, self._bounds)
+        elif target is not None:
+            self._bounds = Bounds.of(target.points)
         self.voids.follow()
         self.update()
 
@@ -393,6 +398,8 @@ class LayoutView(Canvas):
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._design is None:
+            if self._target is not None:
+                paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
         nodes = self._design.nodes(self._phi)
         field = self._design.deployment.field
@@ -548,6 +555,8 @@ class LayoutView(Canvas):
 
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:
+            if self._target is not None:
+                paint_caption(painter, "  ".join(self._hint[1:]), self.width(), self.palette_)
             return
         labels = self.legend(painter.fontMetrics())
         paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)

@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from kirigami_studio.foundation.words import again, tr
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.curves import Curves
 from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
@@ -246,17 +246,17 @@ class PlotsPanel(QWidget):
 
         if len(self.charts) < len(self._rows):
             row = self._rows[len(self.charts)]
-            chart = Chart(again(row.text), row.unit, tuple(again(name) for name, _ in row.series), row.from_zero)
+            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
             self._add(chart, row.tip)
             self.charts.append(chart)
         else:
             line = self._cut_rows[len(self.cut_charts)]
-            chart = Chart(again(line.text), line.unit, (again(line.name),))
+            chart = Chart(line.text, line.unit, (line.name,))
             self._add(chart, line.tip)
             self.cut_charts.append(chart)
 
     def _add(self, chart: Chart, tip: str) -> None:
-        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=again(tip)))
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=tip))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)

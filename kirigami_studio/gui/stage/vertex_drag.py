@@ -25,7 +25,7 @@ LAST_SECONDS, LAST_STEPS = 1.0, 4
 #: A step that brings the vertex less than this (unit cells) nearer has not helped.
 NEARER = 1e-3
 #: Steps in a row that do not help before the vertex is as near as it gets: the second has a new derivative.
-IN_VAIN = 2
+MAX_STALLED_STEPS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,17 +100,17 @@ class Follower:
 
     def steps(self, cancel: Cancel) -> Iterator[DragStep]:
         """Take steps until the newest place is reached, or as nearly as it can be."""
-        number = taken = in_vain = 0
+        number = taken = stalled = 0
         while self.waiting and not cancel():
             newest, place = self._wanted
             if newest != number:
-                number, taken, in_vain = newest, 0, 0
+                number, taken, stalled = newest, 0, 0
             last, began = self._last, time.thread_time()
             found, gain = self._step(place)
             self._spent += last * (time.thread_time() - began)
-            taken, in_vain = taken + 1, 0 if gain >= NEARER else in_vain + 1
+            taken, stalled = taken + 1, 0 if gain >= NEARER else stalled + 1
             late = self._spent >= LAST_SECONDS and last and taken >= LAST_STEPS
-            stuck = not found.arrived and (in_vain == IN_VAIN or taken == MOST_STEPS or late)
+            stuck = not found.arrived and (stalled == MAX_STALLED_STEPS or taken == MOST_STEPS or late)
             if found.arrived or stuck:
                 self._served = number
             self.newest = DragStep(found.design, found.arrived, stuck)

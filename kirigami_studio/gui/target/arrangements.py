@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kirigami_studio.foundation.words import mark
-from kirigami_studio.outlines.drawing import Boolean, Drawing, Order, Side
+from kirigami_studio.outlines.drawing import AlignedSide, Boolean, Drawing, Order
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ ARRANGEMENTS = (
         mark("Align &left"),
         mark("Line up the left sides"),
         mark("Align left"),
-        lambda drawing: drawing.aligned(Side.LEFT),
+        lambda drawing: drawing.aligned(AlignedSide.LEFT),
         2,
         gap=True,
     ),
@@ -125,7 +125,7 @@ ARRANGEMENTS = (
         mark("Align &centres"),
         mark("Line up the middles, left to right"),
         mark("Align centres"),
-        lambda drawing: drawing.aligned(Side.CENTRE),
+        lambda drawing: drawing.aligned(AlignedSide.CENTRE),
         2,
     ),
     Arrangement(
@@ -133,7 +133,7 @@ ARRANGEMENTS = (
         mark("Align &right"),
         mark("Line up the right sides"),
         mark("Align right"),
-        lambda drawing: drawing.aligned(Side.RIGHT),
+        lambda drawing: drawing.aligned(AlignedSide.RIGHT),
         2,
     ),
     Arrangement(
@@ -141,7 +141,7 @@ ARRANGEMENTS = (
         mark("Align &tops"),
         mark("Line up the upper sides"),
         mark("Align tops"),
-        lambda drawing: drawing.aligned(Side.TOP),
+        lambda drawing: drawing.aligned(AlignedSide.TOP),
         2,
     ),
     Arrangement(
@@ -149,7 +149,7 @@ ARRANGEMENTS = (
         mark("Align &middles"),
         mark("Line up the middles, top to bottom"),
         mark("Align middles"),
-        lambda drawing: drawing.aligned(Side.MIDDLE),
+        lambda drawing: drawing.aligned(AlignedSide.MIDDLE),
         2,
     ),
     Arrangement(
@@ -157,7 +157,7 @@ ARRANGEMENTS = (
         mark("Ali&gn bottoms"),
         mark("Line up the lower sides"),
         mark("Align bottoms"),
-        lambda drawing: drawing.aligned(Side.BOTTOM),
+        lambda drawing: drawing.aligned(AlignedSide.BOTTOM),
         2,
     ),
     Arrangement(

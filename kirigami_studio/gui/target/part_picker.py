@@ -30,7 +30,7 @@ from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, Merged, Merging
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import Part, PartKind
+from kirigami_studio.outlines.parts import DrawnPartKind, Part
 from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts
 
 SIZE, LIST_WIDTH, PICTURE = QSize(980, 620), 310, QSize(40, 40)
@@ -57,9 +57,9 @@ TAKE = {
 }
 HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
-    PartKind.FILLED: mark("filled"),
-    PartKind.CLOSED: mark("closed line"),
-    PartKind.STROKED: mark("open line"),
+    DrawnPartKind.FILLED: mark("filled"),
+    DrawnPartKind.CLOSED: mark("closed line"),
+    DrawnPartKind.STROKED: mark("open line"),
 }
 
 
@@ -211,7 +211,7 @@ class PartPicker(QDialog):
         self.painted.toggled.connect(self._remake)
         for field in (self.bridge, self.stroke):
             field.valueChanged.connect(self._remake)
-        self.take.clicked.connect(self._take)
+        self.take.clicked.connect(self._on_accept)
         self.cancel.clicked.connect(self.reject)
         self.finished.connect(lambda _: self._stop())
 
@@ -378,7 +378,7 @@ class PartPicker(QDialog):
             self.size_.setText(tr(TAKE[self._purpose][1], size=_size(found.outline.size, unit)))
         self._say(found.outline.notes, wrong=False)
         if self._accepts:
-            self._take()
+            self._on_accept()
 
     def _say(self, notes: tuple[str, ...], wrong: bool) -> None:
         more = len(notes) - SHOWN_NOTES
@@ -388,7 +388,7 @@ class PartPicker(QDialog):
         self.notes.setObjectName("warning" if wrong else "muted")
         self.notes.style().polish(self.notes)
 
-    def _take(self) -> None:
+    def _on_accept(self) -> None:
         if self._job.busy:
             self._accepts = True  # as soon as the outline is there
         elif self.result_ is not None:

@@ -30,7 +30,7 @@ from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines import bezier
 from kirigami_studio.outlines.anchors import Anchors, with_anchors
-from kirigami_studio.outlines.figures import Box, Figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, placed_figure
 from kirigami_studio.outlines.lettering import lettered
 from kirigami_studio.outlines.mirroring import Mirror
 from kirigami_studio.outlines.nodes import FEWEST_NODES, Kind
@@ -268,7 +268,7 @@ class BoxTool(SketchTool, ABC):
         self._end: PointerEvent | None = None
 
     @abstractmethod
-    def shape(self, box: Box) -> Placed:
+    def shape(self, box: BoundingBox) -> Placed:
         """What fills a box.
 
         Raises
@@ -293,7 +293,7 @@ class BoxTool(SketchTool, ABC):
         start = self._start
         self.drop()
         if start is not None and distance(start.pixel, pointer.pixel) >= LEAST_DRAG:
-            box = Box.spanned(start.place, pointer.place, pointer.shift)
+            box = BoundingBox.spanned(start.place, pointer.place, pointer.shift)
             self.context.draw(lambda: self.shape(box), self.name)
 
     @property
@@ -306,7 +306,7 @@ class BoxTool(SketchTool, ABC):
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if self._start is None or self._end is None:
             return
-        box = Box.spanned(self._start.place, self._end.place, self._end.shift)
+        box = BoundingBox.spanned(self._start.place, self._end.place, self._end.shift)
         try:
             ring = self.shape(box).ring
         except TargetError:  # too flat so far; said when the button is let go
@@ -328,7 +328,7 @@ class FigureTool(BoxTool):
     def name(self) -> str:
         return self._kind.value
 
-    def shape(self, box: Box) -> Placed:
+    def shape(self, box: BoundingBox) -> Placed:
         return placed_figure(self._kind, box, self.context.corners, self.context.waist)
 
 
@@ -341,7 +341,7 @@ class TextTool(BoxTool):
     def name(self) -> str:
         return TEXT
 
-    def shape(self, box: Box) -> Placed:
+    def shape(self, box: BoundingBox) -> Placed:
         text = self.context.text.strip()
         context = self.context
         ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)

@@ -26,7 +26,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.settings import DesignSettings
+from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.studio.parts import (
     DesignRead,
     PartsRead,
@@ -62,21 +62,21 @@ class PictureTracer(QObject):
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
-        self._pictures: OrderedDict[Outline, Picture] = OrderedDict()
+        self.pictures: OrderedDict[Outline, Picture] = OrderedDict()
         self._job: LatestJob[Traced] = LatestJob(session.queue)
         self._wanted: Picture | None = None
         self._drag_over = False
 
     def remember(self, outline: Outline, picture: Picture) -> None:
         """Keep where an outline came from."""
-        self._pictures[outline] = picture
-        self._pictures.move_to_end(outline)
-        while len(self._pictures) > CAPACITY:
-            self._pictures.popitem(last=False)
+        self.pictures[outline] = picture
+        self.pictures.move_to_end(outline)
+        while len(self.pictures) > CAPACITY:
+            self.pictures.popitem(last=False)
 
     def picture_of(self, outline: Outline | None) -> Picture | None:
         """The picture behind an outline, None when it was drawn, chosen from the library or read as lines."""
-        return None if outline is None else self._pictures.get(outline)
+        return None if outline is None else self.pictures.get(outline)
 
     def retrace(self, picture: Picture, threshold: float | None) -> None:
         """Trace a picture at another threshold (0 black .. 1 white), None for the automatic one."""
@@ -96,11 +96,11 @@ class PictureTracer(QObject):
 
     def _start(self, picture: Picture) -> None:
         callbacks: JobCallbacks[Traced] = JobCallbacks(
-            partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
+            partial(self._on_result, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
         )
         self._job.start(tr("tracing {name}", name=picture.path.name), partial(tracing, picture), callbacks)
 
-    def _take(self, picture: Picture, traced: Traced) -> None:
+    def _on_result(self, picture: Picture, traced: Traced) -> None:
         self.remember(traced.outline, replace(picture, traced=traced))
         self.traced.emit(traced.outline)
 
@@ -121,8 +121,8 @@ class PictureTracer(QObject):
             self.settled.emit()
 
 
-class Occasion(Enum):
-    """Why a target is read: the program starts with it, a person wants it, or other parts of the present one."""
+class ReadReason(Enum):
+    """Why a target is read: at the start, at a wish, or for other parts of the present one."""
 
     START = "start"
     WANTED = "wanted"
@@ -135,7 +135,7 @@ class TargetReader(QObject):
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
     """
 
-    read = Signal(Outline, Occasion)
+    read = Signal(Outline, ReadReason)
     choice_wanted = Signal(PartsRead)
     design_read = Signal(Document, str)  #: that a cut file came from, and the file
     failed = Signal(str, str)  #: sentence, trace
@@ -144,75 +144,75 @@ class TargetReader(QObject):
         super().__init__(parent)
         self._tracer = tracer
         self._job = LatestJob[TargetRead | PartsRead | DesignRead](session.queue)
-        self._drawings: OrderedDict[Outline, str] = OrderedDict()
-        self._asked = ("", Occasion.WANTED)
+        self.drawings: OrderedDict[Outline, str] = OrderedDict()
+        self._asked = ("", ReadReason.WANTED)
         self.source = ""  #: of the target that was read last
 
-    def start(self, source: str, occasion: Occasion) -> None:
+    def start(self, source: str, reason: ReadReason) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._start(source, occasion, partial(reading_source, source))
+        self._start(source, reason, partial(reading_source, source))
 
     def choose_again(self, outline: Outline) -> None:
         """Read the drawing again that an outline came from, and ask for its parts."""
         source = self.drawing_of(outline)
         if source:
-            self._start(source, Occasion.AGAIN, partial(reading_parts, source))
+            self._start(source, ReadReason.AGAIN, partial(reading_parts, source))
 
     def drawing_of(self, outline: Outline | None) -> str:
         """The drawing that an outline was read from, "" for none."""
-        return "" if outline is None else self._drawings.get(outline, "")
+        return "" if outline is None else self.drawings.get(outline, "")
 
     def take_chosen(self, outline: Outline, usual: bool) -> None:
         """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
-        source, occasion = self._asked
+        source, reason = self._asked
         if usual and Path(source).suffix.lower() in PICTURES:
-            self._start(source, occasion, partial(reading_target, source))
+            self._start(source, reason, partial(reading_target, source))
             return
         self._finish(*self._asked, TargetRead(outline))
 
-    def _start(self, source: str, occasion: Occasion, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
-        callbacks = JobCallbacks(partial(self._take, source, occasion), on_failed=self.failed.emit)
+    def _start(self, source: str, reason: ReadReason, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
+        callbacks = JobCallbacks(partial(self._on_result, source, reason), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, occasion: Occasion, found: TargetRead | PartsRead | DesignRead) -> None:
+    def _on_result(self, source: str, reason: ReadReason, found: TargetRead | PartsRead | DesignRead) -> None:
         if isinstance(found, PartsRead):
-            self._asked = (source, occasion)
+            self._asked = (source, reason)
             self.choice_wanted.emit(found)
         elif isinstance(found, DesignRead):
             self.design_read.emit(found.document, source)
         else:
-            self._finish(source, occasion, found)
+            self._finish(source, reason, found)
 
-    def _finish(self, source: str, occasion: Occasion, found: TargetRead) -> None:
+    def _finish(self, source: str, reason: ReadReason, found: TargetRead) -> None:
         if Path(source).suffix.lower() in PART_READERS:
-            self._drawings[found.outline] = source
-            while len(self._drawings) > CAPACITY:
-                self._drawings.popitem(last=False)
+            self.drawings[found.outline] = source
+            while len(self.drawings) > CAPACITY:
+                self.drawings.popitem(last=False)
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
-        self.read.emit(found.outline, occasion)
+        self.read.emit(found.outline, reason)
 
 
-class Wish(Generic[T]):
+class LatestRead(Generic[T]):
     """Reads one thing at a time that is chosen by a name, a file or a drawing; the newest wins.
 
     Why one was refused is said until another one is read, or chosen elsewhere.
     """
 
     def __init__(self, session: Session, take: Callable[[T], None]) -> None:
-        self._session, self._take = session, take
+        self._session, self._on_result = session, take
         self._job = LatestJob[T](session.queue)
         self._refusal: Message | None = None
 
     def start(self, name: str, steps: Steps[T]) -> None:
         """Read it in the worker; ``name`` follows the word "while" in messages."""
         self.stop()
-        self._job.start(name, steps, JobCallbacks(self._take, on_failed=self._refuse))
+        self._job.start(name, steps, JobCallbacks(self._on_result, on_failed=self._refuse))
 
     def stop(self) -> None:
         """Forget what is still being read, and why the last one was refused: something else took its place."""
@@ -235,12 +235,12 @@ class StartReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._wish = Wish[StartShape | PartsRead](session, self._take)
+        self._read = LatestRead[StartShape | PartsRead](session, self._on_result)
         self._check = LatestJob[str](session.queue)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
+        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
 
     def check(self, outline: Outline) -> None:
         """Find out whether the next run would refuse a shape that is being drawn."""
@@ -255,13 +255,13 @@ class StartReader(QObject):
 
     def draw(self, outline: Outline) -> None:
         """Take a shape that was drawn."""
-        self._wish.start(tr("reading the start"), partial(making_start, outline))
+        self._read.start(tr("reading the start"), partial(making_start, outline))
 
     def stop(self) -> None:
         """Forget what is still being read: another start was chosen."""
-        self._wish.stop()
+        self._read.stop()
 
-    def _take(self, found: StartShape | PartsRead) -> None:
+    def _on_result(self, found: StartShape | PartsRead) -> None:
         if isinstance(found, PartsRead):
             self.choice_wanted.emit(found)
             return
@@ -278,13 +278,13 @@ class SecondReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._wish = Wish[TargetRead | PartsRead](session, self._take_read)
+        self._read = LatestRead[TargetRead | PartsRead](session, self._on_read)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
-        self._wish.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
+        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
 
-    def _take_read(self, found: TargetRead | PartsRead) -> None:
+    def _on_read(self, found: TargetRead | PartsRead) -> None:
         if isinstance(found, PartsRead):
             self.choice_wanted.emit(found)
         else:
@@ -304,7 +304,7 @@ class SecondReader(QObject):
 
     def stop(self) -> None:
         """Forget what is still being read: another second target was chosen, or none."""
-        self._wish.stop()
+        self._read.stop()
 
 
 def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
@@ -331,21 +331,26 @@ class Targeting(QObject):
         self._session = session
         self.tracer = PictureTracer(session, self)
         self.reader = TargetReader(session, self.tracer, self)
-        self.reader.read.connect(self._take_read)
+        self.reader.read.connect(self._on_read)
         self.reader.failed.connect(session.report_failure)
-        self.tracer.traced.connect(self._take_traced)
+        self.tracer.traced.connect(self._on_traced)
         self.tracer.refused.connect(session.set_status)
         self.tracer.settled.connect(session.history.end_drag)
+
+    def remember_sources(self, earlier: Targeting) -> None:
+        """Know the pictures and drawings that the targets of an earlier window were read from."""
+        self.tracer.pictures.update(earlier.tracer.pictures)
+        self.reader.drawings.update(earlier.reader.drawings)
 
     def stop(self) -> None:
         """Forget what is still being read or traced."""
         self.reader.stop()
         self.tracer.stop()
 
-    def open(self, source: str, occasion: Occasion = Occasion.WANTED) -> None:
+    def open(self, source: str, reason: ReadReason = ReadReason.WANTED) -> None:
         """Read a file, or a silhouette of the library by name."""
         self._session.set_status(tr("Reading {name} …", name=Path(source).name))
-        self.reader.start(source, occasion)
+        self.reader.start(source, reason)
 
     def choose_parts(self) -> None:
         """Ask again for the parts of the drawing that the target was read from."""
@@ -355,7 +360,7 @@ class Targeting(QObject):
 
     def start_with(self, source: str) -> None:
         """Read the first target; in an untouched project it is where the history starts, no change to be undone."""
-        self.open(source, Occasion.START)
+        self.open(source, ReadReason.START)
 
     def change_threshold(self, threshold: float | None) -> None:
         """Trace the target's picture again at another grey level, 0..1; None for the automatic one."""
@@ -375,19 +380,19 @@ class Targeting(QObject):
             self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
-    def _take_traced(self, outline: Outline) -> None:
+    def _on_traced(self, outline: Outline) -> None:
         self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
-    def _take_read(self, outline: Outline, occasion: Occasion) -> None:
+    def _on_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
-        if occasion is Occasion.START and untouched:
+        if reason is ReadReason.START and untouched:
             self.begun.emit(replace(document, target=outline))
             self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
             self._session.set_status(said)
-        elif document.drawing or (document.drawn_by_hand and occasion is not Occasion.AGAIN):
+        elif document.drawing or (document.drawn_by_hand and reason is not ReadReason.AGAIN):
             self._session.set_status(tr("Read {name}. Nothing has changed yet.", name=tr(outline.name)))
             self.question_wanted.emit(outline)
         else:

@@ -33,11 +33,13 @@ class CommandActions:
     def _action(self, command: Command) -> QAction:
         if command.menu not in self._menus:
             self._menus[command.menu] = self._window.menuBar().addMenu(command.menu)
-        action = QAction(command.text, self._window)
+        action = command.switch
+        if action is None:
+            action = QAction(command.text, self._window)
+            action.setCheckable(command.checked_when is not None)
+            action.triggered.connect(partial(self._run, command.id))
         action.setObjectName(command.id)
-        action.setCheckable(command.checked_when is not None)
         action.setShortcuts([QKeySequence(keys) for keys in command.shortcuts])
-        action.triggered.connect(partial(self._run, command.id))
         if command.gap:
             self._menus[command.menu].addSeparator()
         self._menus[command.menu].addAction(action)
@@ -61,17 +63,6 @@ class CommandActions:
         command = next(one for one in self.records if one.id == after)
         self._menus[command.menu].addMenu(menu)
 
-    def reword(self, commands: Iterable[Command]) -> None:
-        """Show the same commands in the words of another language."""
-        records = tuple(commands)
-        menus = {new.menu: self._menus[old.menu] for old, new in zip(self.records, records, strict=True)}
-        for title, menu in menus.items():
-            menu.setTitle(title)
-        self.records, self._menus = records, menus
-        self._worded.clear()
-        for command in records:
-            self._show(command)
-
     def refresh(self, *_: object) -> None:
         """Enable, check and name all commands as the window is now; takes whatever a signal carries."""
         state = self._state_now()
@@ -91,7 +82,8 @@ class CommandActions:
     def _show(self, command: Command) -> None:
         """Show one command as it is in the state of the window."""
         action, wording = self.actions[command.id], command.wording(self._state)
-        action.setEnabled(command.enabled_when(self._state))
+        if command.switch is None:  # else its panel says so
+            action.setEnabled(command.enabled_when(self._state))
         if command.checked_when is not None:
             action.setChecked(command.checked_when(self._state))
         if self._worded.get(command.id) == wording:
@@ -99,6 +91,8 @@ class CommandActions:
         self._worded[command.id] = wording
         action.setText(wording.text)
         action.setStatusTip(wording.tip)
+        if command.switch is not None:
+            return
         if command.shortcuts:
             keys = QKeySequence(command.shortcuts[0]).toString(QKeySequence.SequenceFormat.NativeText)
             action.setToolTip(f"{wording.tip} ({keys})")

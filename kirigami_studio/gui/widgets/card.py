@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QAction, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QFrame,
@@ -17,8 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import again
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.fitted_text import fits, fitted, shortened
 from kirigami_studio.gui.widgets.number_field import number_field
 from kirigami_studio.gui.widgets.theme import Palette
 
@@ -55,21 +55,11 @@ class ToolButton(QToolButton):
         self._icon_name = icon
         self._palette: Palette | None = None
         self.setObjectName(name)
-        self._tip = tip
         self.setToolTip(tip)
         self.setAccessibleName(tip.split(".")[0])
         self.setCheckable(checkable)
         self.setIconSize(TOOL_ICON)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() != QEvent.Type.LanguageChange:
-            return
-        name = self._tip.split(".")[0]
-        self._tip = again(self._tip)
-        if self.accessibleName() in (name, again(name)):  # no other name was given
-            self.setAccessibleName(self._tip.split(".")[0])
 
     def show_icon(self, name: str) -> None:
         """Show another icon."""
@@ -81,6 +71,22 @@ class ToolButton(QToolButton):
         """Draw in other colours."""
         self._palette = palette
         self.show_icon(self._icon_name)
+
+
+class SwitchButton(ToolButton):
+    """A button that shows a switch, which is a checkable action: a command may be the same action."""
+
+    def __init__(self, name: str, icon: str, tip: str) -> None:
+        super().__init__(name, icon, tip)
+        self.switch = QAction(self)
+        self.switch.setCheckable(True)
+        self.switch.setToolTip(tip)
+        self.setDefaultAction(self.switch)
+
+    def show_icon(self, name: str) -> None:
+        self._icon_name = name
+        if self._palette is not None:
+            self.switch.setIcon(icons.icon(name, self._palette))
 
 
 class ElidedLabel(QLabel):
@@ -96,19 +102,13 @@ class ElidedLabel(QLabel):
     def setText(self, text: str, *shorter: str) -> None:  # noqa: N802 - Qt's name
         """Set a text, and ``shorter`` versions of which the first that fits is shown."""
         self._shorter = shorter
-        super().setText(text)
-        self.setToolTip(text)
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self._shorter = tuple(again(text) for text in self._shorter)
+        super().setText(shortened(text))
+        self.setToolTip(self.text())
 
     def drawn_text(self) -> str:
         """What is shown at the present width."""
-        metrics, versions, room = self.fontMetrics(), (self.text(), *self._shorter), self.contentsRect().width()
-        fitting = next((text for text in versions if metrics.horizontalAdvance(text) <= room), versions[-1])
-        return metrics.elidedText(fitting, self._cut_off, room)
+        room = self.contentsRect().width()
+        return fitted(self.fontMetrics(), (self.text(), *self._shorter), room, self._cut_off)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
@@ -131,19 +131,12 @@ class FittingLabel(QLabel):
         """The texts to choose from, longest first."""
         self._texts = texts
 
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self._texts = tuple(again(text) for text in self._texts)
-            self.setText(again(self.text()))
-
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())
 
     def fit(self, width: int) -> bool:
         """Show the longest text that fits into ``width`` pixels; whether any does."""
-        metrics = self.fontMetrics()
-        chosen = next((text for text in self._texts if metrics.horizontalAdvance(text) <= width), "")
+        chosen = next((text for text in self._texts if fits(self.fontMetrics(), text, width)), "")
         self.setText(chosen)
         self.setVisible(bool(chosen))
         return bool(chosen)
@@ -204,3 +197,12 @@ def muted_label() -> QLabel:
     label.setObjectName("muted")
     label.setWordWrap(True)
     return label
+
+
+def own_markup(label: QLabel) -> None:
+    """Show a label's text as HTML: for text of the program's own, never for a name, a path or a message.
+
+    Every other label and every tooltip of the application is plain text: ``studio.qss`` says so.
+    """
+    label.setProperty("markup", True)
+    label.setTextFormat(Qt.TextFormat.RichText)

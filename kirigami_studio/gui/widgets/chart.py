@@ -13,7 +13,8 @@ from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
 from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import again, decimal_sign, number, tr
+from kirigami_studio.foundation.words import decimal_sign, number, tr
+from kirigami_studio.gui.widgets.card import own_markup
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
@@ -47,7 +48,7 @@ class Chart(QWidget):
         self._series = Series(np.zeros(0), tuple(np.zeros(0) for _ in names))
         self.setAccessibleName(tr("{title}, {unit}", title=title, unit=unit))
         self.numbers = QLabel()
-        self.numbers.setTextFormat(Qt.TextFormat.RichText)
+        own_markup(self.numbers)
         self.numbers.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         # Moves that follow each other closely must not be dropped: the last one says where the line is to stay.
         pg.setConfigOptions(mouseRateLimit=0)
@@ -121,13 +122,6 @@ class Chart(QWidget):
         self.dots.setPen(_pen(palette.surface, 1.0, Qt.PenStyle.SolidLine))
         self.dots.setBrush(QColor(palette.text))
         self._write()
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            self._names = tuple(again(name) for name in self._names)
-            self.plot.getAxis("left").picture = None  # which holds its numbers
-            self._write()
 
     def _colours(self) -> tuple[str, ...]:
         return self._palette.accent, self._palette.target

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy, QStyle, QStyleOptionComboBox, QStylePainter
 
-from kirigami_studio.foundation.words import again, tr
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.fitted_text import elided
 
 TOOLTIP = Qt.ItemDataRole.ToolTipRole
 #: Value, label, what it means.
@@ -24,7 +25,7 @@ class ComboBox(QComboBox):
         self.initStyleOption(option)
         field = QStyle.SubControl.SC_ComboBoxEditField
         room = self.style().subControlRect(QStyle.ComplexControl.CC_ComboBox, option, field, self).width()
-        return self.fontMetrics().elidedText(self.currentText(), Qt.TextElideMode.ElideRight, room)
+        return elided(self.fontMetrics(), self.currentText(), room)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         option, painter = QStyleOptionComboBox(), QStylePainter(self)
@@ -44,21 +45,9 @@ class ChoiceBox(ComboBox):
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(accessible)
         self.add_choices(choices)
-        self._names = tuple(self.itemText(row) for row in range(self.count()))
-        self.setToolTip(self._list_choices())
-
-    def _list_choices(self) -> str:
-        """What it is about, and what there was to choose from the start."""
-        choices = ", ".join(self._names)
-        return tr("{name}: {choices}.", name=self.accessibleName(), choices=choices) if choices else ""
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.LanguageChange:
-            lists_choices = self.toolTip() == self._list_choices()
-            self._names = tuple(again(name) for name in self._names)
-            if lists_choices:
-                self.setToolTip(self._list_choices())
+        if choices:
+            names = ", ".join(self.itemText(row) for row in range(self.count()))
+            self.setToolTip(tr("{name}: {choices}.", name=accessible, choices=names))
 
     def add_choices(self, choices: Choices) -> None:
         """Offer values below those that are there."""

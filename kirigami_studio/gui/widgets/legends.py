@@ -12,6 +12,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.fitted_text import elided
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -88,11 +89,11 @@ def paint_chip(painter: QPainter, box: QRectF, palette: Palette) -> None:
 def paint_caption(painter: QPainter, text: str, width: float, palette: Palette) -> None:
     """Draw one label in the upper left corner, ended by an ellipsis where ``width`` pixels end."""
     metrics = painter.fontMetrics()
-    breadth = min(metrics.horizontalAdvance(text) + 20.0, width - 20.0)
+    shown = elided(metrics, text, width - 38.0)
+    breadth = metrics.horizontalAdvance(shown) + 20.0
     box = QRectF(10.0, 10.0, breadth, metrics.height() + 10.0)
     paint_chip(painter, box, palette)
     painter.setPen(QColor(palette.text))
-    shown = metrics.elidedText(text, Qt.TextElideMode.ElideRight, round(breadth - 18.0))
     painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), shown)
 
 

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.foundation.words import again, tr
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ToolButton
@@ -178,7 +178,7 @@ class MessageBar(QFrame):
             return
         self._at = min(max(index, 0), len(self._messages) - 1)
         message = self._messages[self._at]
-        self.sentence.setText(again(message.sentence))
+        self.sentence.setText(message.sentence)
         self.trace.setPlainText(message.details)
         self.details.setVisible(bool(message.details))
         self.details.setChecked(False)
@@ -202,7 +202,7 @@ class MessageBar(QFrame):
                 button.hide()
                 button.deleteLater()
         for label, act in message.actions:
-            choice = QPushButton(again(label))
+            choice = QPushButton(label)
             choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             choice.clicked.connect(lambda _=False, act=act: self._act(act, message))
             self._actions.addWidget(choice)

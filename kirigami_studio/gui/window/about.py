@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 from kirigami_studio import __version__
 from kirigami_studio.foundation.licences import Component, components
 from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.widgets.card import own_markup
 from kirigami_studio.gui.widgets.icons import coloured
 from kirigami_studio.gui.widgets.search_window import SearchedList, SearchWindow
 
@@ -48,6 +49,7 @@ class AboutWindow(SearchWindow):
         self.list.setColumnWidth(2, LICENCE)
         self.shown, self.paper = QLabel(), QLabel()
         for label in (self.shown, self.paper):
+            own_markup(label)
             label.setOpenExternalLinks(True)
         self.text = QPlainTextEdit()
         self.text.setAccessibleName(tr("Text of the licence"))

@@ -68,7 +68,9 @@ class FileOpening(QObject):
         super().__init__(parent)
         self._act = act
         self.opened = False
-        parent.installEventFilter(self)
+        application = QCoreApplication.instance()
+        if application is not None:
+            application.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         if isinstance(event, QFileOpenEvent) and event.file():
@@ -155,11 +157,19 @@ def readable_font(font: QFont) -> QFont:
     return result
 
 
-def create_window(palette: theme.Palette | None = None) -> MainWindow:
-    """Return a new window with its own controller, not shown yet; closing it ends its worker."""
-    controller = Controller()
+def create_window(palette: theme.Palette | None = None, earlier: MainWindow | None = None) -> MainWindow:
+    """Return a new window with its own controller, not shown yet; closing it ends its worker.
+
+    It goes on with the project of an ``earlier`` window, which is closed and goes.
+    """
+    controller = Controller(earlier=None if earlier is None else earlier.controller)
     window = MainWindow(controller, palette or theme.system_palette())
     controller.setParent(window)
+    if earlier is not None:
+        for keeper in (earlier.controller, earlier.pasting):  # of folders with pictures behind targets
+            keeper.setParent(controller)
+        earlier.deleteLater()
+        controller.session.announce()
     importing.settle()
     return window
 
@@ -205,29 +215,51 @@ def run(argv: list[str]) -> int:
         sys.stderr.write(f"{tr(NO_DISPLAY, program=program)}\n")
         return 1
     application = create_application(argv[:1] or ["kirigami-studio"])
-    config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
-    speak(preferred_language(config / PREFERENCES))
-    window = create_window()
-    show_uncaught(window.messages.add)
-    state = QSettings()
-    window.restore(state)
-    window.controller.use_preferences(config / PREFERENCES)
-    window.controller.filing.recent.load(config / RECENT)
-    window.controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
-    application.aboutToQuit.connect(lambda: window.remember(state))
-    window.appearance.refresh()
-    window.appearance.listen()
-    window.show()
-    opening = FileOpening(window.files.open, application)
+    window = open_window(application)
+    opening = FileOpening(window.files.open, window)
 
     def begin() -> None:
         if not opening.opened:  # else the desktop was faster
             open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET)
 
     QTimer.singleShot(0, window, begin)
-    WarmUp(window.controller.warm_up, lambda: window.controller.queue.busy, window)
     QTimer.singleShot(0, window, window.connections.first_start.begin)
-    return application.exec()
+    code = application.exec()
+    while window.starts_again:
+        window = open_window(application, window)
+        FileOpening(window.files.open, window)
+        code = application.exec()
+    return code
+
+
+def open_window(application: QApplication, earlier: MainWindow | None = None) -> MainWindow:
+    """Show a window in the preferred language, with what is remembered from the last one.
+
+    Parameters
+    ----------
+    application : QApplication
+    earlier : MainWindow, optional
+        A closed one, with whose project it goes on.
+
+    Returns
+    -------
+    window : MainWindow
+    """
+    config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
+    speak(preferred_language(config / PREFERENCES))
+    window = create_window(earlier=earlier)
+    controller = window.controller
+    show_uncaught(window.messages.add)
+    window.restore(QSettings())
+    controller.use_preferences(config / PREFERENCES)
+    controller.filing.recent.load(config / RECENT)
+    controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
+    application.aboutToQuit.connect(window.remember)
+    window.appearance.refresh()
+    window.appearance.listen()
+    window.show()
+    WarmUp(controller.warm_up, lambda: controller.queue.busy, window)
+    return window
 
 
 if __name__ == "__main__":

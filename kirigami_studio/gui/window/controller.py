@@ -1,4 +1,4 @@
-"""What a person can ask of the studio: the parts, and what concerns several of them.
+"""The requests of the user: the parts, and those that concern several of them.
 
 A request of one part goes to that part (``controller.generation.generate``, ``controller.fabrication.change``); here is
 what has to stop, save or replace the work of several.
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 
 class Controller(QObject):
-    """Owns the session and the parts that work on it.
+    """Owns the session and the parts that work on it; goes on with the project of an ``earlier`` one that is closed.
 
     Attributes
     ----------
@@ -76,9 +76,11 @@ class Controller(QObject):
     opened = Signal(Path)
     variants_known = Signal(tuple)  #: of str, the generators on offer
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, earlier: Controller | None = None) -> None:
         super().__init__(parent)
-        self.session = session = Session(self)
+        before: Session | None = None if earlier is None else earlier.session
+        self.session: Session = Session(self, before)
+        session = self.session
         self.hand = HandEditor(session, self)
         self.trimming = TrimSwitch(session, self)
         self.refitting = Refitter(session, self)
@@ -104,6 +106,8 @@ class Controller(QObject):
         self.second = SecondReader(session, self)
         self.artwork = ArtworkKeeper(session, self)
         self.filing = Filing(session, self.targeting, self)
+        if earlier is not None:
+            self.targeting.remember_sources(earlier.targeting)
         self._connect()
 
     def _connect(self) -> None:
@@ -164,17 +168,17 @@ class Controller(QObject):
 
     def use_preferences(self, path: Path) -> None:
         """Start with what was preferred the last time, and remember what is from now on."""
-        untouched = self.document in (Document(), self.preferences.new_document())
+        untouched = self.document in (Document(), self.preferences.new_document()) and not self.history.steps
         self.preferences.load(path)
         if untouched:
             self.session.restart(self.preferences.new_document(), self.path)
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
-        callbacks = JobCallbacks(self._take_variants, on_failed=self.session.report_failure)
+        callbacks = JobCallbacks(self._on_variants, on_failed=self.session.report_failure)
         self.queue.start(tr("loading the generator"), importing.warming, callbacks)
 
-    def _take_variants(self, variants: tuple[str, ...]) -> None:
+    def _on_variants(self, variants: tuple[str, ...]) -> None:
         if variants:
             self.variants_known.emit(variants)
 

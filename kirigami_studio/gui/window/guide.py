@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import takewhile
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QPoint, Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QKeyEvent, QTextCursor
 from PySide6.QtWidgets import (
     QSplitter,
@@ -83,23 +83,10 @@ class GuideWindow(SearchWindow):
 
     def _read(self) -> None:
         """Show the guide of the present language."""
-        self._file = guide_file()
         # Pictures of the window in its own language are in a folder beside the others.
         self.text.setSearchPaths([str(resource("guide", language().split("_")[0])), str(resource("guide"))])
-        self.text.setMarkdown(self._file.read_text(encoding="utf-8"))
+        self.text.setMarkdown(guide_file().read_text(encoding="utf-8"))
         self._list_contents()
-
-    def _change_language(self) -> None:
-        """The same section in the other language, and the same words searched for."""
-        if guide_file() == self._file:
-            return
-        lines, at = self.headings, self.contents.currentItem()
-        section = next((row for row, line in enumerate(lines) if line is at), None)
-        self._read()
-        if section is not None:
-            self.text.document().size()  # laid out whole, or it could not be scrolled that far
-            self._go_to(self.headings[section])
-        self._find(self.search.text())
 
     def _list_contents(self) -> None:
         """One line for each heading, under the one above it."""
@@ -180,12 +167,6 @@ class GuideWindow(SearchWindow):
         there.clearSelection()
         self.text.setTextCursor(there)
         self.text.ensureCursorVisible()
-
-    def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        """The guide follows the language of the window."""
-        if event.type() == QEvent.Type.LanguageChange:
-            self._change_language()
-        super().changeEvent(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         """Enter goes to the next place, Shift+Enter to the one before; Esc clears the search, then closes the guide."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QLabel,
@@ -32,7 +31,6 @@ from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
-from kirigami_studio.gui.widgets.language import Language
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.theme import Palette
@@ -71,8 +69,14 @@ TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
 
 def all_commands(window: MainWindow) -> tuple[Command, ...]:
     """Return the commands of a window in the order of its menus, one record each."""
-    menus = (file_commands, edit_commands, draw_commands, design_commands, view_commands, help_commands)
-    return tuple(one for menu in menus for one in menu.commands(window))
+    return (
+        *file_commands.commands(window),
+        *edit_commands.commands(window.controller, window.dialogs, window.pasting, window.picturing),
+        *draw_commands.commands(window.target, window.messages.add),
+        *design_commands.commands(window),
+        *view_commands.commands(window),
+        *help_commands.commands(window.dialogs, lambda: window.tour.start(), window.files.open_sample),
+    )
 
 
 class MainWindow(QMainWindow):
@@ -84,6 +88,7 @@ class MainWindow(QMainWindow):
         self.palette_ = palette
         self._laid_out = False
         self._sizes_before: list[int] = []
+        self.starts_again = False  #: another window goes on with the project
         self.setObjectName("studio")
         self.setWindowIcon(QIcon(str(resource("icons", "kirigami-studio.svg"))))
         self.setMinimumSize(SMALLEST)
@@ -108,7 +113,6 @@ class MainWindow(QMainWindow):
         self.drops.file_dropped.connect(self.files.open)
         self.dialogs = Dialogs(self, controller)
         self.appearance = Appearance(self, controller.preferences)
-        self.language = Language(self, self._reword)
         self.pasting = PasteReader(controller.session, self)
         self.picturing = PictureMaker(self, controller.session, controller.cutting)
         self.heading = self._heading()
@@ -173,7 +177,7 @@ class MainWindow(QMainWindow):
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
-        offer_context_menus(self)
+        offer_context_menus(self.target, self.stage, self.commands)
         controller, refresh = self.controller, self.commands.refresh
         for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
             document_signal.connect(refresh)
@@ -183,7 +187,6 @@ class MainWindow(QMainWindow):
         for busy_signal in (part.busy_changed for part in working):
             busy_signal.connect(refresh)
         self.stage.switches_changed.connect(refresh)
-        self.stage.overlays_changed.connect(refresh)
         self.stage.comparing_changed.connect(refresh)
         self.target.editing_changed.connect(refresh)
         self.target.view.context.selection_changed.connect(refresh)
@@ -204,13 +207,7 @@ class MainWindow(QMainWindow):
             editing_target=self.target.editing,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,
-            before=_switch(stage.before),
-            trim=_switch(stage.trim),
-            hand=_switch(stage.hand),
-            cuts=_switch(stage.cuts_switch),
-            plots=_switch(stage.plots_switch),
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
-            overlays=stage.view.overlays,
             dark=self.palette_.dark,
             follows_system=self.appearance.follows_system,
             still=controller.preferences.present.motion == "still",
@@ -302,15 +299,14 @@ class MainWindow(QMainWindow):
             part.set_palette(palette)
         self.commands.set_palette(palette)
 
-    def speak(self, language: str) -> None:
-        """Say everything in another language, "system" or a code; nothing else changes."""
-        self.language.change(language)
-
-    def _reword(self) -> None:
-        """Say again what depends on the document, and the commands."""
-        self.commands.reword(all_commands(self))
-        self.dialogs.reword()
-        self.controller.session.document_changed.emit(self.controller.document)
+    def start_again(self) -> None:
+        """Close, for another window to go on with the project, saved or not; a run has to end first."""
+        if self.controller.running:
+            self.controller.session.set_status(tr("Wait for the run to finish, or cancel it, then start again."))
+            self.appearance.offer_start()
+        elif not self.controller.hand.postpones(self.start_again):
+            self.starts_again = True
+            self.close()
 
     def restore(self, settings: QSettings) -> None:
         """Restore the size and columns of the last session."""
@@ -322,8 +318,9 @@ class MainWindow(QMainWindow):
         self.fabrication.restore(settings)
         self.settings.restore(settings)
 
-    def remember(self, settings: QSettings) -> None:
-        """Save size and columns for the next session."""
+    def remember(self, settings: QSettings | None = None) -> None:
+        """Save size and columns for the next session, in the user's settings without others."""
+        settings = QSettings() if settings is None else settings
         settings.setValue("geometry", self.saveGeometry())
         if self._laid_out:
             settings.setValue("columns", self.columns.saveState())
@@ -332,7 +329,7 @@ class MainWindow(QMainWindow):
         self.settings.remember(settings)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
-        if not self.unsaved.may_close():
+        if not (self.starts_again or self.unsaved.may_close()):
             event.ignore()
             return
         self.stage.player.play.setChecked(False)
@@ -341,7 +338,3 @@ class MainWindow(QMainWindow):
         self.hide()  # the worker may be deep in an import: let it end out of sight
         self.controller.close()
         event.accept()
-
-
-def _switch(button: QAbstractButton) -> Switch:
-    return Switch(button.isEnabled(), button.isChecked())

@@ -17,7 +17,7 @@ from PySide6.QtGui import QShortcut
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.foundation.words import again, tr
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.empty_stage import moves
 from kirigami_studio.gui.widgets.callout import Callout, Ring
 from kirigami_studio.gui.window.controller import Controller
@@ -146,9 +146,9 @@ class Tour(QObject):
         self.at = -1
         self.ring = Ring(window)
         self.callout = Callout(window)
-        self.callout.next_wanted.connect(lambda: self._go(self.at + 1))
-        self.callout.back_wanted.connect(lambda: self._go(self.at - 1))
-        self.callout.skip_wanted.connect(self.end)
+        self.callout.next.clicked.connect(lambda: self._go(self.at + 1))
+        self.callout.back.clicked.connect(lambda: self._go(self.at - 1))
+        self.callout.skip.clicked.connect(self.end)
         self._soon = QTimer(self)  # panels that fold or grow settle first
         self._soon.setSingleShot(True)
         self._soon.setInterval(0)
@@ -235,7 +235,7 @@ class Tour(QObject):
         self.at = number
         self._share_escape()
         step = self.steps[number]
-        self.callout.say(again(step.title), again(step.text), number + 1, len(self.steps))
+        self.callout.say(step.title, step.text, number + 1, len(self.steps))
         if step.enter is not None:
             self._entering = True
             step.enter()

@@ -10,18 +10,20 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
+from kirigami_studio.foundation.words import language as spoken_language
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP
+from kirigami_studio.project.preferences import Theme
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.window.main_window import MainWindow
 
 #: The preferred theme that follows the desktop.
-SYSTEM = "system"
 #: Commands that switch what is drawn over the layout.
 OVERLAY_COMMANDS = {
     "show_target": Overlay.TARGET,
@@ -38,17 +40,18 @@ OVERLAY_COMMANDS = {
 
 
 class Appearance(QObject):
-    """The window's theme and language: the desktop's until the user chooses, and again when asked to."""
+    """Theme and language of the window: the desktop's unless the preferences name others."""
 
     def __init__(self, window: MainWindow, preferences: UserPreferences) -> None:
         super().__init__(window)
         self._window = window
         self._preferences = preferences
+        self._offer: Message | None = None
 
     @property
     def follows_system(self) -> bool:
         """Whether the window has the desktop's theme."""
-        return self._preferences.present.theme == SYSTEM
+        return self._preferences.present.theme is Theme.SYSTEM
 
     @property
     def language(self) -> str:
@@ -56,9 +59,19 @@ class Appearance(QObject):
         return self._preferences.present.language
 
     def choose_language(self, language: str) -> None:
-        """Say everything in another language, from now on and at the next start."""
+        """Prefer another language; it is that of the next window."""
         self._preferences.choose_language(language)
-        self._window.speak(language)
+        self.offer_start()
+
+    def offer_start(self) -> None:
+        """Offer to open the window again in the preferred language, unless it speaks that already."""
+        if self._offer is not None:
+            self._window.messages.drop(self._offer)
+            self._offer = None
+        if self.language != spoken_language():
+            sentence = tr("The language changes when Kirigami Studio is started again. Your project stays open.")
+            self._offer = Message(sentence, actions=((tr("Start again now"), self._window.start_again),))
+            self._window.messages.add(self._offer)
 
     def listen(self) -> None:
         """Change the theme whenever the desktop changes its own, if that is wanted."""
@@ -73,12 +86,12 @@ class Appearance(QObject):
 
     def switch(self) -> None:
         """Change between light and dark; the choice stays until the desktop is to be followed again."""
-        self._preferences.choose_theme(theme.LIGHT.name if self._window.palette_.dark else theme.DARK.name)
+        self._preferences.choose_theme(Theme.LIGHT if self._window.palette_.dark else Theme.DARK)
         self.refresh()
 
     def follow_system(self) -> None:
         """Follow the desktop's theme, or stop at the present one."""
-        self._preferences.choose_theme(self._window.palette_.name if self.follows_system else SYSTEM)
+        self._preferences.choose_theme(Theme(self._window.palette_.name) if self.follows_system else Theme.SYSTEM)
         self.refresh()
 
 
@@ -163,18 +176,8 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
     stage = window.stage
 
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
-        which = OVERLAY_COMMANDS[name]
-        return Command(
-            name,
-            tr("&View"),
-            text,
-            tip,
-            lambda: stage.set_overlay(which, which not in stage.view.overlays),
-            (key,),
-            icon,
-            gap,
-            checked_when=lambda now: which in now.overlays,
-        )
+        switch = stage.overlays[OVERLAY_COMMANDS[name]]
+        return Command(name, tr("&View"), text, tip, switch.trigger, (key,), icon, gap, switch=switch)
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")
@@ -225,44 +228,41 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Before polish"),
             tr("Show the design before polishing"),
-            stage.before.click,
+            stage.before.switch.trigger,
             shortcuts=("B",),
             icon="before",
             gap=True,
-            enabled_when=lambda now: now.before.enabled,
-            checked_when=lambda now: now.before.checked,
+            switch=stage.before.switch,
         ),
         Command(
             "cuts",
             menu,
             tr("&Cuts"),
             tr("Show the cut plan at kerf width"),
-            stage.cuts_switch.click,
+            stage.cuts_switch.switch.trigger,
             shortcuts=("C",),
             icon="cuts",
-            enabled_when=lambda now: now.cuts.enabled,
-            checked_when=lambda now: now.cuts.checked,
+            switch=stage.cuts_switch.switch,
         ),
         Command(
             "plots",
             menu,
             tr("P&lots"),
             tr("Show match, size and gaps at every angle"),
-            stage.plots_switch.click,
+            stage.plots_switch.switch.trigger,
             shortcuts=("J",),
             icon="plots",
-            enabled_when=lambda now: now.plots.enabled,
-            checked_when=lambda now: now.plots.checked,
+            switch=stage.plots_switch.switch,
         ),
         Command(
             "compare",
             menu,
             tr("Si&de by side"),
             tr("Compare two designs side by side"),
-            lambda: comparison.show(not stage.comparing),
+            window.gallery.bar.compare.switch.trigger,
             shortcuts=("K",),
             icon="compare",
-            checked_when=lambda now: now.comparing,
+            switch=window.gallery.bar.compare.switch,
         ),
         Command(
             "all_designs",

@@ -25,7 +25,8 @@ from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.mechanics.network import CONTACT_BELOW
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import simulate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.designing import completed, request_for, run_design

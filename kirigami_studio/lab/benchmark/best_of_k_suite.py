@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from kirigami_studio.foundation.processes import HERE, Workers
+from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore
 from kirigami_studio.lab.benchmark.solver_suite import SolverRun, SolverSettings, check_methods, solved
@@ -22,9 +23,6 @@ from kirigami_studio.outlines.outline import Outline
 SAMPLING = ("sample", "sample-fit")
 SEARCHING = ("swarm", "cma-es")
 METHODS = (*SAMPLING, *SEARCHING)
-#: The paper says in words: the prior at K = 4 is a little above 96 % in less than 1 s, the swarm a little below 95 % in
-#: tens of seconds; at K = 1 they are the rows of its Table 1.
-PAPER_SIOU = {("sample", 1): 0.942, ("sample", 4): 0.96, ("swarm", 1): 0.926, ("swarm", 4): 0.95, ("cma-es", 1): 0.938}
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +157,7 @@ def _at(method: str, k: int, by_target: Sequence[Sequence[Record]]) -> BestOfK:
         success=float(((siou >= SUCCESS_SIOU) & (feasible > 0.0)).mean()),
         evaluations=float(evaluations.mean()),
         seconds=float(seconds.mean()),
-        paper_siou=PAPER_SIOU.get((method, k)),
+        paper_siou=paper_tables.BEST_OF_K.get((method, k)),
     )
 
 

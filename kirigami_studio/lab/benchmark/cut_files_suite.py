@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.export.profile import PROFILES, DxfVersion
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
@@ -22,7 +22,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
 #: DXF in both versions, and SVG.
-FORMS = (("R2010", ".dxf"), ("R12", ".dxf"), ("R2010", ".svg"))
+FORMS = ((DxfVersion.R2010, ".dxf"), (DxfVersion.R12, ".dxf"), (DxfVersion.R2010, ".svg"))
 SMALLEST_GRID, LARGEST_GRID = 2, 8
 #: Largest random logarithm of a ratio, and the widths of the sheets (mm).
 SPREAD = 0.4
@@ -65,7 +65,7 @@ class CutFileFigures:
         return self.passed == self.files
 
     def sentences(self) -> list[str]:
-        """The figures for a person."""
+        """The figures for the user."""
         low, middle, high = self.slots_length_ratio
         return [
             f"{self.passed} of {self.files} files of {self.designs} designs passed with two readers; {self.refused} "

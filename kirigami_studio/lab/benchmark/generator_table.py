@@ -33,7 +33,9 @@ from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed,
 from kirigami_studio.generator.weights import Model, load_model, load_weights
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import load_generator
+from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.lab.benchmark.paper_tables import PaperRow
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -47,23 +49,6 @@ CLASSES = 32
 COMPONENTS = 8
 
 
-@dataclass(frozen=True, slots=True)
-class PaperRow:
-    """A row of the paper's Table 2; shares from 0 to 1, milliseconds a sample."""
-
-    siou: float
-    siou_sd: float
-    success: float
-    milliseconds: float
-    inception: float
-
-
-PAPER = {
-    "cvae": PaperRow(0.836, 0.060, 0.510, 14.06, 1.62),
-    "cgan": PaperRow(0.876, 0.003, 0.778, 20.62, 1.74),
-    "diffusion": PaperRow(0.855, 0.003, 0.762, 473.30, 2.05),
-    "ot-cfm": PaperRow(0.942, 0.007, 0.987, 159.64, 1.89),
-}
 #: Steps of the flow in the paper, and of the bundled variants as the program uses them.
 PAPER_FLOW_STEPS, BUNDLED_STEPS = 8, 4
 
@@ -235,7 +220,7 @@ class Row:
         """The row for people: percentages, the paper's number in brackets."""
         siou, success, time_of_one = ("", "", "")
         if self.paper is not None:
-            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * self.paper.success:.1f})"
+            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * (self.paper.success or 0.0):.1f})"
             time_of_one = f"({self.paper.milliseconds:.0f})"
         yield (
             f"  {name:15}{100 * self.siou:7.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
@@ -462,7 +447,7 @@ def _row(runs: Sequence[SampleRun], store: RunStore) -> Row:
         distance=mean_of(varied, "distance"),
         inception=mean_of(varied, "inception"),
         by_steps=_by_steps([run for run in runs if run.seed == seeds[0]], store),
-        paper=PAPER.get(generator.name),
+        paper=paper_tables.GENERATORS.get(generator.name),
     )
 
 

@@ -22,6 +22,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.velocity import backbone_of
 from kirigami_studio.generator.weights import digest_of, load_weights, variants_about
+from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.lab.benchmark.generator_table import (
     SampleRun,
@@ -30,6 +31,7 @@ from kirigami_studio.lab.benchmark.generator_table import (
     score_record,
     success_share,
 )
+from kirigami_studio.lab.benchmark.paper_tables import PaperRow
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
@@ -43,20 +45,6 @@ CONTROL = "none"
 SAMPLES = 8
 #: Bundled variants that runs of GRPO begin with.
 STARTS = ("prior", "paper")
-
-
-@dataclass(frozen=True, slots=True)
-class PaperRow:
-    """A row of the paper's Table 3: sIoU from 0 to 1, total variation."""
-
-    siou: float
-    tv: float
-
-
-#: The prior, and rewards after 10000 calls.
-PAPER_PRIOR = PaperRow(0.942, 0.95)
-PAPER = {"accuracy": PaperRow(0.9491, 0.98), "regularity": PaperRow(0.9367, 0.60), "balanced": PaperRow(0.9483, 0.81)}
-PAPER_CALLS = 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +200,8 @@ class SnapshotRow:
 
     def sentence(self) -> str:
         """The row for people: percentages, the paper's numbers in brackets."""
-        siou, tv = ("", "") if self.paper is None else (f"({100 * self.paper.siou:.2f})", f"({self.paper.tv:.2f})")
+        paper = self.paper
+        siou, tv = ("", "") if paper is None else (f"({100 * paper.siou:.2f})", f"({paper.tv or 0.0:.2f})")
         return (
             f"    {self.calls:6}{100 * self.siou:8.2f} +- {100 * self.siou_sd:4.2f} {siou:8}{100 * self.iou_exact:8.2f}"
             f"{100 * self.success:10.1f}{self.tv:7.2f} {tv:7}{self.tv_log10:7.3f}{self.distance:9.3f}"
@@ -417,7 +406,13 @@ def _row(
 ) -> SnapshotRow:
     records, made = own.records, made_of(own.records)
     siou = values_of(records, "siou")
-    paper = PAPER_PRIOR if calls == 0 else PAPER.get(reward) if calls == PAPER_CALLS else None
+    paper = (
+        paper_tables.PRIOR
+        if calls == 0
+        else paper_tables.GRPO.get(reward)
+        if calls == paper_tables.GRPO_CALLS
+        else None
+    )
     return SnapshotRow(
         calls=calls,
         runs=len(records),

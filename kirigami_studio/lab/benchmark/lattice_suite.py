@@ -136,7 +136,7 @@ class LatticeTiming:
     batch: BatchTiming
 
     def sentences(self) -> Iterator[str]:
-        """The figures for a person, one a line."""
+        """The figures for the user, one a line."""
         slider, growth, batch = self.slider, self.growth, self.batch
         yield (
             f"slider   {slider.grid[0]} x {slider.grid[1]}: decode once {slider.decode_ms:.1f} ms, "
@@ -162,13 +162,13 @@ def _random_field(size: int, seed: int = 0) -> RatioField:
 
 
 def _fastest(work: Callable[[], object], repeats: int) -> float:
-    """Shortest wall time of several runs, seconds: the run that other programs disturbed least."""
+    """Shortest processor time of several runs, seconds: the run that other programs disturbed least."""
     work()
     durations = []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         work()
-        durations.append(time.perf_counter() - start)
+        durations.append(time.process_time() - start)
     return min(durations)
 
 

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import kirigami_studio.export.pdf_library  # noqa: F401  (before reportlab's own modules)
+
+# isort: split
 from reportlab.graphics import renderSVG
 from reportlab.graphics.charts.axes import LogXValueAxis
 from reportlab.graphics.charts.lineplots import LinePlot

@@ -128,7 +128,7 @@ class MechanicsFigures:
         return all(case.ok for case in self.cases)
 
     def sentences(self) -> Iterator[str]:
-        """The figures for a person, one line each."""
+        """The figures for the user, one line each."""
         for case in self.cases:
             published = f"; published {case.published}" if case.published else ""
             yield f"{case.name:22s} {case.found}{published}; {case.seconds:.2f} s: {'ok' if case.ok else 'NOT ok'}"

@@ -121,11 +121,11 @@ def measure_regularity(
     found: dict[str, list[Score]] = {"unpolished": [], **{name: [] for name in PREFERENCES}}
     for number, target in enumerate(targets):
         found["unpolished"].append(
-            best_of(as_in_paper(Request(target, grid, k=1, seed=seed, variant=variant))).best.score
+            best_of(as_in_paper(Request(target, grid, k=1, seed=seed, variant=variant, polish=0))).best.score
         )
-        for name in PREFERENCES:
-            request = Request(target, grid, k=1, seed=seed, variant=variant, polish=polish, prefer=name)
-            found[name].append(best_of(as_in_paper(request)).best.score)
+        for prefer in PREFERENCES:
+            request = Request(target, grid, k=1, seed=seed, variant=variant, polish=polish, prefer=prefer)
+            found[prefer].append(best_of(as_in_paper(request)).best.score)
         report(number + 1, len(targets))
     figures: dict[str, object] = {"targets": len(targets), "polish": polish, "grid": list(grid), "seed": seed}
     for name, scores in found.items():

@@ -31,7 +31,9 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.baselines.search import Box, Judge, Stopping, search
 from kirigami_studio.lab.baselines.solvers import SOLVERS
+from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.lab.benchmark.paper_tables import PaperRow
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -39,9 +41,10 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: What solvers search: z = log10 x or the ratio x, both for ratios from 0.1 to 10.
 SPACES = {"log": (-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT), "ratio": (10.0**-LOG_RATIO_LIMIT, 10.0**LOG_RATIO_LIMIT)}
@@ -49,26 +52,6 @@ OWN_METHODS = ("fit", "sample", "sample-fit")
 METHODS = (*SOLVERS, *OWN_METHODS)
 #: Steps of the fit from the uniform sheet; it ends before where it converges.
 FIT_STEPS = 40
-
-
-@dataclass(frozen=True, slots=True)
-class PaperRow:
-    """A row of the paper's Table 1, shares from 0 to 1; the spread is over its evaluation targets and seeds."""
-
-    siou: float
-    siou_sd: float
-    success: float
-    evaluations: float
-
-
-PAPER = {
-    "cma-es": PaperRow(0.938, 0.029, 0.970, 986.0),
-    "swarm": PaperRow(0.926, 0.033, 0.972, 625.1),
-    "local-search": PaperRow(0.912, 0.049, 0.898, 1000.0),
-    "powell": PaperRow(0.871, 0.059, 0.760, 1000.0),
-    # Its own way: one sample of the flow-matching prior.
-    "sample": PaperRow(0.942, 0.007, 0.987, 1.0),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +149,7 @@ class Row:
         """The row for people: percentages, the paper's number in brackets."""
         siou, success, evaluations = ("", "", "")
         if self.paper is not None:
-            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * self.paper.success:.1f})"
+            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * (self.paper.success or 0.0):.1f})"
             evaluations = f"({self.paper.evaluations:.0f})"
         return (
             f"  {method:13}{100 * self.siou:9.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
@@ -392,5 +375,5 @@ def _row(method: str, runs: Sequence[SolverRun], store: RunStore) -> Row:
         evaluations=float(counted.mean()),
         most_evaluations=int(counted.max()),
         seconds=mean_of(records, "seconds"),
-        paper=PAPER.get(method),
+        paper=paper_tables.SOLVERS.get(method),
     )

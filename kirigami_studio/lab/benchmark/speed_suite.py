@@ -19,15 +19,16 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished
 from kirigami_studio.pipeline.pool import Pool, worker_count
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request, as_in_paper
+from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of, run, sample, with_grid
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.even_panels import USUAL_WEIGHT
 from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
+from kirigami_studio.settings.design import POLISH_STEPS
 
 #: Silhouettes whose runs at grid auto are timed, after that of another one, and workers that do them.
 RUNS, WARMING, RUN_WORKERS = ("heart", "star", "butterfly", "drop", "hexagon"), "egg", 2
@@ -89,7 +90,8 @@ def _timings(
     # Past the cache of load_model, so that every load reads, verifies and builds.
     loads = [_seconds(lambda: load_model.__wrapped__(variant)) for _ in range(LOADS)]
     requests = [
-        as_in_paper(Request(_unseen(shape, number), grid, k=K, variant=variant, steps=steps)) for shape in shapes
+        as_in_paper(Request(_unseen(shape, number), grid, k=K, variant=variant, steps=steps, polish=0))
+        for shape in shapes
     ]
     best_of(requests[0])
     drawing = [_seconds(lambda request=request: sample(request)) for request in requests[1:]]  # type: ignore[misc]
@@ -202,7 +204,9 @@ def _step_seconds(candidate: Candidate, target: Outline) -> float:
     """One step without corrections: derivative, normal equations, solution and the decoding of the trial."""
     rows, columns = candidate.sheet.grid
     model, z = OutlineModel(rows, columns, 0.0), candidate.sheet.field.log10.ravel()
-    objective = Objective(model, BoundaryTarget.of(target, SAMPLES), PreferenceTerms(Preference(), z, rows, columns))
+    objective = Objective(
+        model, BoundaryTarget.of(target, SAMPLES), FieldPreferenceTerms(Preference(), z, rows, columns)
+    )
     pose = candidate.score.transform
     look = objective.look(np.concatenate([z, [math.log(pose.scale), pose.angle, *pose.shift]]))
 

@@ -82,7 +82,10 @@ def measure_variants(
     total = len(targets) * len(names) * len(seeds)
     for number, target in enumerate(targets):
         for place, name in enumerate(names):
-            requests = [as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps)) for seed in seeds]
+            requests = [
+                as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps, polish=0))
+                for seed in seeds
+            ]
             scores[name].append([best_of(request).best.score for request in requests])
             report((number * len(names) + place + 1) * len(seeds), total)
     return {
@@ -177,7 +180,7 @@ def measure_spread(
     total, done = len(targets) * len(names) * len(POSES), 0
     for target in targets:
         for name in names:
-            request = as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps))
+            request = as_in_paper(Request(target, grid, k=k, seed=seed, variant=name, steps=steps, polish=0))
             for poses, angle in POSES.items():
                 fields = sample_fields(load_model(name), target, grid, k, seed, steps, poses=angle)
                 found[name][poses].append(spread_of(scored(request, [Sheet(field) for field in fields], 0)))

@@ -439,9 +439,10 @@ def grpo(arguments: argparse.Namespace) -> int:
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
     from kirigami_studio.lab.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
-    from kirigami_studio.pipeline.request import REGULAR, Request
+    from kirigami_studio.pipeline.request import Request
+    from kirigami_studio.settings.design import with_balance
 
-    regular = REGULAR[arguments.prefer] if arguments.regular is None else arguments.regular
+    regular = with_balance({"prefer": arguments.prefer, "regular": arguments.regular})["regular"]
     start = start_shape(arguments.start)
 
     def measure(outlines: Sequence[Outline], report: Report) -> dict[str, object]:
@@ -535,7 +536,7 @@ def _print_figures(
     figures: dict[str, object],
     sentences: Iterable[str] | None = None,
 ) -> int:
-    """Print a suite's figures, for a person as sentences where it has them, and write them where asked."""
+    """Print a suite's figures, for the user as sentences where it has them, and write them where asked."""
     line.clear()
     indented = json.dumps(plain(figures), indent=2)
     if arguments.out is not None:
@@ -577,6 +578,5 @@ def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[O
         return {"targets": found}
     from kirigami_studio.lab import problem
 
-    families = dict.fromkeys(arguments.families if "families" in arguments else ("structured", "sobol"))
     asked = arguments.split, arguments.count, arguments.data_seed
-    return {family: list(problem.targets(family, *asked, exact=exact)) for family in families}
+    return {family: list(problem.targets(family, *asked, exact=exact)) for family in dict.fromkeys(arguments.families)}

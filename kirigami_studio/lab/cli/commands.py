@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import argparse
 
-from kirigami_studio.cli.option_types import amount, count, number, positive, whole
+from kirigami_studio.cli.option_types import Option, amount, count, number, option, positive, setting_options, whole
 from kirigami_studio.cli.parser import (
     JSON,
     SCHEDULER,
-    SHEETS,
     START,
     START_WEIGHT,
-    STYLE,
-    Option,
+    USUAL,
     SubCommand,
-    option,
 )
-from kirigami_studio.pipeline.request import POLISH_STEPS
-from kirigami_studio.polish.preferences import PREFERENCES
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.settings.design import POLISH_STEPS, DesignChoices
 
 #: Options that suites of ``benchmark`` share; each suite takes only its own.
 GRID = option("--grid", default="10x10", help="voids, ROWSxCOLUMNS (default 10x10)")
@@ -31,6 +28,12 @@ SEEDS = option("--seeds", type=whole, nargs="+", default=[0, 1, 2], help="sampli
 SEED = option("--seed", type=whole, default=0, help="random seed (default 0)")
 EXACT = option(
     "--exact", action="store_true", help="targets are exact outlines, not contours traced from 128-pixel masks"
+)
+STYLE = option(
+    "--style",
+    choices=[style.value for style in ConnectorStyle],
+    default=USUAL.options.style.value,
+    help="how slits end at their connectors (default: centred)",
 )
 RANDOM_DESIGNS = option("--count", type=count, default=200, help="number of random designs (default 200)")
 FIGURES = (option("--out", default=None, help="also write the results to this .json file"), JSON)
@@ -70,7 +73,14 @@ def targets_of_a_suite(usual: int) -> tuple[Option, ...]:
             "--split",
             default="test",
             choices=("test", "validation"),
-            help="split of both families that gives the targets (default test)",
+            help="split of each family that gives the targets (default test)",
+        ),
+        option(
+            "--families",
+            nargs="+",
+            choices=("structured", "released", "sobol", "drawn"),
+            default=["structured", "sobol"],
+            help="families of targets (default: structured sobol)",
         ),
         option("--count", type=count, default=usual, help=f"number of targets from each family (default {usual})"),
         option("--data-seed", type=whole, default=0, help="seed of the splits (default 0)"),
@@ -106,6 +116,28 @@ def run_of_training(validate_every: int) -> tuple[Option, ...]:
     )
 
 
+#: The designs that a generator is trained on, or whose silhouettes are its targets.
+TRAINING_DESIGNS = (
+    option(
+        "--family",
+        default="mixed",
+        choices=("mixed", "structured", "released", "sobol"),
+        help="endless designs of this family (default mixed)",
+    ),
+    option("--designs", default=None, metavar="FILE", help="instead of them a data set that 'dataset' wrote"),
+)
+
+AVERAGE_DECAY = option(
+    "--average-decay", type=amount, default=0.999, help="decay of the averaged weights to write (default 0.999)"
+)
+
+RECORDED = option(
+    "--recorded",
+    action="store_true",
+    help="GPU: record a step once and replay it, several times as fast where networks are small",
+)
+
+
 def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -> tuple[Option, ...]:
     """Options of the generators that the paper compares with its own; its settings are the defaults."""
     return (
@@ -126,14 +158,18 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
             help="pixels each way into which fields are drawn; fewer than the grid's 10 lose detail (default 32)",
         ),
         *more,
+        *TRAINING_DESIGNS,
+        AVERAGE_DECAY,
+        RECORDED,
         *run_of_training(500),
     )
 
 
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("dataset", "generate and verify training data as the paper describes", "lab.cli.learning:dataset", (
-        option("family", choices=("sobol", "structured", "drawn"),
-               help="distribution of the ratio fields; drawn: fits of procedural drawn shapes, for training only"),
+        option("family", choices=("sobol", "structured", "released", "drawn"),
+               help="distribution of the ratio fields; released: smooth fields with the moments of the paper's "
+                    "released generator; drawn: fits of procedural drawn shapes, for training only"),
         option("--out", required=True,
                help="folder for FAMILY-SPLIT.npz; drawn: for drawn.npz, which an earlier run may have begun"),
         option("--split", default="all", choices=("all", "train", "validation", "test"),
@@ -174,6 +210,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--feedback", action=argparse.BooleanOptionalAction, default=None,
                help="perceptron: give it the gap between current outline and target (default: yes)"),
         option("--outline-weight", type=amount, default=50.0, help="weight of the outline error (default 50)"),
+        *TRAINING_DESIGNS,
+        AVERAGE_DECAY,
+        RECORDED,
         *run_of_training(500),
     ), ("kirigami-studio train prior --out runs/prior --device auto",
         "kirigami-studio train prior --warm-start bundled --fits runs/drawn/drawn.npz --out runs/again",
@@ -239,6 +278,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="decay of the averaged weights to write (default 0: write the last weights)"),
         option("--keep-at", type=whole, nargs="+", default=[], metavar="CALLS",
                help="also write the weights after so many calls, 0 for the start, for 'benchmark grpo'"),
+        *TRAINING_DESIGNS,
         *run_of_training(50),
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both",
@@ -278,9 +318,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *targets_of_a_suite(500), EXACT,
         option("--grid", default="10x10",
                help="voids, ROWSxCOLUMNS or auto, or several separated by commas (default 10x10)"),
-        VARIANT, samples(1), STEPS, POLISH, SEED, START, *SHEETS,
-        option("--prefer", choices=tuple(PREFERENCES), default="balanced",
-               help="what polishing prefers (default balanced)"),
+        VARIANT, samples(1), STEPS, POLISH, SEED, START,
+        *setting_options(DesignChoices, "symmetry", "rim", "regular", "prefer"),
         option("--effort", "--search", type=whole, default=0, help="search with this effort (default 0: no search)"),
         option("--trim", action="store_true", help="also trim the best design of each target"),
         option("--picture", default=None, help="write a picture of all designs to this .png file"),
@@ -337,8 +376,6 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="MODULE:CALLABLE (targets -> tables of ratios), a baseline (uniform, cma-es, swarm, local-search, "
                     "powell, fit, sample, sample-fit, a bundled variant), or a .safetensors file of a training run"),
         *targets_of_a_suite(50),
-        option("--families", nargs="+", choices=("structured", "sobol", "drawn"), default=["structured", "sobol"],
-               help="families of targets (default: structured sobol)"),
         EXACT, GRID, SEED, *FIGURES,
     ), ("kirigami-studio benchmark judge mine:generate prior",
         "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),

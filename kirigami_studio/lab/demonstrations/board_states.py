@@ -17,7 +17,7 @@ from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.lab.demonstrations.offscreen_session import Session, SessionError, click
 from kirigami_studio.outlines.combining import Combine, combined
 from kirigami_studio.outlines.drawing import Drawing
-from kirigami_studio.outlines.figures import Box, Figure, figure, placed_figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, figure, placed_figure
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.placed import Placed
@@ -95,9 +95,9 @@ class BoardStates(Session):
     def editor(self) -> None:
         """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
         target, reshaping = self.window.target, self.window.connections.target.reshaping
-        body = figure(Figure.ELLIPSE, Box(-40.0, -25.0, 20.0, 25.0))
+        body = figure(Figure.ELLIPSE, BoundingBox(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
-        arm, now = figure(Figure.RECTANGLE, Box(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
+        arm, now = figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
         reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
         for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
             target.set_tool(tool)
@@ -111,7 +111,11 @@ class BoardStates(Session):
     def objects(self) -> None:
         """Several objects, two of them selected, and one that hangs apart."""
         target, reshaping = self.window.target, self.window.connections.target.reshaping
-        boxes = (Box(-30.0, -20.0, 20.0, 20.0), Box(0.0, 0.0, 45.0, 35.0), Box(52.0, -20.0, 62.0, -10.0))
+        boxes = (
+            BoundingBox(-30.0, -20.0, 20.0, 20.0),
+            BoundingBox(0.0, 0.0, 45.0, 35.0),
+            BoundingBox(52.0, -20.0, 62.0, -10.0),
+        )
         kinds = (Figure.RECTANGLE, Figure.ELLIPSE, Figure.STAR)
         shapes = [placed_figure(kind, box) for kind, box in zip(kinds, boxes, strict=True)]
         reshaping.take(Change("Draw shapes", lambda: Drawing(tuple(shapes), frozenset({0, 1}))))
@@ -134,7 +138,7 @@ class BoardStates(Session):
     def points_and_mirror(self) -> None:
         """Selected points with their handles, a selection box, and a shape that is mirrored as it is drawn."""
         target, reshaping = self.window.target, self.window.connections.target.reshaping
-        disc = placed_figure(Figure.ELLIPSE, Box(-30.0, -25.0, 30.0, 25.0))
+        disc = placed_figure(Figure.ELLIPSE, BoundingBox(-30.0, -25.0, 30.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: disc))
         target.set_tool(Tool.POINTS)
         target.tools.axis.set_axis(Axis.UPRIGHT)

@@ -39,7 +39,7 @@ SEED, SMALL, GRIDS, FIELDS = 3, 4, (4, 6, 8, 10, 12, 16, 20, 24), 20
 
 
 @dataclass(slots=True)
-class Drawing:
+class FigureDrawing:
     """Shapes in the plane (y up), collected and written at a scale.
 
     Attributes
@@ -141,7 +141,7 @@ def _small_sheet() -> Deployment:
 
 def parity() -> bytes:
     """Half open, even and odd voids in two colours, with their row and column."""
-    sheet, drawing, phi = _small_sheet(), Drawing(58.0), math.radians(62.0)
+    sheet, drawing, phi = _small_sheet(), FigureDrawing(58.0), math.radians(62.0)
     for panel in sheet.panels(phi).reshape(-1, 4, 2):
         drawing.shape(panel, fill=SHEET, line=SHEET_LINE)
     voids = sheet.voids(phi)
@@ -155,7 +155,7 @@ def parity() -> bytes:
 
 def void() -> bytes:
     """An even void and its right neighbour, with corners, angle and sides."""
-    sheet, drawing, phi = _small_sheet(), Drawing(125.0), math.radians(62.0)
+    sheet, drawing, phi = _small_sheet(), FigureDrawing(125.0), math.radians(62.0)
     voids, panels = sheet.voids(phi), sheet.panels(phi)
     for panel in (panels[1, 1], panels[1, 2], panels[2, 1], panels[2, 2], panels[1, 3], panels[2, 3]):
         drawing.shape(panel, fill=SHEET, line=SHEET_LINE)
@@ -192,7 +192,7 @@ def void() -> bytes:
 
 def compact() -> bytes:
     """The flat sheet with its slits, and one node between the ends of the slit that it lies on."""
-    sheet, drawing = _small_sheet(), Drawing(74.0)
+    sheet, drawing = _small_sheet(), FigureDrawing(74.0)
     nodes, tables = sheet.compact, sheet.topology
     drawing.shape(np.array([[0, 0], [SMALL + 1, 0], [SMALL + 1, -SMALL - 1], [0, -SMALL - 1.0]]), fill=SHEET)
     for panel in nodes[tables.panel_nodes].reshape(-1, 4, 2):
@@ -214,7 +214,7 @@ def compact() -> bytes:
 
 def motion() -> bytes:
     """Four states side by side, even panels darker than odd ones."""
-    sheet, drawing, left = _small_sheet(), Drawing(36.0), 0.0
+    sheet, drawing, left = _small_sheet(), FigureDrawing(36.0), 0.0
     for degrees in (180.0, 110.0, 50.0, 0.0):
         panels = sheet.panels(math.radians(degrees))
         corners = panels.reshape(-1, 2)
@@ -230,7 +230,7 @@ def motion() -> bytes:
 
 def paths() -> bytes:
     """Ways of all nodes about their middle, from the flat sheet to the closed one."""
-    sheet, drawing = _small_sheet(), Drawing(66.0)
+    sheet, drawing = _small_sheet(), FigureDrawing(66.0)
     middles = [sheet.nodes(phi).mean(axis=0) for phi in (math.pi, 0.0)]
     for phi, middle, line in zip((math.pi, 0.0), middles, (SHEET_LINE, TARGET), strict=True):
         drawing.shape(sheet.outline(phi) - middle, line=line, width=1.6)
@@ -282,7 +282,7 @@ def _matched(points: FloatArray, target: Outline) -> ShapeMatch:
 
 def siou() -> bytes:
     """The uniform sheet of 10 x 10 voids over the heart after three steps of a fit: common, missing, extra."""
-    target, drawing = silhouettes.load("heart"), Drawing(300.0)
+    target, drawing = silhouettes.load("heart"), FigureDrawing(300.0)
     fitted = polish(RatioField.uniform(10, 10), target, steps=2)
     outline = deploy(fitted.sheet).outline(0.0)
     match = siou_near(outline, target, fitted.pose)
@@ -306,7 +306,7 @@ def siou() -> bytes:
 
 def fit() -> bytes:
     """A uniform sheet of 10 x 10 voids after some steps of the fit to the heart."""
-    target, drawing = silhouettes.load("heart"), Drawing(150.0)
+    target, drawing = silhouettes.load("heart"), FigureDrawing(150.0)
     uniform = RatioField.uniform(10, 10)
     width = float(np.ptp(target.points[:, 0])) + 0.16
     for column, steps in enumerate((0, 1, 3, 15)):

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.session.messages import Tone
-from kirigami_studio.gui.widgets.language import SYSTEM
+from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.application import create_application, create_window
 from kirigami_studio.gui.window.main_window import FIRST, MainWindow
@@ -265,9 +265,9 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     session: Session | None = None
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
+        create_application(["kirigami-studio"])
+        speak(chosen.language)
         session = PairPictures(chosen.out) if chosen.pairs else kind(chosen.out)
-        if chosen.language != SYSTEM:
-            session.window.speak(chosen.language)
         files = session.play()
     except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")

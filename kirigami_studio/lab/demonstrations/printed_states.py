@@ -17,7 +17,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.artwork import Artwork, Laid
 from kirigami_studio.export.artwork_patches import PrintedSheet, opened_patches
 from kirigami_studio.export.artwork_picture import read_picture
-from kirigami_studio.export.artwork_raster import Page, paint
+from kirigami_studio.export.artwork_raster import BitmapFrame, paint
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.units import MM_PER_INCH
 from kirigami_studio.lattice.deployment import deploy
@@ -57,7 +57,7 @@ def printed_states(project: Path, picture: Path) -> Image.Image:
     dpi = SIDE / longest * MM_PER_INCH
     canvas = Image.new("RGB", (3 * (SIDE + MARGIN) + MARGIN, SIDE + 2 * MARGIN), "white")
     for column, (patches, (low, high)) in enumerate(zip(shown, ends, strict=True)):
-        page = Page((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
+        page = BitmapFrame((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
         image = paint(patches, page)
         left = MARGIN + column * (SIDE + MARGIN) + (SIDE - image.width) // 2
         canvas.paste(image, (left, MARGIN + (SIDE - image.height) // 2), image)

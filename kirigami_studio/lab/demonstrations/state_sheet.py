@@ -23,12 +23,14 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.target.target_view import Tool
+from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Mark
-from kirigami_studio.project.recovery import Note
+from kirigami_studio.project.recovery import RecoveryNote
 
 #: ``STATE-WIDTHxHEIGHT-THEME.png``, as the state sheet names its pictures.
 NAME = re.compile(r"(?P<state>.+)-(?P<group>\d+x\d+-(?:light|dark))")
@@ -115,7 +117,6 @@ class StateSheet(BoardStates):
         self.choose_heart()
         self.polishing()
         self.all_sizes("designs")
-        self.german()
         self.lost_designs()
         self.collection()
         self.overlays()
@@ -146,8 +147,7 @@ class StateSheet(BoardStates):
         self.first_steps()
         self.starts()
         self.second_target()
-        window.controller.history.mark_saved()
-        window.close()
+        self.german()
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
 
@@ -163,9 +163,14 @@ class StateSheet(BoardStates):
         self.all_sizes("sample")
 
     def german(self) -> None:
-        """The main states in a language with longer words."""
-        window = self.window
-        window.speak("de")
+        """The main states in a language with longer words, in a window that is started again."""
+        self.window.start_again()
+        speak("de")
+        self.window = window = create_window(LIGHT, self.window)
+        window.controller.history.mark_saved()
+        window.show()
+        window.files.open_sample()
+        self.until(window.fabrication.export.isEnabled, "the sample was not opened")
         self.all_sizes("german-designs")
         window.stage.cuts_switch.click()
         self.all_sizes("german-cuts")
@@ -173,7 +178,8 @@ class StateSheet(BoardStates):
         window.target.set_editing(True)
         self.all_sizes("german-board")
         window.target.set_editing(False)
-        window.speak("system")
+        window.close()
+        speak(SYSTEM)
 
     def first_steps(self) -> None:
         """The tour at a control on every side, the sheet of keys, and the licences."""
@@ -430,7 +436,7 @@ class StateSheet(BoardStates):
         window, dialogs = self.window, self.window.dialogs
         filing, folder = window.controller.filing, self.out / "recovery"
         left = folder / "left.kiri"
-        note = Note("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
+        note = RecoveryNote("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
         recovery.keep(window.controller.document, note, left)
         filing.recovery.use(folder)
         self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")

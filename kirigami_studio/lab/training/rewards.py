@@ -31,7 +31,7 @@ from typing import Protocol
 
 import numpy as np
 
-from kirigami_studio.evaluate.paper_evaluator import Verdict
+from kirigami_studio.evaluate.paper_evaluator import PaperScore
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
@@ -55,14 +55,14 @@ class Group:
     ----------
     fields : (G, m, n) float
         z = log10 x.
-    verdicts : sequence of Verdict
+    verdicts : sequence of PaperScore
         The evaluator's, one of each.
     start_siou : float, 0..1
         Mean sIoU of the start's own samples for the target; not a number for rewards that do not ask for it.
     """
 
     fields: FloatArray
-    verdicts: Sequence[Verdict]
+    verdicts: Sequence[PaperScore]
     start_siou: float = math.nan
 
 
@@ -112,7 +112,7 @@ class Reward:
         if self.name not in (*PAPER_REWARDS, NONE):
             raise UsageError("training.unknown_reward", reward=self.name, choices=", ".join(REWARDS))
 
-    def __call__(self, verdict: Verdict) -> float:
+    def __call__(self, verdict: PaperScore) -> float:
         """R of one design; higher is better."""
         if self.name == NONE:
             return 0.0
@@ -137,7 +137,7 @@ class Reward:
     def restored(self, state: Mapping[str, float]) -> Reward:
         return Reward(self.name, state["siou_scale"], state["tv_scale"])
 
-    def scaled(self, groups: Sequence[Sequence[Verdict]]) -> Reward:
+    def scaled(self, groups: Sequence[Sequence[PaperScore]]) -> Reward:
         """The same reward with s and v measured on the prior's ``groups``, one of each target."""
         siou = np.array([[verdict.siou for verdict in group] for group in groups])
         tv = np.array([[verdict.tv for verdict in group] for group in groups])
@@ -148,7 +148,7 @@ class Reward:
 class FabricationReward:
     """The reward of sheets that are fit to cut."""
 
-    def __call__(self, verdict: Verdict, sheet: Fabricability | None, start_siou: float) -> float:
+    def __call__(self, verdict: PaperScore, sheet: Fabricability | None, start_siou: float) -> float:
         """R of one design; ``sheet`` is None where the ratios could not be decoded."""
         if sheet is None:
             return -verdict.penalty

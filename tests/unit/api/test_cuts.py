@@ -14,7 +14,6 @@ from PIL import Image
 import kirigami_studio as ks
 
 
-@pytest.mark.long
 def test_that_a_cut_file_is_the_one_of_the_command_line(
     design: ks.Design, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

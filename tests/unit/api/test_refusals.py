@@ -212,3 +212,12 @@ def test_that_designs_that_are_not_there_are_told(hearts: ks.Designs) -> None:
         hearts[99]
     with pytest.raises(TypeError):
         hearts[1.5]  # type: ignore[call-overload]
+
+
+@pytest.mark.parametrize("angle", [np.array([0.1, 0.2]), [0.1, 0.2], np.zeros((2, 2)), "far"])
+def test_that_an_angle_that_is_no_number_is_refused_in_a_sentence_that_can_be_read(angle: object) -> None:
+    sheet = ks.decode(np.ones((3, 3)))
+    for ask in (lambda: sheet.outline(angle), lambda: sheet.for_target("heart", phi=angle)):
+        with pytest.raises(ks.KirigamiError) as refused:
+            ask()
+        assert "must be a number in radians, got " in str(refused.value)

@@ -18,16 +18,16 @@ from PIL import Image
 from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import FabricationSettings
 from kirigami_studio.project.store import load as load_project
 from kirigami_studio.project.store import save
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 @pytest.fixture
@@ -69,7 +69,6 @@ def test_that_files_and_numbers_are_told(
     assert "dpi" in warning
 
 
-@pytest.mark.long
 def test_that_options_reach_the_files(
     capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
 ) -> None:
@@ -89,14 +88,13 @@ def test_that_options_reach_the_files(
     assert roots[0].get("viewBox") == roots[1].get("viewBox")
 
 
-@pytest.mark.long
 def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
     capsys: pytest.CaptureFixture[str], project: Path, photo: Path, tmp_path: Path
 ) -> None:
     words = ["artwork", project, "--dpi", 50, "--json", "--out", tmp_path / "out"]
     code, said = refusal(capsys, *words)
     assert code == 2 and "--picture" in said
-    laid = Laid(read_picture(photo), State.FLAT, Fitting.FIT, 0.5)
+    laid = Laid(read_picture(photo), SheetState.FLAT, PictureFit.FIT, 0.5)
     save(replace(load_project(project), artwork=Artwork(laid)), project)
     own = answer(capsys, *words)
     assert own["on"] == "flat" and own["covered"] < 0.5
@@ -106,7 +104,6 @@ def test_that_the_artwork_of_the_project_is_printed_and_options_change_it(
     assert {"artwork.svg", "artwork.png"} < {Path(path).name for path in told["files"]}
 
 
-@pytest.mark.long
 def test_that_an_svg_is_printed_without_a_display(project: Path, tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 4 3"><text y="2">A</text></svg>')

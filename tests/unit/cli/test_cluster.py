@@ -16,10 +16,9 @@ from kirigami_studio.lab.benchmark.solver_suite import SolverSettings, measure_s
 from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.outlines.silhouettes import load
 
-pytestmark = [pytest.mark.slow, pytest.mark.torch]
+pytestmark = pytest.mark.torch
 
 
-@pytest.mark.long
 def test_that_a_suite_has_the_figures_that_it_has_here(workers: Workers) -> None:
     figures = []
     for who in (HERE, workers):
@@ -31,14 +30,12 @@ def test_that_a_suite_has_the_figures_that_it_has_here(workers: Workers) -> None
     assert figures[0] == figures[1]
 
 
-@pytest.mark.long
 def test_that_a_split_has_the_content_that_it_has_here(workers: Workers) -> None:
     there, here = (generate_split("structured", 260, 0, (4, 4), workers=who) for who in (workers, HERE))
     assert there.about == here.about
     assert np.array_equal(there.ratios, here.ratios)
 
 
-@pytest.mark.long
 def test_that_a_folder_is_designed_in_order_and_errors_stay_in_their_place(
     workers: Workers, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -65,7 +62,6 @@ def test_that_a_folder_is_designed_in_order_and_errors_stay_in_their_place(
             assert Path(path).read_bytes() == Path(other["files"][role]).read_bytes()
 
 
-@pytest.mark.long
 def test_that_designs_and_data_take_an_address_on_the_command_line(
     workers: Workers, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

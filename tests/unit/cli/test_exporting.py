@@ -20,8 +20,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import load, save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 @pytest.fixture
@@ -77,7 +78,6 @@ def test_that_all_writes_and_verifies_the_whole_set(
     assert not (tmp_path / "bare" / "cut.json").exists()
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize("profile", PROFILES)
 def test_that_a_profile_reaches_the_file_and_its_verification(
     profile: str, capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
@@ -100,7 +100,6 @@ def test_that_one_file_gets_a_record_when_asked_for(
     assert not (tmp_path / "y.json").exists()
 
 
-@pytest.mark.long
 def test_that_single_widths_change_the_plan(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
     def finished(*more: object) -> float:
         code, out, err = run(capsys, "export", project, "--out", tmp_path / "x.dxf", "--sidecar", "--json", *more)
@@ -158,7 +157,6 @@ def test_that_the_project_chooses_the_version_unless_told(
         assert ezdxf.readfile(tmp_path / "x.dxf").acad_release == release
 
 
-@pytest.mark.long
 def test_that_a_name_is_engraved_on_request_and_the_file_carries_it(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -200,7 +198,6 @@ def test_that_a_name_without_room_is_told(capsys: pytest.CaptureFixture[str], pr
     assert code == 0 and "engraved" not in told and any("no whole panel has room" in text for text in told["warnings"])
 
 
-@pytest.mark.long
 def test_that_a_name_alone_renames_the_design_and_engraves_nothing(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -231,7 +228,6 @@ def test_that_the_switch_to_engrave_takes_no_target(switch: list[str]) -> None:
     assert read.targets == ["a.svg", "b.svg"] and read.engrave is (switch[0] == "--engrave")
 
 
-@pytest.mark.long
 def test_that_copies_fill_one_file_and_are_told(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:

@@ -15,7 +15,7 @@ from worker_processes import workers_of
 
 from kirigami_studio.pipeline.pool import usable_cores
 
-pytestmark = [pytest.mark.slow, pytest.mark.torch, pytest.mark.long]
+pytestmark = pytest.mark.torch
 
 PROGRAM = [sys.executable, "-m", "kirigami_studio", "design", "heart", "--k", "24", "--grid", "8x8", "--seed", "1"]
 

@@ -68,7 +68,6 @@ def test_that_bars_bend_more_easily(sheet_file: Path, capsys: pytest.CaptureFixt
     assert bars["max_strain"][-1] < straight["max_strain"][-1]
 
 
-@pytest.mark.long
 def test_that_a_trimmed_design_keeps_its_trim(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     project = resource("examples", "heart.kiri")
     document = load(project)
@@ -92,7 +91,6 @@ def test_that_grips_are_held_and_moved(sheet_file: Path, capsys: pytest.CaptureF
     assert found["force_n"][2:-2] == pytest.approx(slope[2:-2], rel=0.1)
 
 
-@pytest.mark.long
 def test_that_a_project_tells_its_overlap_as_cut(capsys: pytest.CaptureFixture[str]) -> None:
     project = resource("examples", "heart.kiri")
     found = answer(capsys, "mechanics", project, "--centres", "node", "--steps", 11, "--json")

@@ -19,8 +19,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.store import load, save
+from kirigami_studio.settings.design import DesignSettings
+from tests.refusals import refused
 
 
 @pytest.fixture
@@ -76,7 +77,7 @@ def test_that_a_cut_file_as_a_target_is_the_target_of_its_design(project, capsys
 def test_that_a_cut_file_without_its_design_is_an_ordinary_drawing(project, capsys) -> None:
     cut = exported(project, "cut.svg")
     cut.write_bytes(cut.read_bytes().replace(NAME.encode(), b"SOMETHING_ELSE"))
-    with pytest.raises(ProjectError, match="does not hold the design"):
+    with refused(ProjectError, "project.no_design_in_file"):
         load(cut)
     capsys.readouterr()
     code, said = refusal(capsys, "decode", cut, "--json")

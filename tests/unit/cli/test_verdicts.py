@@ -22,8 +22,9 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from kirigami_studio.project.store import save
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import ranked_as_cut
 
 
@@ -67,7 +68,6 @@ def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str],
     assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
 
 
-@pytest.mark.long
 def test_that_fixes_are_told_where_they_are_asked_for(
     capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
 ) -> None:
@@ -100,7 +100,6 @@ def test_that_a_file_is_checked_against_its_design(
     assert "problem: In cut.dxf: " in said
 
 
-@pytest.mark.long
 def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) -> None:
     target = document.target
     assert target is not None
@@ -109,7 +108,7 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     score = replace(evaluate(even, target), iou_exact=0.5)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
     crossed = replace(irregular, score=replace(irregular.score, feasible=False), index=2)
-    result = Result(Request(target, (4, 5), regular=0.0), (irregular, uniform, crossed), 3, 0.0)
+    result = Result(Request(target, (4, 5), regular=0.0, polish=0), (irregular, uniform, crossed), 3, 0.0)
     straight = replace(document.fabrication, options=CutOptions(style=ConnectorStyle.STRAIGHT))
     found = ranked_as_cut(result, straight, quietly)
     assert found.candidates == (uniform, irregular, crossed)

@@ -17,7 +17,6 @@ from kirigami_studio.project.store import load
 pytestmark = pytest.mark.torch
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("name", ["heart", "star", "hexagon"])
 def test_that_a_silhouette_becomes_a_cut_file_that_passes_its_check(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str
@@ -60,7 +59,6 @@ def test_that_a_run_whose_budget_ends_before_trimming_says_so(capsys: pytest.Cap
     assert "The budget ended before" in capsys.readouterr().err
 
 
-@pytest.mark.long
 def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -72,7 +70,6 @@ def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(
     assert len(outline) > 4
 
 
-@pytest.mark.long
 def test_that_a_second_target_is_told_and_kept(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     wish = ["design", "drop", "--also", "circle", "--at-deg", "60", "--weight", "0.5", "--grid", "6x7", "--k", "2"]
     assert main([*wish, "--out", str(tmp_path), "--json"]) == 0
@@ -88,7 +85,6 @@ def test_that_a_second_target_is_told_and_kept(capsys: pytest.CaptureFixture[str
     assert "--also" in capsys.readouterr().err
 
 
-@pytest.mark.long
 def test_that_a_design_tells_what_its_sheet_is_like_and_why_it_comes_first(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -131,7 +127,6 @@ def test_that_a_name_to_engrave_is_the_best_design_s_and_is_in_its_cut_file(
     assert layers[0] == "NAME" and layers[-1] == "OUTLINE"
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize(
     ("start", "name", "grid"), [("circle", "square", "7x7"), ("triangle", "circle", "6x7"), ("heart", "circle", "7x7")]
 )

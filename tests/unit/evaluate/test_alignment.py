@@ -47,7 +47,6 @@ def brute_force(moving: FloatArray, fixed: FloatArray) -> float:
     return -min(run.fun for run in runs)
 
 
-@pytest.mark.long(but=12)
 @pytest.mark.parametrize("name", silhouettes.names())
 def test_that_a_moved_copy_of_a_library_shape_is_found_again(name: str) -> None:
     shape = silhouettes.load(name).points

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,10 +20,15 @@ from kirigami_studio.evaluate.feasibility import (
     outline_path,
     overlap_ratio,
     path_contact,
+    shared_area,
 )
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_panel_part
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
+from kirigami_studio.project.store import load
+
+#: An input that failed, from the maintainers' collection: GEOS 3.14 unites its closed panels and loses one of 25.
+LOST_PANEL = Path(__file__).parents[2] / "data" / "projects" / "geos_union_loses_a_panel.kiri"
 
 
 def random_deployment(seed: int, grid: tuple[int, int] = (10, 10), spread: float = 1.0) -> Deployment:
@@ -163,3 +169,11 @@ def test_that_the_path_shows_the_same_outlines_as_the_deployment() -> None:
 def test_that_impossible_angles_are_refused(phi: float) -> None:
     with pytest.raises(AngleError):
         path_contact(random_deployment(0), phi)
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.5, math.pi])
+def test_that_uniting_panels_loses_none_where_their_edges_differ_by_rounding(phi: float) -> None:
+    for candidate in load(LOST_PANEL).candidates:
+        sheet = deploy(candidate.sheet)
+        assert shared_area(sheet.panels(phi).reshape(-1, 4, 2)) < 1e-8
+        assert overlap_ratio(sheet, phi) == 0.0

@@ -13,6 +13,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes
+from tests.refusals import refused
 
 
 @pytest.mark.parametrize("phi", [0.0, 0.6])
@@ -38,5 +39,5 @@ def test_that_without_a_size_in_mm_there_is_nothing_to_fit() -> None:
     deployment = deploy(RatioField.uniform(4, 4))
     size = opened_size(deployment, evaluate(deployment, target).transform, target, 100.0)
     assert size.drawn is None and size.fitting_width_mm is None and not size.agrees and min(size.opened) > 0
-    with pytest.raises(UsageError, match="above 0 mm, got"):
+    with refused(UsageError, "opened_size.width_not_positive", width_mm=0.0):
         opened_size(deployment, evaluate(deployment, target).transform, target, 0.0)

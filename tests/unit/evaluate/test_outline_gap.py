@@ -52,7 +52,6 @@ def test_that_a_crossing_leaves_no_gap() -> None:
     assert found is not None and found.size == 0.0
 
 
-@pytest.mark.long(but=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_that_a_slow_search_finds_the_same_gap(seed: int) -> None:
     draw = np.random.default_rng(seed)

@@ -15,10 +15,10 @@ from skimage.transform import SimilarityTransform, estimate_transform, warp
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.trimming import trim
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_patches import PrintedSheet, opened_patches, printed_patches
 from kirigami_studio.export.artwork_picture import picture_of
-from kirigami_studio.export.artwork_raster import Page, image_of, paint
+from kirigami_studio.export.artwork_raster import BitmapFrame, image_of, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.foundation.errors import ExportError
@@ -50,12 +50,14 @@ def job_of(trimmed: bool = False, seed: int = 3) -> ExportJob:
     return ExportJob.of(candidate, heart.points, plan)
 
 
-def warped_by_skimage(laid: Laid, sheet: PrintedSheet, page: Page, panel: int) -> np.ndarray:
+def warped_by_skimage(laid: Laid, sheet: PrintedSheet, page: BitmapFrame, panel: int) -> np.ndarray:
     """The printed page as scikit-image makes it from the panel's corners, as if it were all of that panel."""
     picture = np.asarray(image_of(laid.picture.content).convert("RGB"), dtype=np.float64) / 255.0
     design = sheet.design
     there = (
-        design.panels(design.nodes(design.phi_target))[panel] if laid.state is State.TARGET else sheet.corners[panel]
+        design.panels(design.nodes(design.phi_target))[panel]
+        if laid.state is SheetState.TARGET
+        else sheet.corners[panel]
     )
     low, high = sheet.box(laid.state)
     height, width = picture.shape[:2]
@@ -84,12 +86,12 @@ def differences(printed: np.ndarray, meant: np.ndarray, inside: shapely.Polygon)
     }
 
 
-@pytest.mark.parametrize("state", list(State))
-def test_that_a_picture_warped_by_another_library_agrees_within_a_pixel(state: State) -> None:
+@pytest.mark.parametrize("state", list(SheetState))
+def test_that_a_picture_warped_by_another_library_agrees_within_a_pixel(state: SheetState) -> None:
     job = job_of()
     sheet, laid = PrintedSheet.of(job), Laid(chequered(600, 560), state)
     patches = printed_patches(Artwork(laid), sheet, 1.0, 0.2)
-    page = Page((0.0, 0.0), (82.0, 100.0), DPI)
+    page = BitmapFrame((0.0, 0.0), (82.0, 100.0), DPI)
     printed = np.asarray(paint(patches, page).convert("RGB"), dtype=np.float64) / 255.0
     for panel in range(0, len(sheet.cells), 3):
         meant = warped_by_skimage(laid, sheet, page, panel)
@@ -150,11 +152,11 @@ def test_that_printed_panels_lie_where_the_cuts_are() -> None:
 
 def test_that_fit_shows_all_of_the_picture_and_fill_leaves_nothing_bare() -> None:
     low, high = np.array([1.0, 2.0]), np.array([5.0, 4.0])
-    laid = Laid(chequered(400, 400), fitting=Fitting.FIT)
+    laid = Laid(chequered(400, 400), fitting=PictureFit.FIT)
     factor, shift = laid.map_into(low, high)
     corners = [factor * complex(u, -v) + shift for u, v in ((0, 0), (400, 400))]
     assert corners == pytest.approx([complex(2, 4), complex(4, 2)])
-    factor, shift = replace(laid, fitting=Fitting.FILL).map_into(low, high)
+    factor, shift = replace(laid, fitting=PictureFit.FILL).map_into(low, high)
     left, right = factor * complex(0, 0) + shift, factor * complex(400, -400) + shift
     assert left.real < 1.0 and left.imag > 4.0 and right.real > 5.0 and right.imag < 2.0
     factor, shift = replace(laid, scale=2.0, turn=math.pi, shift=(0.5, 0.0)).map_into(low, high)
@@ -165,9 +167,9 @@ def test_that_fit_shows_all_of_the_picture_and_fill_leaves_nothing_bare() -> Non
 def test_that_two_pictures_share_every_panel_by_stripes_and_lie_in_both_states() -> None:
     sheet = PrintedSheet.of(job_of())
     first, second = chequered(600, 560), chequered(400, 400, seed=1)
-    artwork = Artwork(Laid(first, State.FLAT), second, stripes=40)
+    artwork = Artwork(Laid(first, SheetState.FLAT), second, stripes=40)
     patches = printed_patches(artwork, sheet, 1.0, 0.2)
-    alone = printed_patches(Artwork(Laid(first, State.FLAT)), sheet, 1.0, 0.2)
+    alone = printed_patches(Artwork(Laid(first, SheetState.FLAT)), sheet, 1.0, 0.2)
     over = [patch for patch in patches if patch.picture is second]
     below = [patch for patch in patches if patch.picture is first]
     assert [patch.region for patch in below] == [patch.region for patch in alone]
@@ -192,7 +194,7 @@ def test_that_what_is_transparent_in_the_second_picture_shows_the_first() -> Non
     stream = BytesIO()
     Image.new("RGBA", (50, 50), (0, 0, 0, 0)).save(stream, format="PNG")
     first = Laid(chequered(200, 200))
-    page = Page((0.0, 0.0), (80.0, 100.0), 60.0)
+    page = BitmapFrame((0.0, 0.0), (80.0, 100.0), 60.0)
     alone, shared = (
         np.asarray(paint(printed_patches(artwork, sheet, 1.0, 0.2), page), dtype=int)
         for artwork in (Artwork(first), Artwork(first, picture_of("clear.png", stream.getvalue())))
@@ -216,6 +218,6 @@ def test_that_impossible_numbers_are_refused() -> None:
             printed_patches(Artwork(Laid(picture)), sheet, bleed, 0.1)
         assert caught.value.code == "artwork.impossible_bleed"
     with pytest.raises(ExportError) as caught:
-        Page((0.0, 0.0), (1000.0, 1000.0), 600.0)
+        BitmapFrame((0.0, 0.0), (1000.0, 1000.0), 600.0)
     assert caught.value.code == "artwork.too_many_pixels"
-    assert Page((0.0, 0.0), (1000.0, 1000.0), float(caught.value.fields["most_dpi"]))
+    assert BitmapFrame((0.0, 0.0), (1000.0, 1000.0), float(caught.value.fields["most_dpi"]))

@@ -16,7 +16,7 @@ from PIL import Image
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, State
+from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, SheetState
 from kirigami_studio.export.artwork_files import ArtworkJob, write_artwork
 from kirigami_studio.export.artwork_patches import rings_of
 from kirigami_studio.export.artwork_picture import picture_of
@@ -85,7 +85,7 @@ def test_that_the_print_has_the_frame_of_the_cut_file(
 
 
 def test_that_the_svg_shows_what_the_bitmap_shows(picture: ArtPicture, job: ExportJob, tmp_path: Path) -> None:
-    work = ArtworkJob(Artwork(Laid(picture, State.TARGET)), job, 254.0, margin_mm=5.0)
+    work = ArtworkJob(Artwork(Laid(picture, SheetState.TARGET)), job, 254.0, margin_mm=5.0)
     svg, _, png, _ = write_artwork(work, tmp_path)
     root = ElementTree.parse(svg).getroot()
     (image,) = root.iter(f"{SVG}image")

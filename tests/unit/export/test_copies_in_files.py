@@ -52,7 +52,6 @@ def pieces_of(path: Path, plan: CutPlan) -> int:
     return sum(part.area > 0.01 for part in shapely.get_parts(sheets.difference(burned)))
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("profile", sorted(PROFILES))
 @pytest.mark.parametrize("version", ["R2010", "R12"])
 def test_that_every_profile_holds_the_copies_and_both_readers_and_the_check_find_them(

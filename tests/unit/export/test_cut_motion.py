@@ -21,7 +21,7 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import planned_sheet
 from kirigami_studio.studio.cutting import plan_sheet
 
@@ -105,7 +105,6 @@ def test_that_the_last_frame_shows_where_the_sheet_jams_and_says_so(straight: Ex
     assert np.mean(np.abs(last[: -2 * LETTERS] - other[: -2 * LETTERS]).max(axis=2) > 60) > 0.02
 
 
-@pytest.mark.long
 def test_that_connectors_which_stop_the_sheet_are_red(straight: ExportJob) -> None:
     def red(job: ExportJob) -> int:
         pixels = np.asarray(animation_frames(job, 2, 900)[-1].convert("RGB")).reshape(-1, 3).astype(int)

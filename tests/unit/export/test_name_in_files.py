@@ -65,7 +65,6 @@ def test_that_no_profile_cuts_in_the_colour_or_on_the_layer_of_names() -> None:
     assert {"single", "slots"} == WITHOUT
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("version", ["R2010", "R12"])
 @pytest.mark.parametrize("profile", sorted(PROFILES))
 def test_that_both_readers_and_the_check_find_the_name_and_the_same_cuts(

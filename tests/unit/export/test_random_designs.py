@@ -85,7 +85,6 @@ def check_closed_contours(path: Path) -> None:
     assert found[-1].dxf.layer == "OUTLINE" and {entity.dxf.layer for entity in found[:-1]} == {"SLOTS"}
 
 
-@pytest.mark.long(but=5)
 @pytest.mark.parametrize("seed", range(DESIGNS))
 def test_that_every_profile_passes_for_random_designs(seed: int, make_design: MakeDesign, tmp_path: Path) -> None:
     made = random_job(seed, make_design)
@@ -101,7 +100,6 @@ def test_that_every_profile_passes_for_random_designs(seed: int, make_design: Ma
             check_centre_lines(path, plan, profile)
 
 
-@pytest.mark.long(but=6)
 @pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("seed", range(3))
 def test_that_r12_has_the_geometry_of_r2010_and_no_unit(

@@ -15,6 +15,7 @@ from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.lattice.deployment import Deployment
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,7 @@ def test_that_an_unknown_extension_is_refused_with_the_known_ones(
 
 @pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".lbrn2"])
 def test_that_a_cut_file_without_a_plan_is_refused(extension: str, job: ExportJob, tmp_path: Path) -> None:
-    with pytest.raises(ExportError, match="needs a cut plan"):
+    with refused(ExportError, "export.no_plan"):
         export(ExportJob(job.deployment), tmp_path / f"cut{extension}")
     assert list(tmp_path.iterdir()) == []
 
@@ -67,15 +68,15 @@ def test_that_the_version_and_profile_of_the_job_reach_the_file(job: ExportJob, 
 @pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2"])
 def test_that_a_place_that_cannot_be_written_is_refused_by_name(extension: str, job: ExportJob, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(ExportError, match=r"Cannot write .*Choose another folder"):
+    with refused(ExportError, "file.not_written"):
         export(job, tmp_path / "file" / f"out{extension}")
     folder = tmp_path / f"folder{extension}"
     folder.mkdir()
-    with pytest.raises(ExportError, match="it is a folder"):
+    with refused(ExportError, "file.is_a_folder"):
         export(job, folder)
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere")
 def test_that_a_read_only_folder_is_refused(job: ExportJob, tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(ExportError, match="Cannot write"):

@@ -22,7 +22,6 @@ from kirigami_studio.lattice.deployment import Deployment
 MakeDesign = Callable[..., Deployment]
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize(("tabs", "removed"), [(0, ()), (3, (6, 11))])
 @pytest.mark.parametrize("style", ConnectorStyle)
 def test_that_every_style_passes_in_every_profile(

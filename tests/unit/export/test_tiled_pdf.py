@@ -21,6 +21,7 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment
+from tests.refusals import refused
 
 MakeDesign = Callable[..., Deployment]
 MM = 25.4 / 72.0
@@ -134,9 +135,9 @@ def test_that_cells_fill_the_sheet_and_windows_hold_their_cells(size: tuple[floa
 
 def test_that_unknown_paper_and_too_many_pages_are_refused(make_design: MakeDesign, tmp_path: Path) -> None:
     plan: CutPlan = plan_cuts(make_design(2, 3))
-    with pytest.raises(ExportError, match=r"no paper 'a9'\. Choose one of none, a4, letter"):
+    with refused(ExportError, "paper.unknown", known="none, a4, letter", name="a9"):
         pdf.write_pdf(plan, tmp_path / "sheet.pdf", "a9")
-    with pytest.raises(ExportError, match=r"would need \d+ pages"):
+    with refused(ExportError, "paper.too_many_pages"):
         tile((10_000.0, 10_000.0), "letter")
 
 
@@ -152,7 +153,7 @@ def test_that_a_missing_cut_is_noticed(
             draw(canvas, points, closed)
 
     monkeypatch.setattr(pdf, "draw_line", forgetful)
-    with pytest.raises(ExportError, match="did not read back"):
+    with refused(ExportError, "pdf.other_length"):
         pdf.write_pdf(plan, tmp_path / "sheet.pdf", "a4")
     assert sum(path.layer is Layer.SLITS for path in plan.paths) == 30
 

@@ -97,7 +97,6 @@ def check(deployment: Deployment, target: Outline, phi: float, material: str, ke
     assert rebuilt_iou(path, plan, cut, deployment, target) == pytest.approx(cut.iou, abs=2e-3)
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("keep", [0.08, 0.15, 0.25])
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_that_trimmed_shapes_are_sound_as_files(name: str, keep: float, tmp_path: Path) -> None:
@@ -105,7 +104,6 @@ def test_that_trimmed_shapes_are_sound_as_files(name: str, keep: float, tmp_path
     check(deploy(RatioField.from_log10(z)), SHAPES[name], 0.0, "film-uv", keep, tmp_path)
 
 
-@pytest.mark.long(but=5)
 @pytest.mark.parametrize("seed", range(30))
 def test_that_random_trims_are_sound_as_files(seed: int, tmp_path: Path) -> None:
     random = np.random.default_rng(seed)

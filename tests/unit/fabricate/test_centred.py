@@ -188,7 +188,6 @@ def test_that_single_widths_are_kept(make_design: MakeDesign) -> None:
     np.testing.assert_allclose(plan.hinges.finished_mm[[3, 11, 12]], [0.9, 0.25, 0.4], atol=1e-3)
 
 
-@pytest.mark.long
 def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: MakeDesign) -> None:
     plan = plan_cuts(
         make_design(8, 8, seed=4, spread=0.9),

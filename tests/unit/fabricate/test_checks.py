@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from shapely.geometry import LineString, Polygon, box
+from stopwatch import paced
 
-from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, Layer, plan_cuts
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
@@ -77,12 +77,11 @@ def test_that_a_connector_below_what_the_material_bears_is_a_warning(make_design
     assert [problem.severity for problem in report.problems] == [Severity.WARNING]
 
 
-@pytest.mark.clock
 def test_that_planning_and_checking_576_voids_takes_below_two_seconds(make_design: MakeDesign) -> None:
     design = make_design(24, 24)
-    start = time.process_time()
-    report = check_plan(plan_cuts(design))
-    assert time.process_time() - start < 2.0
+    reports: list[PlanReport] = []
+    assert paced(lambda: reports.append(check_plan(plan_cuts(design))), 1) < 2.0
+    (report,) = reports
     assert report.ok and report.pieces == 1
 
 

@@ -22,7 +22,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import sheet_of_json
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.verdict import Level, assess
 
@@ -78,7 +78,6 @@ def test_that_every_bundled_material_has_a_way_or_says_that_it_cannot() -> None:
     assert CANNOT == ["acrylic-co2", "plywood-co2"]
 
 
-@pytest.mark.long(but=4)
 @pytest.mark.parametrize("key", WAYS)
 def test_that_the_way_of_a_material_passes_every_check(key: str, easy: Mapping[str, Deployment]) -> None:
     for name, design in easy.items():
@@ -87,7 +86,6 @@ def test_that_the_way_of_a_material_passes_every_check(key: str, easy: Mapping[s
             assert problems(design, key, *NARROWER[key]) == [], name
 
 
-@pytest.mark.long(but=3)
 @pytest.mark.parametrize("key", WAYS)
 def test_that_the_way_of_a_material_is_no_failure_when_its_sheets_are_closed(
     key: str, easy: Mapping[str, Deployment]
@@ -104,7 +102,6 @@ def test_that_the_way_of_a_material_is_no_failure_when_its_sheets_are_closed(
         assert found.as_cut.closes == (level is READY), name
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("key", CANNOT)
 def test_that_a_material_that_cannot_fails_in_every_way_and_says_so(key: str, easy: Mapping[str, Deployment]) -> None:
     material, house = presets()[key], easy["house"]

@@ -39,7 +39,6 @@ def plan_for(kind: str, seed: int, style: ConnectorStyle, make_design: MakeDesig
     return plan_cuts(design, 90.0, 0.4, 0.15, options=options, kept=kept)
 
 
-@pytest.mark.long(but=9)
 @pytest.mark.parametrize("style", [ConnectorStyle.CENTRED, ConnectorStyle.TEARDROP, ConnectorStyle.ARC])
 @pytest.mark.parametrize("kind", ["plain", "trimmed", "round"])
 @pytest.mark.parametrize("seed", [0, 4])

@@ -87,7 +87,6 @@ def test_that_removed_connectors_need_no_room(make_design: MakeDesign) -> None:
     assert facing_mm(made)[free].min() > FACING_SPANS * 0.5 - 1e-3 > facing_mm(made)[cut]
 
 
-@pytest.mark.long
 def test_that_what_has_no_room_is_narrower_and_listed(make_design: MakeDesign) -> None:
     plan = planned(make_design(8, 8, seed=4, spread=0.9), 2.2)
     narrowed = plan.hinges.narrowed

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from kirigami_studio.fabricate.routing import Tour, Ways, best_ways, nearest_neighbours, shortest_tour
+from kirigami_studio.fabricate.routing import CuttingOrder, Ways, best_ways, nearest_neighbours, shortest_tour
 
 
 def random_ways(generator: np.random.Generator, count: int) -> list[Ways]:
@@ -75,7 +75,7 @@ def test_that_paths_with_one_direction_keep_it() -> None:
 def test_that_ties_go_to_the_first() -> None:
     places = np.array([3.0 + 0j, 3.0 + 0j])
     paths = [Ways(places, places, True) for _ in range(4)]
-    assert shortest_tour(paths, 0j) == Tour((0, 1, 2, 3), (0, 0, 0, 0), 3.0)
+    assert shortest_tour(paths, 0j) == CuttingOrder((0, 1, 2, 3), (0, 0, 0, 0), 3.0)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

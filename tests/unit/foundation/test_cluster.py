@@ -17,8 +17,7 @@ from distributed import LocalCluster
 from kirigami_studio.foundation import processes
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.processes import Workers, ordered_results_of, results_of
-
-pytestmark = pytest.mark.slow
+from tests.refusals import refused
 
 
 def cube(number: int, marker: Path) -> tuple[int, int]:
@@ -72,12 +71,11 @@ def test_that_an_address_where_nobody_answers_is_refused_soon(monkeypatch: pytes
 
 def test_that_the_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(KirigamiError, match="kirigami-studio") as caught:
+    with refused(KirigamiError, "cluster.package_missing") as caught:
         list(results_of(fail, iter([0]), Workers(scheduler="tcp://127.0.0.1:8786")))
     assert caught.value.code == "cluster.package_missing"
 
 
-@pytest.mark.long
 def test_that_a_scheduler_without_workers_and_one_that_goes_away_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "PATIENCE", 2.0)
     with LocalCluster(n_workers=1, processes=False, threads_per_worker=1, dashboard_address=":0") as small:

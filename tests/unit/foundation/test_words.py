@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 from babel.messages.catalog import Catalog
-from babel.messages.pofile import write_po
 
-from kirigami_studio.foundation.words import DOMAIN, FOLDER_VARIABLE, tr, tr_n
+from kirigami_studio.foundation.words import FOLDER_VARIABLE, LANGUAGE_VARIABLE, environment_languages, tr, tr_n
+from tests.catalogues import write_compiled
 
 
 def test_that_english_is_said_as_it_is_written() -> None:
@@ -29,10 +29,7 @@ def test_that_a_catalogue_of_the_users_language_is_read(tmp_path: Path) -> None:
     catalogue = Catalog("de")
     catalogue.add("Reading {name} …", "{name} wird gelesen …")
     catalogue.add(("One design", "{count} designs"), ("Ein Entwurf", "{count} Entwürfe"))
-    folder = tmp_path / "de" / "LC_MESSAGES"
-    folder.mkdir(parents=True)
-    with (folder / f"{DOMAIN}.po").open("wb") as stream:
-        write_po(stream, catalogue)
+    write_compiled(catalogue, tmp_path, "de")
     program = (
         "from kirigami_studio.foundation.words import tr, tr_n\n"
         "print(tr('Reading {name} …', name='x'), tr_n('One design', '{count} designs', 4), tr('Undo'))"
@@ -42,3 +39,14 @@ def test_that_a_catalogue_of_the_users_language_is_read(tmp_path: Path) -> None:
         [sys.executable, "-c", program], env=env, capture_output=True, text=True, encoding="utf-8", check=True
     )
     assert done.stdout.strip() == "x wird gelesen … 4 Entwürfe Undo"
+
+
+def test_that_a_damaged_value_is_written_plainly() -> None:
+    assert tr("{name:.40} is {size:.1f} mm wide.", name=["a"], size="wide") == "['a'] is wide mm wide."
+
+
+def test_that_the_language_of_this_program_comes_before_that_of_the_desktop(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LANGUAGE", "fr:en")
+    assert environment_languages() == ("fr", "en")
+    monkeypatch.setenv(LANGUAGE_VARIABLE, "de_AT.UTF-8")
+    assert environment_languages() == ("de_AT",)

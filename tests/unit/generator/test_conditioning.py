@@ -106,7 +106,6 @@ def test_that_the_noise_of_single_contour_points_averages_out() -> None:
     assert mean < 0.7 * single
 
 
-@pytest.mark.long
 def test_that_smoothing_keeps_straight_edges_straight_and_corners_within_half_a_spacing() -> None:
     polygon = normalised(rectangle(3.0, 2.0))
     points, sharp = smoothed_points(polygon, 100)[0], contour_points(polygon, 100)[0]
@@ -120,7 +119,6 @@ def test_that_smoothing_keeps_straight_edges_straight_and_corners_within_half_a_
     assert 0.01 * spacing < float(moved.max()) < 0.3 * spacing
 
 
-@pytest.mark.long
 def test_that_smoothed_points_go_round_like_contour_points_on_every_outline_of_a_batch() -> None:
     wide, tall = (normalised(rectangle(*sides)) for sides in ((3.0, 2.0), (1.0, 2.0)))
     both = smoothed_points(torch.cat([wide, tall]), 64)

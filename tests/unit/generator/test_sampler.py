@@ -130,7 +130,6 @@ def test_that_the_angle_is_taken_into_account(corrector: Model) -> None:
     assert mean_match(opened, target, 0.6) > mean_match(flat, target, 0.6)
 
 
-@pytest.mark.long
 def test_that_another_grid_is_matched_better_than_by_carrying_fields_over(model: Model, corrector: Model) -> None:
     heart = load("heart")
     own = sample_fields(model, heart, (10, 10), 16, 0, 4)

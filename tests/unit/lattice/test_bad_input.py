@@ -12,6 +12,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
+from tests.refusals import refused
 
 
 def one_wrong(value: float) -> np.ndarray:
@@ -90,7 +91,7 @@ def test_that_exponents_that_are_no_table_are_refused(z: object) -> None:
 
 @pytest.mark.parametrize("cell", [(0.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (1.0,), ("wide", 1.0)])
 def test_that_an_impossible_cell_is_refused(cell: tuple[float, ...]) -> None:
-    with pytest.raises(UsageError, match="cell"):
+    with refused(UsageError, "cell.not_positive"):
         Sheet(RatioField.uniform(3, 3), cell=cell)  # type: ignore[arg-type]
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
+from stopwatch import paced
 
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
 from kirigami_studio.foundation.errors import MechanicsError
@@ -201,7 +201,6 @@ def test_that_the_force_at_the_grips_does_the_work(design: Deployment, found: Ju
     assert np.trapezoid(path.force, drive.displacement) == pytest.approx(path.energy[-1], rel=0.01)
 
 
-@pytest.mark.long
 def test_that_two_corners_do_not_lead_a_large_sheet_but_the_grips_that_are_found_do() -> None:
     large = deploy(RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, (6, 6))))
     sheet = as_cut(junctions(large, WIDTH_MM), 0.05, True)
@@ -360,11 +359,9 @@ def vars_of(sheet: SheetNetwork) -> dict[str, np.ndarray]:
     return {"turning": joints.turning, "stretching": joints.stretching, "shearing": joints.shearing}
 
 
-@pytest.mark.clock
-@pytest.mark.slow
 def test_that_a_large_sheet_closes_in_seconds() -> None:
     large = deploy(RatioField.from_log10(np.random.default_rng(0).uniform(-0.3, 0.3, (24, 24))))
     sheet = as_cut(junctions(large, 200.0), 0.2, True)
-    began = time.perf_counter()
-    assert closing(sheet).jam_phi() == 0.0
-    assert time.perf_counter() - began < 60.0
+    angles: list[float] = []
+    assert paced(lambda: angles.append(closing(sheet).jam_phi()), 1) < 60.0
+    assert angles == [0.0]

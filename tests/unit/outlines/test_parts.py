@@ -15,8 +15,9 @@ from kirigami_studio.outlines import read_svg
 from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import MOST_PARTS, PartKind, SourceParts
+from kirigami_studio.outlines.parts import MOST_PARTS, DrawnPartKind, SourceParts
 from kirigami_studio.outlines.read import read_parts
+from tests.refusals import refused
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "targets"
 LAYER = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer"'
@@ -36,9 +37,9 @@ def logo(svg) -> SourceParts:
 def test_that_parts_have_names_layers_colours_kinds_and_sizes(logo) -> None:
     told = [(part.name, part.layer, part.colour, part.kind) for part in logo.parts]
     assert told == [
-        ("disc", "Badge", "#c03030", PartKind.FILLED),
-        ("ring", "Badge", "#0000ff", PartKind.FILLED),
-        ("swoosh", "Line", "#108040", PartKind.STROKED),
+        ("disc", "Badge", "#c03030", DrawnPartKind.FILLED),
+        ("ring", "Badge", "#0000ff", DrawnPartKind.FILLED),
+        ("swoosh", "Line", "#108040", DrawnPartKind.STROKED),
     ]
     assert [part.size for part in logo.parts] == [pytest.approx(size) for size in ((40, 40), (40, 40), (100, 0))]
     assert logo.parts[2].pen.width == pytest.approx(5.0) and logo.unit == "mm"
@@ -67,7 +68,7 @@ def test_that_parts_are_chosen_by_name_number_layer_and_colour(words, names, log
 
 
 def test_that_an_unknown_name_is_refused_with_those_there_are(logo) -> None:
-    with pytest.raises(KirigamiError, match=r"no layer called 'disk'.*Badge, Line, disc, ring, swoosh"):
+    with refused(KirigamiError, "parts.unknown", name="disk", names="Badge, Line, disc, ring, swoosh"):
         logo.chosen("disk")
 
 
@@ -80,6 +81,13 @@ def test_that_one_part_is_taken_with_its_size_and_the_rest_is_told(logo, iou) ->
     assert outline.size == pytest.approx((40, 40)) and outline.name == "ring"
     assert iou(outline, Outline.from_points(np.asarray(box(0, 0, 1, 1).exterior.coords))) > 0.999
     assert outline.notes == ("2 parts were left out: disc, swoosh.", "Holes were filled (25 % of the area).")
+
+
+def test_that_one_part_without_a_name_of_its_own_is_called_as_its_drawing(svg) -> None:
+    """Before, the target and all its files were called "shape 1"."""
+    source = read_parts(svg('<rect width="50" height="50"/><rect x="90" id="door" width="20" height="20"/>'))
+    assert [part.name for part in source.parts] == ["shape 1", "door"]
+    assert outlined(source, "shape 1").name == source.name and outlined(source, "door").name == "door"
 
 
 def test_that_parts_that_do_not_touch_are_united_to_the_largest_and_that_is_said(logo) -> None:
@@ -138,7 +146,7 @@ def test_that_strokes_scale_with_their_group(svg) -> None:
 def test_that_an_open_drawing_has_an_outline_as_painted_that_is_refused_otherwise(svg) -> None:
     source = read_parts(svg('<path fill="none" stroke="red" stroke-width="6" d="M10 10h80v80h-80v-50"/>'))
     assert source.is_ambiguous
-    with pytest.raises(TargetError, match="enclose no area"):
+    with refused(TargetError, "parts.no_area"):
         merged(source, source.parts, Merging())
     assert merged(source, source.parts, Merging(as_painted=True)).outline.size == pytest.approx((86, 86))
 
@@ -189,8 +197,8 @@ def test_that_texts_of_an_svg_are_letters_on_a_layer_of_their_own(svg) -> None:
     body = '<text x="50" y="40" font-size="20" text-anchor="middle" font-family="No Such Family">HI</text>'
     source = read_parts(svg(body, MM))
     assert [(part.name, part.layer, part.kind) for part in source.parts] == [
-        ("H", "HI", PartKind.FILLED),
-        ("I", "HI", PartKind.FILLED),
+        ("H", "HI", DrawnPartKind.FILLED),
+        ("I", "HI", DrawnPartKind.FILLED),
     ]
     left, right = source.parts[0].bounds, source.parts[1].bounds
     assert left[1] == pytest.approx(-40) and 12 < left[3] - left[1] < 17  # on the base line, as high as capitals are
@@ -252,9 +260,9 @@ def test_that_the_largest_of_open_lines_is_taken_and_refused_for_want_of_an_area
     source = read_parts(svg('<path d="M10 10L60 10M10 30L70 30" stroke="black" fill="none"/>'))
     largest = source.chosen("largest")
     assert [part.size[0] for part in largest] == [60.0]
-    with pytest.raises(TargetError) as refused:
+    with pytest.raises(TargetError) as caught:
         merged(source, largest, Merging())
-    assert refused.value.code == "parts.no_area"
+    assert caught.value.code == "parts.no_area"
 
 
 def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
@@ -262,7 +270,6 @@ def test_that_pieces_of_one_path_are_parts_of_their_own(svg) -> None:
     assert [part.name for part in source.parts] == ["word (1)", "word (2)"]
 
 
-@pytest.mark.long
 def test_that_the_smallest_of_too_many_parts_are_left_out_and_said(svg) -> None:
     many = "".join(f'<circle cx="{9 * k}" r="{1 + k / 1000}"/>' for k in range(MOST_PARTS + 20))
     source = read_parts(svg(many))

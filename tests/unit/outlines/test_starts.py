@@ -52,7 +52,8 @@ def test_that_impossible_numbers_are_refused(text: str) -> None:
 def test_that_a_shape_of_any_source_is_at_most_as_long_as_a_named_one() -> None:
     assert outline_start(Outline.from_points([[0, 0], [4.9, 0], [4.9, 1], [0, 1]])).outline is not None
     for length in (5.5, 1e3):
-        slat = Outline.from_points(turned(np.array([[0.0, 0.0], [length, 0.0], [length, 1.0], [0.0, 1.0]]), 0.3), "slat")
+        level = np.array([[0.0, 0.0], [length, 0.0], [length, 1.0], [0.0, 1.0]])
+        slat = Outline.from_points(turned(level, 0.3), "slat")
         with pytest.raises(SheetError) as refused:
             outline_start(slat)
         assert refused.value.code == "start.too_long" and "slat" in str(refused.value)

@@ -13,6 +13,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_svg import read_svg
+from tests.refusals import refused
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "targets"
 DISC = Outline.from_points(np.asarray(Point(0, 0).buffer(1, quad_segs=256).exterior.coords))
@@ -150,7 +151,7 @@ def test_that_what_was_changed_is_said(body, word, svg) -> None:
     ],
 )
 def test_that_what_has_no_outline_is_refused_with_advice(body, word, svg) -> None:
-    with pytest.raises(TargetError, match=r"^drawing\.svg: ") as caught:
+    with refused(TargetError, "source.not_usable", name="drawing.svg") as caught:
         read_svg(svg(body))
     assert word in str(caught.value)
 

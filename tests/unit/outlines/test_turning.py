@@ -14,7 +14,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.outlines import turning
-from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, figure
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.rounding import rounded
 from kirigami_studio.outlines.turning import turn_back
@@ -32,7 +32,7 @@ def every_turn_back(points: np.ndarray) -> float:
 
 @pytest.mark.parametrize("kind", [Figure.RECTANGLE, Figure.ELLIPSE, Figure.REGULAR])
 def test_that_convex_outlines_do_not_turn_back(kind) -> None:
-    found = turn_back(Outline.from_points(figure(kind, Box(0, 0, 10, 7), 5)))
+    found = turn_back(Outline.from_points(figure(kind, BoundingBox(0, 0, 10, 7), 5)))
     assert found.angle == 0.0
     assert len(found.stretch) == 0
 

@@ -39,7 +39,7 @@ def run() -> Result:
         Candidate(sheet.sheet, replace(score, iou_exact=iou), seed=0, index=number)
         for number, iou in enumerate((0.99, 0.98, 0.90))
     )
-    return Result(Request(target, (3, 3), k=3, regular=0.0), candidates, 3, 0.0)
+    return Result(Request(target, (3, 3), k=3, regular=0.0, polish=0), candidates, 3, 0.0)
 
 
 def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:

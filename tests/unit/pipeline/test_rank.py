@@ -175,7 +175,6 @@ def test_that_a_fit_may_give_match_away_for_evenness(design: Candidate) -> None:
     assert Ranking(0.0).improves(before, after, "balanced")
 
 
-@pytest.mark.long
 @pytest.mark.torch
 def test_that_runs_get_calmer_with_the_preference() -> None:
     heart = silhouettes.load("heart")

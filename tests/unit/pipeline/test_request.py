@@ -32,24 +32,24 @@ def test_that_what_no_run_can_do_is_refused(code: str, changes: dict[str, Any]) 
 
 
 def test_that_an_open_grid_is_chosen_once_and_a_given_one_stays() -> None:
-    request = Request(load("heart"), None)
+    request = Request(load("heart"), None, polish=0)
     with pytest.raises(UsageError) as caught:
         _ = request.chosen_grid
     assert caught.value.code == "request.grid_not_chosen"
     chosen = with_grid(request)
     assert chosen.grid == chosen.chosen_grid and chosen.grid_chosen and with_grid(chosen) == chosen
-    given = Request(load("heart"), (4, 6))
+    given = Request(load("heart"), (4, 6), polish=0)
     assert with_grid(given) is given and given.resolved((8, 8)) is given and not given.grid_chosen
 
 
 def test_that_a_run_tells_how_its_sheets_had_to_be() -> None:
-    request = Request(load("heart"), (4, 6), symmetry="mirror", rim="even", regular=0.25)
+    request = Request(load("heart"), (4, 6), symmetry="mirror", rim="even", regular=0.25, polish=0)
     told = provenance(request, "ab" * 32)
     assert told.items() >= {"symmetry": "mirror", "rim": "even", "regular": "0.25"}.items()
     assert "grid_choice" not in told
-    assert provenance(Request(load("heart"), None).resolved((4, 6)), "ab" * 32)["grid_choice"] == "auto"
+    assert provenance(Request(load("heart"), None, polish=0).resolved((4, 6)), "ab" * 32)["grid_choice"] == "auto"
 
 
 def test_that_the_papers_setting_has_an_even_rim_and_ranks_by_match() -> None:
-    request = as_in_paper(Request(load("heart"), (4, 6), k=3))
+    request = as_in_paper(Request(load("heart"), (4, 6), k=3, polish=0))
     assert (request.rim, request.symmetry, request.regular, request.k) == ("even", "none", 0.0, 3)

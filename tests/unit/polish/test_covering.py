@@ -16,9 +16,10 @@ from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.matching import outer_hinges
-from kirigami_studio.polish.objective import Objective, Stage
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.objective import FitPhase, Objective
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -55,13 +56,13 @@ def test_that_a_stopped_cover_is_the_trim_of_the_given_field(polished: Fit, drop
 
 
 def test_that_an_impossible_depth_is_refused(polished: Fit, drop: Outline) -> None:
-    with pytest.raises(UsageError, match="cells deep"):
+    with refused(UsageError, "trim.keep_out_of_range"):
         fit_cover(polished.field, drop, keep=2.0)
 
 
 @pytest.mark.parametrize("excess", [-0.1, 1.5, float("nan")])
 def test_that_an_impossible_weight_of_excess_is_refused(excess: float, drop: Outline) -> None:
-    with pytest.raises(UsageError, match="sticks out must be a number from 0 to 1"):
+    with refused(UsageError, "fit.excess_out_of_range"):
         polish(RatioField.uniform(4, 4), drop, steps=1, excess=excess)
 
 
@@ -78,8 +79,8 @@ def test_that_with_little_weight_on_excess_less_of_the_target_is_missed(polished
 def test_that_the_gradient_with_little_weight_on_excess_is_that_of_differences(phi: float, drop: Outline) -> None:
     model = OutlineModel(4, 5, phi)
     z = np.random.default_rng(1).uniform(-0.3, 0.3, 20)
-    terms = PreferenceTerms(Preference(), z, 4, 5)
-    objective = Objective(model, BoundaryTarget.of(drop, 64), terms, Stage(0, 0.01), excess=0.1)
+    terms = FieldPreferenceTerms(Preference(), z, 4, 5)
+    objective = Objective(model, BoundaryTarget.of(drop, 64), terms, FitPhase(0, 0.01), excess=0.1)
     state = np.concatenate([z, [np.log(0.19), 0.2, -0.5, 0.5]])
     look = objective.look(state)
     gradient = objective.gradient(look, objective.slopes(look))

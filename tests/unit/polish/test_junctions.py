@@ -48,7 +48,7 @@ def test_that_slopes_are_exact() -> None:
 def test_that_a_fit_with_the_term_opens_shallow_junctions_at_nearly_the_same_match(name: str) -> None:
     def fitted(weight: float) -> tuple[float, float]:
         stages = [*cooled(3e-4)[:-1], replace(cooled(3e-4)[-1], junctions=weight)]
-        fit = polish(RatioField.uniform(6, 7), load(name), stages=stages, free_rim=True)
+        fit = polish(RatioField.uniform(6, 7), load(name), phases=stages, free_rim=True)
         design = deploy(fit.sheet)
         shallow = junctions(design.compact, 6, 7).shallower(OPEN)
         return float(np.square(OPEN - shallow.sine).sum()), evaluate(design, load(name)).iou_exact

@@ -18,15 +18,16 @@ from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.pipeline.request import POLISH_STEPS, Request
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, SearchTask, TrimTask, scored
-from kirigami_studio.polish.continuation import Way, Wishes, fit_from_uniform
+from kirigami_studio.polish.continuation import FitOptions, Way, fit_from_uniform
 from kirigami_studio.polish.levenberg import polish
-from kirigami_studio.polish.objective import Stage
+from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.panel_size import least_in_cells
 from kirigami_studio.polish.symmetry import shared_symmetries
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.design import POLISH_STEPS
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import plan_of, room_mm
 
 
@@ -49,8 +50,8 @@ def test_that_a_fit_from_a_sheet_that_keeps_the_size_still_keeps_it(seed: int) -
     # The target is the outline of a sheet with smaller panels, so that the match pulls below the bound.
     other = deploy(random_sheet(rows, columns, 100 + seed))
     target, least = Outline.from_points(other.outline(0.4)), 0.98 * smallest(start)
-    stages = [Stage(15, even=0.0 if seed % 2 else 1e-4)]
-    fit = polish(start, target, 0.4, stages=stages, least_panel=least, free_rim=seed % 3 > 0)
+    stages = [FitPhase(15, even=0.0 if seed % 2 else 1e-4)]
+    fit = polish(start, target, 0.4, phases=stages, least_panel=least, free_rim=seed % 3 > 0)
     assert fit.steps > 0
     assert smallest(fit.sheet) >= least
 
@@ -71,9 +72,9 @@ def test_that_a_bound_is_kept_inside_a_symmetry(symmetry: Symmetry) -> None:
     name = {Symmetry.LEFT_RIGHT: "butterfly", Symmetry.HALF_TURN: "gear"}[symmetry]
     grid, target = ((7, 7) if symmetry is Symmetry.LEFT_RIGHT else (6, 6)), load(name)
     pose = next(one for one in shared_symmetries(target, grid) if one.symmetry is symmetry)
-    wishes = Wishes(least_panel=0.3, free_rim=True, even=1e-4)
+    options = FitOptions(least_panel=0.3, free_rim=True, even=1e-4)
     angle = 0.0 if pose.angle is None else pose.angle - 0.5 * math.pi
-    fit = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, wishes, symmetry)
+    fit = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, options, symmetry)
     assert 0.3 <= smallest(fit.sheet) < 0.3 + 1e-4
     assert symmetry_of(fit.sheet) is not None
 
@@ -93,7 +94,7 @@ def test_that_a_fit_that_cannot_keep_the_size_is_told_to_be_too_thin() -> None:
     locked = ratio > 1.0
     fit = polish(RatioField(ratio), load("circle"), steps=10, least_panel=0.4, locked=locked)
     assert smallest(fit.sheet) < 0.4
-    request = Request(load("circle"), (4, 4), width_mm=100.0, least_feature_mm=8.0)
+    request = Request(load("circle"), (4, 4), width_mm=100.0, least_feature_mm=8.0, polish=0)
     (found,) = scored(request, [fit.sheet], 0, fitted=True)
     (note,) = Ranking.of(request).reasons([found])
     assert note.code == "rank.too_thin"
@@ -108,7 +109,6 @@ def test_that_no_step_is_taken_where_all_sizes_are_kept_and_none_without_steps()
     assert np.array_equal(still.field.ratio, plain.field.ratio)
 
 
-@pytest.mark.long
 def test_that_the_size_is_kept_by_every_task_of_a_run() -> None:
     target = load("star")
     request = Request(target, (4, 4), k=4, polish=10, search=1, least_panel=0.4, trim=True)
@@ -127,24 +127,26 @@ def test_that_the_size_is_kept_by_every_task_of_a_run() -> None:
 
 def test_that_the_material_asks_for_a_size_in_cells() -> None:
     target = load("heart")
-    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=2.0).kept_size == pytest.approx(0.2)
-    assert Request(target, (10, 11), least_panel=0.3, width_mm=120.0, least_feature_mm=2.0).kept_size == 0.3
-    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=9.5).kept_size == 0.0
-    assert Request(target, (10, 11)).kept_size == 0.0
-    without_grid = Request(target, None, least_panel=0.3, width_mm=10.0, least_feature_mm=2.0)
-    assert without_grid.kept_size == without_grid.wishes.least_panel == 0.3
+    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=2.0, polish=0).kept_size == pytest.approx(0.2)
+    assert Request(target, (10, 11), least_panel=0.3, width_mm=120.0, least_feature_mm=2.0, polish=0).kept_size == 0.3
+    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=9.5, polish=0).kept_size == 0.0
+    assert Request(target, (10, 11), polish=0).kept_size == 0.0
+    without_grid = Request(target, None, least_panel=0.3, width_mm=10.0, least_feature_mm=2.0, polish=0)
+    assert without_grid.kept_size == without_grid.fit_options.least_panel == 0.3
     assert least_in_cells(1.0, 10.0, 4.0) == pytest.approx(0.4)
 
 
 def test_that_connectors_ask_for_room_beside_them() -> None:
     target = load("heart")
-    room = Request(target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=2.0)
+    room = Request(target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=2.0, polish=0)
     assert room.kept_size == pytest.approx(0.2)
     # Where no sheet has so much room, what the material needs is kept still.
-    assert Request(target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=9.5).kept_size == pytest.approx(0.1)
+    assert Request(
+        target, (10, 11), width_mm=120.0, least_feature_mm=1.0, room_mm=9.5, polish=0
+    ).kept_size == pytest.approx(0.1)
     for size in (-1.0, float("nan"), float("inf")):
         with pytest.raises(UsageError) as caught:
-            Request(target, (10, 11), room_mm=size)
+            Request(target, (10, 11), room_mm=size, polish=0)
         assert caught.value.code == "request.least_feature_out_of_range"
     # A sheet of 100 mm in film, and wide connectors on it.
     narrow, wide = FabricationSettings(connector_mm=0.2), FabricationSettings(connector_mm=1.0)
@@ -152,7 +154,6 @@ def test_that_connectors_ask_for_room_beside_them() -> None:
     assert room_mm(FabricationSettings(material="card-co2", kerf_mm=0.1)) == pytest.approx(2.85)
 
 
-@pytest.mark.long
 def test_that_wide_connectors_keep_their_width_on_a_design_that_was_made_for_them() -> None:
     settings = FabricationSettings(connector_mm=1.4, width_mm=60.0)
     made = {}
@@ -176,7 +177,7 @@ def test_that_a_fit_goes_on_where_a_step_leaves_no_size_near_the_bound(
     grid: tuple[int, int], seed: int, target: str
 ) -> None:
     start = RatioField.from_log10(np.random.default_rng(seed).uniform(-0.9, 0.9, grid))
-    fit = polish(start, load(target), stages=[Stage(2, even=9e-4)], least_panel=0.0912, free_rim=True)
+    fit = polish(start, load(target), phases=[FitPhase(2, even=9e-4)], least_panel=0.0912, free_rim=True)
     assert smallest(fit.sheet) > 0.0912
 
 

@@ -57,7 +57,7 @@ def test_that_a_fit_with_the_term_has_more_even_panels_at_nearly_the_same_match(
 
     def fitted(over: float) -> tuple[float, float]:
         with patch.object(even_panels, "over_even", lambda sheet: over):
-            design = deploy(polish(first, target, stages=cooled(3e-4), free_rim=True).sheet)
+            design = deploy(polish(first, target, phases=cooled(3e-4), free_rim=True).sheet)
         return evenness(design).area_cv, evaluate(design, target).iou_exact
 
     (uneven, iou), (even, beside) = fitted(0.0), fitted(OVER_EVEN)

@@ -17,6 +17,7 @@ from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.sensitivity import OutlineModel
+from tests.refusals import refused
 
 
 def random_field(rows: int, columns: int, seed: int = 3) -> RatioField:
@@ -60,5 +61,5 @@ def test_that_a_least_size_widens_the_smallest_panel_at_little_cost_of_shape() -
 
 @pytest.mark.parametrize("least", [-0.1, 1.0, math.nan])
 def test_that_a_least_size_must_make_sense(least: float) -> None:
-    with pytest.raises(UsageError, match="least panel size"):
+    with refused(UsageError, "fit.least_panel_out_of_range"):
         polish(RatioField.uniform(4, 4), load("circle"), steps=1, least_panel=least)

@@ -15,7 +15,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.symmetry import Symmetry, has_symmetry
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.polish.continuation import Way, Wishes, fit_from_uniform
+from kirigami_studio.polish.continuation import FitOptions, Way, fit_from_uniform
 from kirigami_studio.polish.levenberg import polish
 
 HALF = SecondTarget(load("ellipse"), math.radians(60.0), 1.0)
@@ -47,9 +47,9 @@ def test_that_a_light_second_target_costs_less_of_the_first() -> None:
 
 
 def test_that_a_fit_with_a_least_size_and_a_symmetry_keeps_both() -> None:
-    wishes = Wishes(least_panel=0.2, free_rim=True, even=1e-3, second=HALF)
+    options = FitOptions(least_panel=0.2, free_rim=True, even=1e-3, second=HALF)
     symmetry = Symmetry.LEFT_RIGHT
-    fit = fit_from_uniform(load("heart"), (6, 7), 0.0, 0.0, Way.COOLED, wishes, symmetry)
+    fit = fit_from_uniform(load("heart"), (6, 7), 0.0, 0.0, Way.COOLED, options, symmetry)
     assert has_symmetry(fit.sheet, symmetry)
     assert np.all(np.isfinite(fit.sheet.field.ratio)) and fit.second_pose is not None
 

@@ -18,10 +18,10 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import HOLLOW_WEIGHT, WEIGHT, Chords
-from kirigami_studio.polish.continuation import Way, Wishes, first_angles, fit_from_uniform, lifted
+from kirigami_studio.polish.continuation import FitOptions, Way, first_angles, fit_from_uniform, lifted
 from kirigami_studio.polish.flat_sheet import can_have, uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import Objective
-from kirigami_studio.polish.preferences import Preference, PreferenceTerms
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.symmetry import shared_symmetries
 
@@ -66,7 +66,7 @@ def test_that_the_objective_has_its_exact_slopes() -> None:
     model = OutlineModel.of(sheet, 0.0, free_rim=True)
     random = np.random.default_rng(4)
     shape = np.concatenate([random.uniform(-0.2, 0.2, 20), 0.6 * (-1.0) ** np.arange(9)])
-    terms = PreferenceTerms(Preference(), shape[:20], 4, 5)
+    terms = FieldPreferenceTerms(Preference(), shape[:20], 4, 5)
     state = np.concatenate([shape, [np.log(0.2), 0.0, -0.5, 0.5]])
     objective = Objective(model, BoundaryTarget.of(load("egg"), 64), terms)
     without = Objective(OutlineModel.of(sheet, 0.0, free_rim=True), objective.target, terms)
@@ -88,8 +88,8 @@ def test_that_a_fit_keeps_start_and_symmetry(name: str, start: StartShape) -> No
     grid, target = (10, 11), load(name)
     angle, symmetry = first_angles(target, grid, 1, "auto", start)[0]
     assert symmetry is Symmetry.LEFT_RIGHT
-    wishes = Wishes(free_rim=True, even=3e-4, start=start)
-    fit = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, wishes, symmetry)
+    options = FitOptions(free_rim=True, even=3e-4, start=start)
+    fit = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, options, symmetry)
     uniform = uniform_sheet(grid, start)
     assert np.array_equal(fit.sheet.start, uniform.start) and not fit.sheet.has_even_rim
     assert symmetry_of(fit.sheet) is symmetry
@@ -104,8 +104,8 @@ def test_that_a_softer_start_gives_way_for_a_better_match() -> None:
     angle, symmetry = first_angles(target, grid, 1, "auto", CIRCLE)[0]
 
     def made(weight: float) -> tuple[float, float]:
-        wishes = Wishes(free_rim=True, even=3e-4, start=replace(CIRCLE, weight=weight))
-        sheet = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, wishes, symmetry).sheet
+        options = FitOptions(free_rim=True, even=3e-4, start=replace(CIRCLE, weight=weight))
+        sheet = fit_from_uniform(target, grid, 0.0, angle, Way.COOLED, options, symmetry).sheet
         return start_error(sheet), evaluate(deploy(sheet), target).iou_exact
 
     (firm_error, firm), (soft_error, soft) = made(1.0), made(0.01)

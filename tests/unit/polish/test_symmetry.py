@@ -130,7 +130,6 @@ def test_that_a_fit_keeps_the_symmetry_it_was_given() -> None:
     assert np.ptp(fit.field.log10) > 0.5
 
 
-@pytest.mark.long
 def test_that_the_search_makes_a_symmetric_sheet_for_a_round_target() -> None:
     best = fit_shape(load("circle"), (4, 4))[0]
     assert Symmetry.QUARTER_TURN.symmetric(best.field.log10) == pytest.approx(best.field.log10, abs=1e-8)

@@ -20,7 +20,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.starts import RECTANGLE, outline_start, start_shape
 from kirigami_studio.polish.chords import Chords
-from kirigami_studio.polish.continuation import Way, Wishes, fit_from_uniform
+from kirigami_studio.polish.continuation import FitOptions, Way, fit_from_uniform
 from kirigami_studio.polish.flat_sheet import first_sheet, uniform_sheet
 from kirigami_studio.polish.unfolding import _folds, unfolded
 
@@ -91,7 +91,7 @@ def test_that_what_chords_cut_off_and_add_is_the_difference_of_both_shapes() -> 
 def test_that_a_heart_becomes_a_circle_without_a_panel_turned_over() -> None:
     start = start_shape("heart")
     fit = fit_from_uniform(
-        load("circle"), (7, 7), 0.0, 0.0, Way.COOLED, Wishes(free_rim=True, even=1e-3, least_panel=0.1, start=start)
+        load("circle"), (7, 7), 0.0, 0.0, Way.COOLED, FitOptions(free_rim=True, even=1e-3, least_panel=0.1, start=start)
     )
     deployment = deploy(fit.sheet)
     assert invalid_quads(deployment, math.pi) == invalid_quads(deployment, 0.0) == 0

@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.evenness import evenness
-from kirigami_studio.evaluate.feasibility import Contact
-from kirigami_studio.evaluate.score import Score
-from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 @pytest.fixture
@@ -27,29 +25,14 @@ def pentagon() -> Outline:
 
 
 @pytest.fixture
-def candidates() -> tuple[Candidate, ...]:
+def candidates(pentagon: Outline) -> tuple[Candidate, ...]:
     rng = np.random.default_rng(7)
-    return tuple(_candidate(RatioField.from_log10(rng.uniform(-1, 1, (4, 5))), index) for index in range(3))
+    return tuple(_candidate(RatioField.from_log10(rng.uniform(-1, 1, (4, 5))), index, pentagon) for index in range(3))
 
 
-def _candidate(field: RatioField, index: int) -> Candidate:
-    contact = Contact(0.25, (1.5, -2.125)) if index == 1 else None
-    score = Score(
-        siou=0.9 + index / 30,
-        siou_gain=0.1 / 3,
-        uniform_siou=0.8,
-        iou_exact=0.91,
-        uniform_iou=0.79,
-        tv=1.7,
-        tv_log10=0.3,
-        feasible=contact is None,
-        n_invalid=0,
-        overlap_ratio=1e-17,
-        contact=contact,
-        transform=Similarity(0.1234567890123, -0.7, (0.1, -0.2)),
-        evenness=evenness(deploy(field)),
-    )
+def _candidate(field: RatioField, index: int, target: Outline) -> Candidate:
     drawn = Sheet.uniform(4, 5) if index == 2 else None
+    score = evaluate(deploy(field), target)
     return Candidate(
         Sheet(field), score, seed=11, index=index, polished=index == 2, sampled_sheet=drawn, variant="prior"
     )
@@ -59,7 +42,9 @@ def _candidate(field: RatioField, index: int) -> Candidate:
 def document(pentagon: Outline, candidates: tuple[Candidate, ...]) -> Document:
     return Document(
         target=pentagon,
-        settings=DesignSettings((4, 5), 0.125, 3, 11, "prior", 8, 5, prefer="calm", search=2),
+        settings=DesignSettings(
+            (4, 5), phi=0.125, k=3, seed=11, variant="prior", steps=8, polish=5, prefer="calm", search=2
+        ),
         candidates=candidates,
         chosen=1,
         fabrication=FabricationSettings(width_mm=120.0, connector_mm=0.35, kerf_mm=0.0),

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.export.artwork import Artwork, Fitting, Laid, State
+from kirigami_studio.export.artwork import Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_picture import picture_of
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.project import edits
@@ -27,7 +27,7 @@ def artwork(kind: str = "PNG") -> Artwork:
     pixels = np.random.default_rng(4).integers(0, 255, (60, 80, 3), dtype=np.uint8)
     Image.fromarray(pixels).save(stream, format=kind)
     picture = picture_of("sun rise.png", stream.getvalue())
-    return Artwork(Laid(picture, State.FLAT, Fitting.FIT, 1.25, -0.5, (0.1, -0.2)))
+    return Artwork(Laid(picture, SheetState.FLAT, PictureFit.FIT, 1.25, -0.5, (0.1, -0.2)))
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG"])

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from stopwatch import fastest
+from stopwatch import paced
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -20,7 +20,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import (
     Outcome,
     SimulatedSheet,
@@ -134,7 +134,7 @@ def test_that_every_connector_has_its_node_and_its_stretch(straight: SimulatedSh
 
 def test_that_an_estimate_at_ten_by_ten_takes_milliseconds() -> None:
     design = deploy(RatioField.from_log10(np.random.default_rng(1).uniform(-0.3, 0.3, (10, 10))))
-    assert fastest(lambda: estimate(design, CENTRED, 0.0)) < 0.02
+    assert paced(lambda: estimate(design, CENTRED, 0.0)) < 0.02
 
 
 def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deployment, target: Outline) -> None:
@@ -142,7 +142,7 @@ def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deploy
     irregular = Candidate(design.sheet, evaluate(design, target, 0.0), seed=0, index=0)
     score = replace(evaluate(even, target, 0.0), iou_exact=irregular.score.iou_exact - 0.001)
     uniform = Candidate(even.sheet, score, seed=0, index=1)
-    request = Request(target, (6, 6), regular=0.0)
+    request = Request(target, (6, 6), regular=0.0, polish=0)
     result = Result(request, (irregular, uniform), 2, 0.0)
     assert Ranking.of(request).ranked([uniform, irregular]) == result.candidates
     jams = jam_angles(result.candidates, STRAIGHT)

@@ -21,6 +21,7 @@ from kirigami_studio.project.candidate_edits import (
 from kirigami_studio.project.codec import decode, encode
 from kirigami_studio.project.design_facts import joined_provenance
 from kirigami_studio.project.document import Document, Mark
+from tests.refusals import refused
 
 
 def rank(candidate: Candidate) -> float:
@@ -72,7 +73,7 @@ def test_that_a_rejected_design_may_leave_the_stage_in_the_same_step(document: D
 
 
 def test_that_a_design_that_is_not_there_cannot_be_marked(document: Document) -> None:
-    with pytest.raises(ProjectError, match="3"):
+    with refused(ProjectError, "project.no_such_design", designs=3):
         set_mark(document, 3, Mark.PINNED)
 
 

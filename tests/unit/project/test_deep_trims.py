@@ -60,7 +60,6 @@ def plan(design: Candidate) -> CutPlan:
     return plan_cuts(deploy(design.final_sheet), WIDTH, 0.3, kept=design.trim.kept)
 
 
-@pytest.mark.long
 def test_that_a_shape_that_turns_back_far_is_covered_and_its_notch_cut_out(
     keyhole: Outline, found: tuple[Candidate, ...]
 ) -> None:
@@ -81,14 +80,12 @@ def test_that_notches_are_filled_only_where_no_closed_sheet_shows_them(keyhole: 
     assert placed.area > 1.02
 
 
-@pytest.mark.long
 def test_that_a_design_is_cut_deep_again_wherever_it_is_trimmed(design: Candidate, keyhole: Outline) -> None:
     assert design.trim is not None
     again = trimmed(replace(design, trim=None), keyhole, design.trim.keep, lambda: False).candidate
     assert again.trim == design.trim
 
 
-@pytest.mark.long
 def test_that_its_cuts_leave_one_piece_and_every_other_connector(design: Candidate, plan: CutPlan) -> None:
     report = check_plan(plan)
     assert report.pieces == 1
@@ -101,7 +98,6 @@ def test_that_its_cuts_leave_one_piece_and_every_other_connector(design: Candida
     assert sum(not len(panel) for panel in plan.panels) == (design.trim.given_up if design.trim else -1)
 
 
-@pytest.mark.long
 def test_that_widths_asked_for_lost_connectors_do_not_matter(design: Candidate, plan: CutPlan) -> None:
     lost, other = int(np.flatnonzero(plan.hinges.lost)[0]), int(np.flatnonzero(~plan.hinges.lost)[0])
     assert design.trim is not None
@@ -112,7 +108,6 @@ def test_that_widths_asked_for_lost_connectors_do_not_matter(design: Candidate, 
     assert wide.options == options
 
 
-@pytest.mark.long
 def test_that_it_closes_to_its_silhouette(design: Candidate, plan: CutPlan, keyhole: Outline) -> None:
     assert design.trim is not None
     deployment = deploy(design.final_sheet)
@@ -125,7 +120,6 @@ def test_that_it_closes_to_its_silhouette(design: Candidate, plan: CutPlan, keyh
     assert siou_of_many([ring], keyhole)[0].iou_exact == pytest.approx(design.trim.iou, abs=0.02)
 
 
-@pytest.mark.long
 def test_that_panels_that_went_cannot_be_gripped(design: Candidate, plan: CutPlan) -> None:
     assert design.trim is not None
     deployment = deploy(design.final_sheet)
@@ -139,7 +133,6 @@ def test_that_panels_that_went_cannot_be_gripped(design: Candidate, plan: CutPla
     assert caught.value.code == "drive.unknown_panel"
 
 
-@pytest.mark.long
 def test_that_it_comes_back_from_a_project(design: Candidate, keyhole: Outline, tmp_path: Path) -> None:
     known = replace(design, made_with=())
     document = Document(keyhole, candidates=(known,), chosen=0)
@@ -150,7 +143,6 @@ def test_that_it_comes_back_from_a_project(design: Candidate, keyhole: Outline, 
     assert again.score == evaluate(deploy(known.sheet), keyhole)
 
 
-@pytest.mark.long
 def test_that_panels_that_went_are_not_drawn(design: Candidate) -> None:
     assert design.trim is not None
     posed = PosedDesign(deploy(design.final_sheet), design.trim.pose, design.trim.phi, design.trim)

@@ -11,7 +11,9 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
+from tests.refusals import refused
 
 
 def test_that_a_new_document_is_empty_and_ready_for_a_first_run() -> None:
@@ -34,18 +36,18 @@ def test_that_the_chosen_candidate_is_the_one_at_its_index(document: Document) -
 
 @pytest.mark.parametrize("chosen", [3, -1, "1"])
 def test_that_a_choice_beyond_the_candidates_is_refused(document: Document, chosen: object) -> None:
-    with pytest.raises(ProjectError, match="3"):
+    with refused(ProjectError, "project.no_such_design", designs=3):
         replace(document, chosen=chosen)
 
 
 def test_that_candidates_of_two_grids_are_refused(document: Document) -> None:
     stranger: Candidate = replace(document.candidates[0], sheet=Sheet.uniform(6, 7))
-    with pytest.raises(ProjectError, match="4 x 5 and 6 x 7"):
+    with refused(ProjectError, "project.grids_differ", columns=5, other_columns=7, other_rows=6, rows=4):
         replace(document, candidates=(*document.candidates, stranger))
 
 
 def test_that_candidates_need_their_target(document: Document) -> None:
-    with pytest.raises(ProjectError, match="target"):
+    with refused(ProjectError, "project.designs_without_target"):
         replace(document, target=None)
 
 

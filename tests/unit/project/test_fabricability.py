@@ -9,7 +9,7 @@ import pytest
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import estimate
 from kirigami_studio.studio.fabricability import TRIAL, Fabricability, fabricability
 

@@ -19,7 +19,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import fixes
 from kirigami_studio.studio.fixes import Advice, find_fixes
 from kirigami_studio.studio.verdict import Level, Verdict, assess, refused
@@ -79,7 +80,6 @@ def test_that_a_sheet_which_jams_on_straight_connectors_is_told_to_centre_them(d
     assert first.to_json()["style"] == "centred" and first.to_json()["level"] == "ready_to_cut"
 
 
-@pytest.mark.long
 def test_that_a_connector_which_breaks_is_told_one_that_holds_with_its_strain(design: Candidate) -> None:
     thin = FabricationSettings(connector_mm=0.08)
     assert "as_cut.breaks" in [problem.code for problem in verdict_on(design, thin).problems]
@@ -90,7 +90,6 @@ def test_that_a_connector_which_breaks_is_told_one_that_holds_with_its_strain(de
     assert wider and wider[0].change.text == f"Use connectors of 0.2 mm: strain {100 * wider[0].as_cut.strain:.1f} %."
 
 
-@pytest.mark.long
 def test_that_a_sheet_with_small_panels_is_told_the_width_that_serves(design: Candidate) -> None:
     thick = replace(find_material("tpu-co2"), key="thick-tpu", min_panel_mm=8.0)
     small = FabricationSettings(material=thick.key, own=thick, width_mm=80.0, connector_mm=0.5)
@@ -116,10 +115,9 @@ def test_that_removed_connectors_are_put_back_first(design: Candidate) -> None:
     assert found.fixes[0].change.text == "Put the removed connectors back." and found.fixes[0].settings == FILM
 
 
-@pytest.mark.long
 def test_that_a_material_that_cannot_is_told_one_that_can(design: Candidate) -> None:
     found = advice(design, FabricationSettings(material="acrylic-co2"))
-    assert found.fixes[0].verdict.ok and found.fixes[0].change.text == "Cut PA/PI film 50 um, UV laser."
+    assert found.fixes[0].verdict.ok and found.fixes[0].change.text == "Cut PA/PI film 50 \N{MICRO SIGN}m, UV laser."
     assert sum(fix.settings.material != "acrylic-co2" for fix in found.fixes) <= 2
 
 
@@ -143,7 +141,6 @@ def test_that_another_design_is_offered_and_chosen_in_one_step(design: Candidate
     assert edit.document.candidate == design and edit.label == "Choose design A2"
 
 
-@pytest.mark.long
 def test_that_a_fix_is_one_step_that_can_be_undone_and_leaves_the_files_alone(
     design: Candidate, target: Outline
 ) -> None:
@@ -160,7 +157,6 @@ def test_that_a_fix_is_one_step_that_can_be_undone_and_leaves_the_files_alone(
     assert history.undo() and history.document == document
 
 
-@pytest.mark.long
 def test_that_a_coarser_grid_is_offered_where_panels_leave_no_room_and_takes_the_place_of_all_designs(
     design: Candidate, target: Outline
 ) -> None:

@@ -15,6 +15,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document, Mark
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -52,5 +53,5 @@ def test_that_locks_add_up_and_are_named(document: Document) -> None:
 
 
 def test_that_a_void_the_grid_does_not_have_is_refused(document: Document) -> None:
-    with pytest.raises(ProjectError, match=r"\(2, 0\)"):
+    with refused(ProjectError, "project.no_such_void", column=0, row=2):
         edits.lock_voids(document, [(2, 0)], True)

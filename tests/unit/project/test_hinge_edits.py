@@ -18,6 +18,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.history import History
+from tests.refusals import refused
 
 CENTRED = ConnectorStyle.CENTRED
 
@@ -62,7 +63,7 @@ def test_that_a_width_for_many_leaves_the_removed_among_them_removed() -> None:
 
 
 def test_that_a_width_of_nothing_is_refused() -> None:
-    with pytest.raises(FabricationError, match="connector 3"):
+    with refused(FabricationError, "hinge.width_not_positive", hinge=3):
         edits.set_hinge_width(Document(), {3}, 0.0)
 
 

@@ -25,6 +25,7 @@ from kirigami_studio.project.candidate_edits import (
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.labels import LONGEST_NAME, LONGEST_NOTE, Label, file_ending, letters_of, run_labels
+from tests.refusals import refused
 
 
 def codes(document: Document) -> list[str]:
@@ -109,7 +110,7 @@ def test_that_a_name_and_a_note_are_one_named_edit_that_a_file_keeps(document: D
 @pytest.mark.parametrize("name", ["A1", "a3", "Wide Heart"])
 def test_that_no_two_designs_have_one_name(document: Document, name: str) -> None:
     named = set_label(document, 0, "wide heart", "").document
-    with pytest.raises(ProjectError, match="already called") as caught:
+    with refused(ProjectError, "labels.taken") as caught:
         set_label(named, 1, name, "")
     assert caught.value.code == "labels.taken"
 
@@ -138,12 +139,12 @@ def test_that_a_label_that_cannot_be_shown_is_refused_in_a_sentence(name: str, n
 
 @pytest.mark.parametrize("code", ["", "a1", "A0", "1A", "A", None, "A1; DROP"])
 def test_that_only_letters_and_a_number_are_a_code(code: str) -> None:
-    with pytest.raises(ProjectError, match="letters and a number"):
+    with refused(ProjectError, "labels.not_a_code"):
         Label(code)
 
 
 def test_that_fewer_names_than_designs_are_refused(document: Document) -> None:
-    with pytest.raises(ProjectError, match="got 2 for 3 designs"):
+    with refused(ProjectError, "project.labels_do_not_match", designs=3, labels=2):
         replace(document, labels=run_labels(0, 2))
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.outlines.anchors import Anchors, with_anchors
-from kirigami_studio.outlines.figures import Box, Figure, figure
+from kirigami_studio.outlines.figures import BoundingBox, Figure, figure
 from kirigami_studio.outlines.nodes import Kind
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.project import store
@@ -22,12 +22,13 @@ from kirigami_studio.project.codec import DESIGN, encode
 from kirigami_studio.project.document import FARTHEST_GUIDE, Document
 from kirigami_studio.project.edits import Edit, set_guides
 from kirigami_studio.project.history import History
+from tests.refusals import refused
 
 
 @pytest.fixture
 def drawn() -> Placed:
     """A square beside the origin with a smooth and a symmetric corner."""
-    square = Placed.from_ring(figure(Figure.RECTANGLE, Box(10, 0, 50, 40)), "square")
+    square = Placed.from_ring(figure(Figure.RECTANGLE, BoundingBox(10, 0, 50, 40)), "square")
     anchors = Anchors.of(square).with_kind(1, Kind.SMOOTH).with_kind(3, Kind.SYMMETRIC)
     return with_anchors(square, anchors)
 
@@ -75,7 +76,7 @@ def test_that_a_file_without_points_or_place_opens_as_before(drawn: Placed, tmp_
 def test_that_points_that_no_drawing_has_are_a_sentence(
     change: Callable[[dict[str, Any]], object], drawn: Placed, tmp_path: Path
 ) -> None:
-    with pytest.raises(ProjectError, match="Cannot open"):
+    with refused(ProjectError, "project.damaged"):
         store.load(changed(drawn, tmp_path, change))
 
 

@@ -18,8 +18,9 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.settings import DesignSettings
 from kirigami_studio.project.sheet_size import cut_for, flat_width, set_opened_size, size_of, sized
+from kirigami_studio.settings.design import DesignSettings
+from tests.refusals import refused
 
 
 def designed(phi: float = 0.0, count: int = 2) -> Document:
@@ -82,5 +83,5 @@ def test_that_a_target_drawn_in_mm_brings_its_size_and_a_picture_does_not() -> N
 
 @pytest.mark.parametrize("size", [0.0, -1.0, math.nan, math.inf, 1e9])
 def test_that_an_impossible_size_is_refused_with_its_number(size: float) -> None:
-    with pytest.raises(UsageError, match="opened shape"):
+    with refused(UsageError, "settings.opened_size"):
         set_opened_size(designed(count=1), size)

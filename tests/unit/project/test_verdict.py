@@ -23,7 +23,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.project.settings import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
 from kirigami_studio.studio.cutting import least_feature_mm, plan_of
 from kirigami_studio.studio.verdict import Assessment, Level, Verdict, assess, judge, look_at, refused

@@ -45,7 +45,6 @@ def test_that_a_sample_has_a_field_for_every_mask_and_repeats_with_its_seed(kind
     assert torch.isfinite(first).all()
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_that_training_lowers_the_loss_on_one_batch(kind: str) -> None:
     network = small(kind)
@@ -76,7 +75,6 @@ def test_that_the_diffusion_backbone_gets_the_mask() -> None:
     assert float((drawn[0] - drawn[1]).abs().max()) > 1e-3
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("kind", ["cvae", "cgan"])
 def test_that_what_is_drawn_follows_the_mask(kind: str) -> None:
     network = small(kind)

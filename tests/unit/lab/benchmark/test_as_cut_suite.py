@@ -16,7 +16,6 @@ from kirigami_studio.outlines.silhouettes import load
 pytestmark = pytest.mark.torch
 
 
-@pytest.mark.long
 def test_that_a_centred_sheet_closes_where_a_straight_one_jams() -> None:
     target = load("circle")
     (centred,) = measure_as_cut([target], [0.5], grid=(3, 3), k=1).sheets
@@ -40,7 +39,6 @@ def test_that_a_centred_sheet_closes_where_a_straight_one_jams() -> None:
     assert straight.jam_deg > 0.0 and straight.iou_as_cut < straight.iou
 
 
-@pytest.mark.long
 def test_that_a_width_without_room_is_told_and_fails_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["--targets", "circle", "--connectors-mm", "40", "--grid", "3x3", "--k", "1"]
     assert main(["benchmark", "as-cut", *words, "--json"]) == 1
@@ -49,7 +47,6 @@ def test_that_a_width_without_room_is_told_and_fails_the_command(capsys: pytest.
     assert found["refused"][0].startswith("circle at 40 mm: ")
 
 
-@pytest.mark.long
 def test_that_the_table_has_a_row_for_each_sheet() -> None:
     figures = measure_as_cut([load("circle")], [0.3, 0.6], grid=(2, 2), k=1)
     assert figures.ok and [sheet.connector_mm for sheet in figures.sheets] == [0.3, 0.6]

@@ -37,7 +37,6 @@ def figures(targets: dict[str, list[Outline]], store: RunStore) -> BestOfKFigure
     return measure_best_of_k(targets, METHODS, 4, SMALL, store)
 
 
-@pytest.mark.long
 def test_that_more_runs_are_never_worse_and_cost_more(figures: BestOfKFigures) -> None:
     curves = figures.families["reachable"]
     assert tuple(curves) == METHODS
@@ -53,7 +52,6 @@ def test_that_more_runs_are_never_worse_and_cost_more(figures: BestOfKFigures) -
     assert any(line.split()[:2] == ["sample", "4"] and "(96.0)" in line for line in figures.sentences())
 
 
-@pytest.mark.long
 def test_that_a_point_is_the_best_of_its_runs(
     targets: dict[str, list[Outline]], store: RunStore, figures: BestOfKFigures
 ) -> None:
@@ -66,7 +64,6 @@ def test_that_a_point_is_the_best_of_its_runs(
     assert at.evaluations == pytest.approx(np.mean([sum(run["evaluations"] for run in runs) for runs in found]))
 
 
-@pytest.mark.long
 def test_that_the_table_of_solvers_finds_its_runs(
     targets: dict[str, list[Outline]], store: RunStore, figures: BestOfKFigures, monkeypatch: pytest.MonkeyPatch
 ) -> None:

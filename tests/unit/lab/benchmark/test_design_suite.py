@@ -49,7 +49,7 @@ def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path
 
 
 def test_that_the_best_match_stands_beside_the_first_design() -> None:
-    (made,) = make_designs([[Request(load("heart"), (6, 6), k=6)]])
+    (made,) = make_designs([[Request(load("heart"), (6, 6), k=6, polish=0)]])
     assert len(made.candidates) == 6 and made.best == made.candidates[0]
     one = replace(made, best=made.candidates[-1])
     most = max(candidate.score.iou_exact for candidate in one.candidates)
@@ -67,7 +67,7 @@ def test_that_designs_below_the_uniform_sheet_and_the_worst_are_named() -> None:
     for name, field in fields.items():
         target = load(name)
         best = Candidate(Sheet(field), evaluate(deploy(field), target), 0, 0)
-        made.append(Made(target, Request(target, (6, 6), k=1), best, 0.1, 1))
+        made.append(Made(target, Request(target, (6, 6), k=1, polish=0), best, 0.1, 1))
     figures = design_figures(made)
     assert figures["below_uniform"] == figures["below_uniform_exact"] == ["square"]
     assert figures["worst"] == ["square", "heart"]

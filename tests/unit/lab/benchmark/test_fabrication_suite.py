@@ -47,7 +47,6 @@ def test_that_a_known_tour_longer_than_the_shortest_gives_no_bound_above_it() ->
         assert travel_bound(lines, np.zeros(2), known) <= shortest
 
 
-@pytest.mark.long
 def test_that_the_figures_are_those_of_the_plans(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fabrication_suite, "TIMED_GRIDS", ((4, 4),))
     monkeypatch.setattr(fabrication_suite, "ORDERED_GRIDS", ((6, 5),))
@@ -77,7 +76,6 @@ def test_that_random_designs_hold_and_connectors_are_as_wide_as_asked() -> None:
     assert figures["off_where_not_wider_mm"] <= 1e-3  # type: ignore[operator]
 
 
-@pytest.mark.long
 def test_that_the_suite_runs_from_the_command_line(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,7 +15,6 @@ from kirigami_studio.outlines.silhouettes import load
 pytestmark = pytest.mark.torch
 
 
-@pytest.mark.clock
 def test_that_loads_pass_the_cache_by_and_scoring_comes_on_top_of_sampling() -> None:
     load_model("prior")
     began = time.perf_counter()

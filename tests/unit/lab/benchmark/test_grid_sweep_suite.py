@@ -16,7 +16,6 @@ pytestmark = pytest.mark.torch
 SMALL = SolverSettings(stopping=Stopping(evaluations=26), polish=2)
 
 
-@pytest.mark.long
 def test_that_sizes_are_swept_and_solvers_end_where_the_papers_figure_does(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grid_sweep_suite, "LARGEST_SEARCHED", 4)
     store = RunStore(SMALL.to_json())

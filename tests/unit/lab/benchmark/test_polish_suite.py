@@ -33,7 +33,6 @@ def test_that_a_plain_measurement_repeats_what_the_fits_say() -> None:
     json.dumps(figures)
 
 
-@pytest.mark.long
 def test_that_a_search_does_no_worse_than_the_plain_fit() -> None:
     plain = measure_polish([load("letter-l")], grid=(2, 2))
     searched = measure_polish([load("letter-l")], grid=(2, 2), effort=1)

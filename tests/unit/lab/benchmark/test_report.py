@@ -33,9 +33,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.long
 @pytest.mark.torch
-@pytest.mark.slow
 def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     runs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -77,7 +77,6 @@ def test_that_turning_turns_before_pixels_are_drawn() -> None:
     assert len(turned.points) > len(clean.points)  # slanted edges leave steps in the mask
 
 
-@pytest.mark.long
 def test_that_clean_is_the_plain_measurement_and_differences_are_to_it() -> None:
     shapes = [load("heart"), load("star")]
     counted: list[tuple[int, int]] = []

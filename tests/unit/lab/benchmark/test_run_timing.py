@@ -11,7 +11,6 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 
 
-@pytest.mark.long
 def test_that_a_run_is_timed_from_its_start_to_its_first_design_and_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     # Short fits of few designs: what is timed, and in which order it happens, does not depend on how long they are.
     monkeypatch.setattr(speed_suite, "POLISH_STEPS", 4)

@@ -12,11 +12,10 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lab.baselines.search import Stopping
 from kirigami_studio.lab.baselines.solvers import SOLVERS
-from kirigami_studio.lab.benchmark import solver_suite
+from kirigami_studio.lab.benchmark import paper_tables, solver_suite
 from kirigami_studio.lab.benchmark.run_store import RunStore
 from kirigami_studio.lab.benchmark.solver_suite import (
     METHODS,
-    PAPER,
     SolverFigures,
     SolverRun,
     SolverSettings,
@@ -53,7 +52,6 @@ def figures(targets: dict[str, list[Outline]], store: RunStore) -> SolverFigures
     return measure_solvers(targets, METHODS, (0, 1), SMALL, store)
 
 
-@pytest.mark.long
 def test_that_every_method_has_a_row_beside_the_papers(figures: SolverFigures) -> None:
     table = figures.families["reachable"]
     assert tuple(table.rows) == METHODS
@@ -64,7 +62,7 @@ def test_that_every_method_has_a_row_beside_the_papers(figures: SolverFigures) -
         assert abs(row.siou - row.siou_masks) < 0.05
         assert row.no_candidate == 0
         assert row.seconds > 0.0
-        assert row.paper == PAPER.get(method)
+        assert row.paper == paper_tables.SOLVERS.get(method)
     for solver in SOLVERS:
         assert 30 < table.rows[solver].evaluations <= table.rows[solver].most_evaluations <= 50
         assert table.rows[solver].siou_sd_of_seeds > 0.0
@@ -74,11 +72,14 @@ def test_that_every_method_has_a_row_beside_the_papers(figures: SolverFigures) -
 
 
 def test_that_the_papers_row_is_table_1() -> None:
-    assert (PAPER["cma-es"].siou, PAPER["swarm"].evaluations, PAPER["powell"].success) == (0.938, 625.1, 0.76)
-    assert set(PAPER) == {*SOLVERS, "sample"}
+    assert (
+        paper_tables.SOLVERS["cma-es"].siou,
+        paper_tables.SOLVERS["swarm"].evaluations,
+        paper_tables.SOLVERS["powell"].success,
+    ) == (0.938, 625.1, 0.76)
+    assert set(paper_tables.SOLVERS) == {*SOLVERS, "sample"}
 
 
-@pytest.mark.long
 def test_that_the_same_seed_gives_the_same_table_and_finished_runs_are_not_done_again(
     targets: dict[str, list[Outline]], store: RunStore, figures: SolverFigures, monkeypatch: pytest.MonkeyPatch
 ) -> None:

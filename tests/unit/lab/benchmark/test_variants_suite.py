@@ -54,7 +54,6 @@ def random_field(seed: int) -> RatioField:
     return RatioField.from_log10(np.random.default_rng(seed).uniform(-0.6, 0.6, (6, 6)))
 
 
-@pytest.mark.long
 def test_that_every_variant_is_measured_as_alone_and_beside_the_prior(untrained: str) -> None:
     targets = [load("circle"), load("heart")]
     told: list[tuple[int, int]] = []

@@ -20,7 +20,7 @@ from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 
-CARD = Path(__file__).parents[3] / "docs" / "data-card.md"
+CARD = Path(__file__).parents[4] / "docs" / "data-card.md"
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,6 @@ def test_that_the_example_of_the_data_card_runs_as_it_stands() -> None:
     assert float(re.findall(r"sIoU ([\d.]+)", mine)[0]) < 0.95 < float(re.findall(r"sIoU ([\d.]+)", prior)[0])
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("family", ["structured", "sobol"])
 def test_that_the_data_card_names_the_hash_of_the_test_split(family: str) -> None:
     digest = problem.designs(family, "test").about["sha256"]
@@ -122,7 +121,6 @@ def test_that_wrong_answers_of_a_generator_are_refused(few: tuple[Outline, ...])
         assert caught.value.code == code
 
 
-@pytest.mark.long
 def test_that_baselines_are_those_of_the_tables(few: tuple[Outline, ...]) -> None:
     assert {"uniform", "cma-es", "fit", "prior", "balanced"} <= set(problem.baselines())
     uniform = problem.judge(problem.baseline("uniform"), few)

@@ -29,6 +29,7 @@ from kirigami_studio.lab.training.fitted_fields import (
 )
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.outlines.editing import resampled
+from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
 GRID = (6, 6)
@@ -51,7 +52,6 @@ def rows(targets: Targets) -> tuple[FloatArray, FloatArray]:
     return targets.z.double().numpy().reshape(-1, *GRID), targets.polygons.double().numpy()
 
 
-@pytest.mark.long
 def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None:
     # Each is brought to unit area by itself, so poor fits lose a little.
     assert len(fits.z) >= 8
@@ -59,7 +59,6 @@ def test_that_requested_outlines_lie_on_their_sheets(fits: FittedFields) -> None
     assert ious(fits.z, fits.requested).min() > SMALLEST_IOU - 1e-3
 
 
-@pytest.mark.long
 def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> None:
     for requested, number in zip(fits.requested, fits.shape, strict=True):
         drawn = resampled(drawn_shape(5, int(number)), REQUESTED_POINTS)
@@ -67,7 +66,6 @@ def test_that_requested_outlines_are_the_drawn_shapes(fits: FittedFields) -> Non
         assert np.corrcoef(*(np.linalg.norm(shape - shape[0], axis=1) for shape in (requested, drawn)))[0, 1] > 0.9999
 
 
-@pytest.mark.long
 def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
     def run(path: Path, count: int) -> FittedFields:
         list(fit_shapes(path, count, 5, GRID, block_size=2))
@@ -80,12 +78,10 @@ def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
     for name in ARRAYS:
         assert np.array_equal(getattr(parts, name), getattr(whole, name))
     assert parts.digest == whole.digest != first.digest
-    with pytest.raises(KirigamiError, match=r"other settings \(seed\)"):
+    with refused(KirigamiError, "training.fits_differ", settings="seed"):
         list(fit_shapes(tmp_path / "parts.npz", 9, 6, GRID, block_size=2))
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_two_processes_make_the_fits_of_one(tmp_path: Path) -> None:
     path = tmp_path / "two.npz"
     list(fit_shapes(path, 3, 5, GRID, Workers(2), block_size=1))

@@ -16,11 +16,20 @@ from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.velocity import Network
 from kirigami_studio.generator.weights import Model, load_model, load_weights, store_model, variants_about
-from kirigami_studio.lab.training.corpus import Corpus
+from kirigami_studio.lab.training.corpus import Corpus, FixedDesigns
+from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.fields import mixed_fields, structured_fields
-from kirigami_studio.lab.training.grpo import GrpoSettings, advantages, aligned_network, group_weights, train_grpo
+from kirigami_studio.lab.training.grpo import (
+    GrpoRun,
+    GrpoSettings,
+    advantages,
+    aligned_network,
+    group_weights,
+    train_grpo,
+)
 from kirigami_studio.lab.training.train_flow import FlowSettings, train_flow, trained_network
 from kirigami_studio.lab.training.validation import VALIDATION_SEED, group_figures
+from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
@@ -74,7 +83,6 @@ def test_that_weights_are_those_of_the_equation() -> None:
     assert torch.isfinite(group_weights(torch.tensor([[-5.0, 900.0]]), 0.2)).all()
 
 
-@pytest.mark.long
 def test_that_environment_calls_are_counted_exactly(tmp_path: Path, start: Model, tiny: GrpoSettings) -> None:
     records = align(tiny, tmp_path, start)
     assert [record["calls"] for record in records] == [0.0, 12.0, 24.0, 33.0]
@@ -87,7 +95,6 @@ def test_that_environment_calls_are_counted_exactly(tmp_path: Path, start: Model
     assert all(record["spread"] > 0.0 < record["tv"] for record in records[1:])
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize("reward", ["accuracy", "balanced"])
 def test_that_a_resumed_run_equals_an_uninterrupted_one(
     tmp_path: Path, start: Model, tiny: GrpoSettings, reward: str
@@ -118,7 +125,6 @@ def test_that_the_prior_is_not_written_to(tmp_path: Path, start: Model, tiny: Gr
     assert all(torch.equal(value, before[name]) for name, value in start.network.state_dict().items())
 
 
-@pytest.mark.long
 def test_that_a_strong_reference_keeps_the_network_at_the_prior(
     tmp_path: Path, start: Model, tiny: GrpoSettings
 ) -> None:
@@ -145,7 +151,6 @@ def test_that_groups_of_equal_rewards_can_be_left_out(tmp_path: Path, start: Mod
     assert same(aligned_network(tmp_path, start), start.network)
 
 
-@pytest.mark.long
 def test_that_the_regularity_reward_smooths_the_designs(tmp_path: Path, tiny: GrpoSettings) -> None:
     # As in the paper, Euler steps only: corrections would follow the target and undo what the velocity has learnt.
     # Any network that looks at the exact geometry corrects by it, so this one does not look.
@@ -176,6 +181,21 @@ def test_that_a_finished_run_is_validated_again_and_stays_as_it_is(
     assert same(before, aligned_network(tmp_path, start))
 
 
+def test_that_targets_are_silhouettes_of_the_data_set_that_the_settings_name(
+    tmp_path: Path, start: Model, tiny: GrpoSettings
+) -> None:
+    split = generate_split("released", 6, seed=0, grid=(4, 4))
+    settings = replace(tiny, family="released", designs=str(split.about["sha256"]))
+    known = FixedDesigns(split.ratios, 4, 4, 0, CPU).chunk(0).polygons.flatten(1)
+    run = GrpoRun(settings, tmp_path / "none", CPU, start, split)
+    drawn = torch.stack([run.batches.at(step).polygons for step in range(4)]).flatten(0, 1).flatten(1)
+    assert torch.cdist(drawn, known).min(dim=1).values.max() < 1e-4
+    assert align(settings, tmp_path / "run", start, designs=split)[-1]["calls"] == 33.0
+    with pytest.raises(ModelError) as caught:
+        align(settings, tmp_path / "other", start)
+    assert caught.value.code == "training.other_start"
+
+
 def test_that_training_targets_are_not_the_validation_ones() -> None:
     # The one seed of a run at which both could be drawn from the same stream.
     drawn = Corpus(mixed_fields, 4, 4, VALIDATION_SEED, 200, CPU).chunk(0).z
@@ -185,7 +205,7 @@ def test_that_training_targets_are_not_the_validation_ones() -> None:
 
 def test_that_other_settings_weights_or_folders_are_refused(tmp_path: Path, start: Model, tiny: GrpoSettings) -> None:
     align(replace(tiny, calls=6), tmp_path, start)
-    with pytest.raises(ModelError, match=r"other settings \(calls, temperature\)"):
+    with refused(ModelError, "training.checkpoint_differs", settings="calls, temperature"):
         align(replace(tiny, temperature=1.0), tmp_path, start)
     with pytest.raises(ModelError) as caught:
         align(replace(tiny, start="other"), tmp_path, start)
@@ -267,7 +287,6 @@ def test_that_the_start_is_asked_by_counted_calls_where_a_reward_compares(
     assert records[-1]["reward"] < 0.0
 
 
-@pytest.mark.long
 def test_that_a_unet_prior_can_be_aligned(tmp_path: Path, tiny: GrpoSettings) -> None:
     torch.manual_seed(0)
     shape = UNetShape(4, 4, channels=(8, 8), residuals=1, latent=8, mask=32)

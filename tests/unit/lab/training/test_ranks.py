@@ -48,14 +48,10 @@ def said(folder: Path, rank: int) -> dict:
     return json.loads((folder / f"rank-{rank}.json").read_text())
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_the_gradient_of_two_halves_is_that_of_the_batch(folder: Path) -> None:
     assert max(said(folder, rank)["difference"] for rank in (0, 1)) < 1e-5
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_two_processes_learn_what_one_learns_and_the_first_alone_writes(folder: Path, tmp_path: Path) -> None:
     by_two, by_one = said(folder, 0)["records"], train(tmp_path)
     assert said(folder, 1)["records"] == []
@@ -68,8 +64,6 @@ def test_that_two_processes_learn_what_one_learns_and_the_first_alone_writes(fol
     assert by_two[-1]["loss"] == pytest.approx(by_one[-1]["loss"], rel=0.2)
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_a_run_of_two_is_gone_on_with_by_two_as_if_it_had_not_stopped(folder: Path) -> None:
     assert said(folder, 0)["stopped"][-1]["step"] == 1.0
     whole, parts = (trained_network(SETTINGS, folder / name, CPU).state_dict() for name in ("whole", "parts"))
@@ -77,8 +71,6 @@ def test_that_a_run_of_two_is_gone_on_with_by_two_as_if_it_had_not_stopped(folde
     assert len(Checkpoint.load(folder / "whole" / CHECKPOINT).others) == 1
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_a_run_is_gone_on_with_by_another_number_of_processes(folder: Path) -> None:
     assert Checkpoint.load(folder / "begun by one" / CHECKPOINT).step == SETTINGS.steps
     assert Checkpoint.load(folder / "begun by two" / CHECKPOINT).step == 1
@@ -91,8 +83,6 @@ def test_that_a_run_is_gone_on_with_by_another_number_of_processes(folder: Path)
     assert np.ptp(ends) < 0.05
 
 
-@pytest.mark.long
-@pytest.mark.slow
 def test_that_the_command_trains_under_torchrun_and_speaks_once(folder: Path) -> None:
     (line,) = (folder / "printed.txt").read_text().splitlines()
     assert json.loads(line)["record"]["step"] == 2.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio
-from kirigami_studio.evaluate.paper_evaluator import Verdict, judge, judge_sheets
+from kirigami_studio.evaluate.paper_evaluator import PaperScore, judge, judge_sheets
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
@@ -19,7 +19,7 @@ from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.fabricability import Fabricability, fabricability
 
-GOOD = Verdict(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
+GOOD = PaperScore(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
 ACCURACY, REGULARITY = Reward("accuracy"), Reward("regularity")
 
 
@@ -107,7 +107,7 @@ def test_that_a_collapsed_panel_costs_two(outline: Outline) -> None:
 
 
 def test_that_scales_are_deviations_within_groups() -> None:
-    def group(*pairs: tuple[float, float]) -> list[Verdict]:
+    def group(*pairs: tuple[float, float]) -> list[PaperScore]:
         return [dataclasses.replace(GOOD, siou=siou, tv=tv) for siou, tv in pairs]
 
     # Groups differ from each other by far more than their members do; only the latter counts.

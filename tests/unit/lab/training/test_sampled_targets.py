@@ -35,7 +35,6 @@ def heaviest(points: torch.Tensor) -> torch.Tensor:
     return (place * place.abs().square()).mean(dim=1)
 
 
-@pytest.mark.long
 def test_that_poses_are_upright_in_half_and_quarter_turns_in_another_quarter_of_the_rows() -> None:
     shapes = silhouettes(random_fields(OWN, 1, 0.5), OWN)
     upright = turned(shapes, -square_pose(shapes))
@@ -103,7 +102,6 @@ def test_that_codes_keep_each_targets_own_preference_and_boundary(grid: Deployed
     )
 
 
-@pytest.mark.long
 def test_that_targets_from_a_picture_are_where_they_were_but_not_quite() -> None:
     shapes = silhouettes(random_fields(OWN, 40), OWN)
     made = source(pictured=1.0).targets(shapes, 0)
@@ -114,7 +112,6 @@ def test_that_targets_from_a_picture_are_where_they_were_but_not_quite() -> None
     assert 5e-4 < float(gap.mean()) < 0.02 and float(gap.max()) < 0.04
 
 
-@pytest.mark.long
 def test_that_only_a_share_of_the_targets_comes_from_a_picture() -> None:
     shapes = silhouettes(random_fields(OWN, 200), OWN)
     clean, mixed = (source(pictured=share).targets(shapes, 0) for share in (0.0, 0.3))

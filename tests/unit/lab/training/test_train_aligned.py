@@ -20,6 +20,7 @@ from kirigami_studio.generator.weights import Model, load_model, store_model
 from kirigami_studio.lab.training.preference_loss import PreferenceTerms, trail_gap
 from kirigami_studio.lab.training.train_aligned import GRIDS, LARGEST_PHI, AlignRun, AlignSettings, train_aligned
 from kirigami_studio.lattice.batched import BatchedLattice
+from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
@@ -69,7 +70,6 @@ def measured(network: VelocityNetwork, preference: float, even: bool = True) -> 
     return terms, float(early)
 
 
-@pytest.mark.long
 def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
     tmp_path: Path, prior: Model, tiny: AlignSettings
 ) -> None:
@@ -85,7 +85,6 @@ def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
     assert np.mean(losses[-6:]) < 0.9 * np.mean(losses[:6])
 
 
-@pytest.mark.long
 def test_that_asking_for_regularity_gives_smoother_fields(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, tiny: AlignSettings
 ) -> None:
@@ -117,7 +116,6 @@ def test_that_asking_for_regularity_gives_smoother_fields(
     assert variation(1.0, even=True) < untrained
 
 
-@pytest.mark.long
 def test_that_the_anchor_holds_samples_near_the_priors(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
     def moved(weight: float) -> float:
         settings = replace(tiny, steps=10, other_sheets=0.0, average_decay=0.0, anchor_weight=weight, anchored_every=1)
@@ -171,7 +169,7 @@ def test_that_another_prior_other_settings_or_folders_are_refused(
     assert caught.value.code == "training.other_start"
     assert not (tmp_path / "none").exists()
     align(replace(tiny, steps=1), tmp_path, prior)
-    with pytest.raises(ModelError, match=r"other settings \(steps, anchor_weight\)"):
+    with refused(ModelError, "training.checkpoint_differs", settings="steps, anchor_weight"):
         align(replace(tiny, anchor_weight=1.0), tmp_path, prior)
     with pytest.raises(ModelError) as caught:
         align(replace(tiny, shape=replace(tiny.shape, width=40)), tmp_path / "wide", prior)

@@ -37,7 +37,6 @@ def train(
     return list(train_flow(settings, folder, CPU, lambda network: {}, validate_every=4, sources=sources, **options))
 
 
-@pytest.mark.long(but=1)
 @pytest.mark.parametrize(("coupling", "outline_weight"), [("ot", 0.0), ("conditional-ot", 50.0)])
 def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, coupling: str, outline_weight: float) -> None:
     settings = replace(TINY, coupling=coupling, outline_weight=outline_weight)
@@ -48,7 +47,6 @@ def test_that_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path, coupling
     assert all(torch.equal(whole[name], parts[name]) for name in whole)
 
 
-@pytest.mark.long
 def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     without = replace(TINY, shape=replace(TINY.shape, dropout=0.0))
     train(TINY, tmp_path / "with")
@@ -59,7 +57,6 @@ def test_that_dropout_takes_part_in_training(tmp_path: Path) -> None:
     assert not all(torch.equal(ours[name], theirs[name]) for name in ours)
 
 
-@pytest.mark.long
 def test_that_the_loss_falls_and_the_control_branch_moves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     # The learning rate takes 200 steps to rise by default; wide noise leaves more to learn in the first steps.
     monkeypatch.setattr("kirigami_studio.lab.training.train_flow.WARM_UP_STEPS", 4)
@@ -77,7 +74,6 @@ def test_that_validation_draws_from_it(tmp_path: Path) -> None:
     assert 0.3 < record["structured_iou"] <= 1.0
 
 
-@pytest.mark.long
 def test_that_fits_take_part_and_a_warm_start_begins_with_its_weights(tmp_path: Path) -> None:
     train(TINY, tmp_path / "first")
     store_model("prior", trained_network(TINY, tmp_path / "first", CPU), tmp_path / "first", {})

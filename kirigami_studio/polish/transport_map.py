@@ -1,4 +1,4 @@
-"""A guide for the inside: where the flat sheet's places belong in the target, by optimal transport.
+"""The transport map of the inside: where the flat sheet's places belong in the target.
 
 The same panels tile both compact states, so seen from afar a design is a map from the flat sheet to the target that
 keeps areas.  The canonical one is the optimal transport (Monge) map between the two uniform densities: it needs no
@@ -112,7 +112,7 @@ def centroid_matrices(rows: int, columns: int) -> tuple[FloatArray, FloatArray, 
     return flat, even, whole - even
 
 
-class Guide:
+class TransportTerm:
     """The term of one fit: mean squared distance between panel centroids and their images.
 
     Parameters

@@ -1,0 +1,87 @@
+"""How the chosen design is made: its numbers, its plan, and the verdict on the sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from kirigami_studio.gui.make.cuts_page import CutsPage
+from kirigami_studio.gui.make.cutting import CutPlanner, FabricationEditor
+from kirigami_studio.gui.make.fabrication_panel import FabricationPanel
+from kirigami_studio.gui.make.verdict import VerdictKeeper
+from kirigami_studio.gui.make.verdict_bar import VerdictBar
+from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.project.document import Document
+from kirigami_studio.studio.making import Planned
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.fixes import Fix
+
+
+class FabricationPresenter(QObject):
+    """Shows plan and verdict in the panel, on the page of cuts and in the bar; takes changes.
+
+    Parameters
+    ----------
+    panel : FabricationPanel
+    cuts : CutsPage
+    bar : VerdictBar
+    session : Session
+    editor : FabricationEditor
+    planner : CutPlanner
+    keeper : VerdictKeeper
+    apply_fix : callable
+        Makes a change that was tried on the design.
+    """
+
+    def __init__(
+        self,
+        panel: FabricationPanel,
+        cuts: CutsPage,
+        bar: VerdictBar,
+        session: Session,
+        *,
+        editor: FabricationEditor,
+        planner: CutPlanner,
+        keeper: VerdictKeeper,
+        apply_fix: Callable[[Fix], None],
+    ) -> None:
+        super().__init__(panel)
+        self._panel, self._cuts = panel, cuts
+        panel.changed.connect(lambda changes: editor.change(**changes))
+        panel.options_changed.connect(lambda changes: editor.change_options(**changes))
+        cuts.width_wanted.connect(editor.set_hinge_width)
+        cuts.remove_wanted.connect(editor.remove_hinges)
+        cuts.reset_wanted.connect(editor.reset_hinges)
+        for edited in (panel.edited, cuts.edited):
+            edited.connect(session.history.end_drag)
+        planner.planned.connect(self._show_plan)
+        planner.refused.connect(self._show_refusal)
+        keeper.changed.connect(bar.show_state)
+        keeper.changed.connect(panel.show_verdict)
+        bar.fix_wanted.connect(apply_fix)
+        self.show_document(session.document)
+
+    def show_run(self) -> None:
+        """Designs are being made: there is no plan to show."""
+        self._panel.show_waiting()
+        self._cuts.show_plan(None)
+
+    def show_document(self, document: Document) -> None:
+        """The document has changed: the numbers that it is cut with."""
+        self._panel.show_settings(document.fabrication)
+
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
+        if entry is None or entry.candidate.trim is None:
+            self._panel.show_untrimmed()
+
+    def _show_plan(self, planned: Planned | None) -> None:
+        self._panel.show_plan(planned)
+        self._cuts.show_plan(planned)
+
+    def _show_refusal(self, sentence: str) -> None:
+        self._panel.show_refusal(sentence)
+        self._cuts.show_refusal(sentence)

@@ -1,0 +1,328 @@
+"""How the chosen design is cut: sheet, material, machine and files; choices about the cuts are ``CutOptions``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, TypedDict
+
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.profile import DxfVersion, find_profile
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material, library
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
+from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
+from kirigami_studio.foundation.words import mark
+
+LARGEST_SHEET_MM = 10_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class FabricationSettings:
+    """How the chosen design is cut.
+
+    Attributes
+    ----------
+    width_mm : float, > 0
+        Width of the flat sheet.
+    material : str
+        Key of a material preset.
+    connector_mm : float or None
+        Finished width of a connector; None takes the material's own.
+    kerf_mm : float or None
+        Width of the cut; None takes the material's own.
+    options : CutOptions
+        Centred connectors unless chosen otherwise.
+    profile : str
+        Key of the machine profile that cut files are written for.
+    dxf_version : DxfVersion
+        DXF dialect of cut files.
+    paper : Paper
+        That PDFs are spread over.
+    markers : bool
+        Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
+    engrave : bool
+        Whether the design's name is engraved on the sheet.
+    opened_mm : float or None
+        Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
+    own : Material or None
+        The numbers of ``material`` where that is the user's own and no preset.  Not a choice, so it takes no part in
+        comparisons.
+
+    Raises
+    ------
+    UsageError
+        With the number that does not fit.
+    """
+
+    width_mm: float = field(
+        default=100.0,
+        metadata=Setting(
+            about=mark(
+                "Width of the flat sheet, mm (5 to 3000). It follows the opened size, beside the target; a width typed "
+                "here stays. The grid sets the height."
+            ),
+            help="width of the flat sheet",
+            least=0.0,
+            above_least=True,
+            most=LARGEST_SHEET_MM,
+            code="settings.sheet_width",
+            always_written=True,
+            undo=mark("Change the sheet width"),
+            label=mark("Flat &width, mm"),
+            spoken=mark("Width of the flat sheet in millimetres"),
+            low=5.0,
+            high=3000.0,
+            step=5.0,
+            decimals=1,
+            unit="mm",
+            option="--width-mm",
+        ).metadata,
+    )
+    material: str = field(
+        default=DEFAULT_PRESET,
+        metadata=Setting(
+            help="material, see 'kirigami-studio materials'",
+            code="settings.material_not_a_name",
+            always_written=True,
+            undo=mark("Change the material"),
+            spoken=mark("Material preset"),
+            option="--material",
+        ).metadata,
+    )
+    connector_mm: float | None = field(
+        default=None,
+        metadata=Setting(
+            about=mark("Finished width of the material left at each hinge, mm."),
+            help="finished connector width (default: the material's)",
+            least=0.0,
+            above_least=True,
+            most=LARGEST_SHEET_MM,
+            code="settings.connector_width",
+            always_written=True,
+            undo=mark("Change the connector width"),
+            label=mark("&Connector, mm"),
+            spoken=mark("Connector in millimetres"),
+            low=0.02,
+            high=20.0,
+            step=0.05,
+            unit="mm",
+            option="--connector-mm",
+        ).metadata,
+    )
+    kerf_mm: float | None = field(
+        default=None,
+        metadata=Setting(
+            about=mark("Full width of the cut, mm; slits are shortened to match. 0 for a blade."),
+            help="full width of the cut (default: the material's)",
+            least=0.0,
+            most=LARGEST_SHEET_MM,
+            code="settings.kerf_width",
+            always_written=True,
+            undo=mark("Change the kerf"),
+            label=mark("&Kerf, mm"),
+            spoken=mark("Kerf in millimetres"),
+            high=5.0,
+            step=0.01,
+            decimals=3,
+            unit="mm",
+            option="--kerf-mm",
+        ).metadata,
+    )
+    options: CutOptions = field(
+        default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED),
+        metadata=Setting(undo=mark("Change the cut options")).metadata,
+    )
+    profile: str = field(
+        default="any",
+        metadata=Setting(
+            about=mark("Machine profile: the colours and layers your machine's software expects in cut files."),
+            help="machine profile: any, lightburn, k40, single, layers or slots",
+            code="settings.profile_not_a_name",
+            always_written=True,
+            undo=mark("Change the machine profile"),
+            label=mark("Machine profile"),
+            widget="machineProfile",
+            option="--profile",
+        ).metadata,
+    )
+    dxf_version: DxfVersion = field(
+        default=DxfVersion.R2010,
+        metadata=Setting(
+            help="DXF version",
+            code="settings.dxf_version_not_a_name",
+            always_written=True,
+            undo=mark("Change the DXF version"),
+            label=mark("D&XF version"),
+            spoken=mark("DXF version"),
+            widget="dxfVersion",
+            choices=(
+                Choice(DxfVersion.R2010, "R2010", mark("Recommended. Stores mm as the unit and uses light polylines.")),
+                Choice(DxfVersion.R12, "R12", mark("For old software. Stores no unit: import as mm.")),
+            ),
+            option="--dxf-version",
+        ).metadata,
+    )
+    paper: Paper = field(
+        default=Paper.NONE,
+        metadata=Setting(
+            help="spread a PDF over pages of this size",
+            code="settings.paper_not_a_name",
+            undo=mark("Change the paper of PDFs"),
+            label=mark("PDF pages"),
+            choices=(
+                Choice(Paper.NONE, mark("One page"), mark("As large as the sheet, for plotters and print shops.")),
+                Choice(
+                    Paper.A4,
+                    mark("A4 pages"),
+                    mark("Spread over A4 pages that overlap, with crosses to lay them over."),
+                ),
+                Choice(
+                    Paper.LETTER,
+                    mark("Letter pages"),
+                    mark("Spread over Letter pages that overlap, with crosses to lay them over."),
+                ),
+            ),
+            option="--paper",
+        ).metadata,
+    )
+    markers: bool = field(
+        default=False,
+        metadata=Setting(
+            about=mark("Mark connectors in LightBurn projects, on a tool layer: MeerK40t would engrave it."),
+            help="mark the connectors in LightBurn projects, on a layer that LightBurn does not cut",
+            code="settings.markers_not_true_or_false",
+            undo=mark("Change the connector markers"),
+            label=mark("Mark connectors"),
+            option="--markers",
+        ).metadata,
+    )
+    engrave: bool = field(
+        default=False,
+        metadata=Setting(
+            about=mark(
+                "Engrave the design's name on one panel, before the cuts and on a layer of its own. Times and lengths "
+                "do not count it."
+            ),
+            help="engrave the design's name on one panel, on layer NAME and before the cuts",
+            code="settings.engrave_not_true_or_false",
+            undo=mark("Change the engraving of the name"),
+            label=mark("Engrave the name"),
+            widget="engraveName",
+            option="--engrave",
+        ).metadata,
+    )
+    opened_mm: float | None = field(
+        default=None,
+        metadata=Setting(
+            least=0.0,
+            above_least=True,
+            most=LARGEST_SHEET_MM,
+            code="settings.opened_size",
+            undo=mark("Change the size of the opened shape"),
+        ).metadata,
+    )
+    own: Material | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+class SheetChange(TypedDict, total=False):
+    """Values for settings of a sheet and its files, for those who check types; choices also by their words."""
+
+    width_mm: float
+    material: str
+    connector_mm: float | None
+    kerf_mm: float | None
+    profile: str
+    dxf_version: DxfVersion | str
+    paper: Paper | str
+    markers: bool
+    engrave: bool
+
+
+class FabricationChange(SheetChange, total=False):
+    """Values for fields of :class:`FabricationSettings`."""
+
+    opened_mm: float | None
+    options: CutOptions
+
+
+class OptionsChange(TypedDict, total=False):
+    """Values for those fields of :class:`CutOptions` that hold for the whole sheet."""
+
+    style: ConnectorStyle | str
+    order: CutOrder | str
+    tabs: int
+    tab_mm: float
+    copies: int
+    copy_gap_mm: float
+
+
+class CutChange(SheetChange, OptionsChange, total=False):
+    """Values for settings of a sheet, of its files and of all its cuts."""
+
+
+def stored_material(settings: FabricationSettings) -> Material | None:
+    """Return the numbers of the settings' material as the project stores them; None for bundled materials."""
+    return settings.own if settings.own is not None and settings.own.key == settings.material else None
+
+
+def material_for(settings: FabricationSettings) -> Material:
+    """Return the material that the settings name: from the library, else as it is stored in the project.
+
+    Raises
+    ------
+    FabricationError
+        Neither has it; the sentence lists the library.
+    """
+    stored = stored_material(settings)
+    if stored is not None and stored.key not in library().materials:
+        return stored
+    return find_material(settings.material)
+
+
+def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:
+    """The settings of a project with what the command line or a script asks for on top.
+
+    Parameters
+    ----------
+    saved : FabricationSettings
+    given : mapping of str to object
+        Settings of the sheet and of its cuts by name, material and profile as :func:`find_material` and
+        :func:`find_profile` read them; widths of single connectors, ``hinge_mm`` (pairs of number and width), and those
+        to be ``removed`` are added to the project's own.  Others are left alone.
+
+    Raises
+    ------
+    UsageError
+        What no settings can hold.
+    FabricationError
+        No such material; the sentence lists the library.
+    """
+    changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
+    if "material" in given:
+        changes["material"] = find_material(given["material"]).key
+    try:
+        if "profile" in given:
+            changes["profile"] = find_profile(given["profile"]).key
+        return replace(saved, **changes, options=_cut_options(saved.options, given))
+    except (FabricationError, ExportError) as error:
+        raise UsageError(error.code, **error.fields) from error
+
+
+def _cut_options(saved: CutOptions, given: Mapping[str, Any]) -> CutOptions:
+    """The project's choices about the cuts with others on top."""
+    changes = {name: given[name] for name in settings_of(CutOptions) if name in given}
+    widths = sorted(given.get("hinge_mm", ()))
+    removed = sorted(given.get("removed", ()))
+    CutOptions(hinge_mm=tuple(widths), removed=tuple(removed))  # refuses what contradicts itself
+    named = {hinge for hinge, _ in widths} | set(removed)
+    return replace(
+        saved,
+        **changes,
+        hinge_mm=tuple(sorted([*(pair for pair in saved.hinge_mm if pair[0] not in named), *widths])),
+        removed=tuple(sorted([*(hinge for hinge in saved.removed if hinge not in named), *removed])),
+    )

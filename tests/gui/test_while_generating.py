@@ -1,0 +1,67 @@
+"""What the stage shows while designs are on their way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.project.document import Document
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+def begin_run(window: MainWindow, joins: bool = False) -> None:
+    """What Generate does before the first report comes."""
+    controller = window.controller
+    kept = controller.document.candidates if joins else ()
+    controller.session.display.begin_run(kept, joins)
+    controller.run.started.emit(3)
+
+
+def test_that_a_run_shows_its_target_and_no_older_design(designed: MainWindow) -> None:
+    """Before, the design of the run before stayed on the stage, of an older grid and perhaps for another target."""
+    stage = designed.stage
+    assert stage.view.design is not None
+    begin_run(designed)
+    assert designed.controller.stage is None and stage.view.design is None
+    bounds, target = stage.view.scene_bounds(), designed.controller.document.target
+    assert bounds is not None and target is not None
+    assert (bounds.left, bounds.right) == pytest.approx((target.points[:, 0].min(), target.points[:, 0].max()))
+    assert not stage.deployment.isEnabled() or not stage.deployment.play.isEnabled()
+
+
+def test_that_the_target_of_a_run_is_shown_where_nothing_was_before(heart: MainWindow) -> None:
+    assert heart.stage.view.scene_bounds() is None
+    begin_run(heart)
+    assert heart.stage.view.scene_bounds() is not None
+    heart.controller.run.ended.emit(False)
+    assert heart.stage.view.scene_bounds() is None
+
+
+def test_that_the_angle_stays_from_one_run_to_the_next(designed: MainWindow, designs: Document) -> None:
+    display = designed.controller.session.display
+    designed.stage.deployment.set_phi(1.0)
+    begin_run(designed)
+    display.add(designed.controller.session.cache.entry(designs.candidates[1]))
+    assert designed.stage.view.design is not None and designed.stage.view.phi == pytest.approx(1.0, abs=2e-3)
+
+
+def test_that_a_run_that_adds_designs_leaves_the_chosen_one_on_the_stage(designed: MainWindow) -> None:
+    before = designed.controller.stage
+    begin_run(designed, joins=True)
+    assert designed.controller.stage is before and designed.stage.view.design is not None
+
+
+def test_that_the_ends_of_a_design_found_meanwhile_have_the_size_asked_for(
+    designed: MainWindow, designs: Document
+) -> None:
+    """Before, they had the size of a sheet as wide as the one before the run, or as an empty project expects."""
+    session = designed.controller.session
+    designed.controller.fabrication.set_opened_size(230.0)
+    for candidate in designs.candidates[1:]:
+        begin_run(designed)
+        session.display.add(session.cache.entry(candidate))
+        opened = designed.stage.ends.target
+        assert "230 " in opened.toolTip() or " 230 mm" in opened.toolTip(), opened.toolTip()
