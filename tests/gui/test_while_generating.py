@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from kirigami_studio.gui.stage.layout_view import CAPTION_HEIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project.document import Document
 
@@ -65,3 +66,11 @@ def test_that_the_ends_of_a_design_found_meanwhile_have_the_size_asked_for(
         session.display.add(session.cache.entry(candidate))
         opened = designed.stage.ends.target
         assert "230 " in opened.toolTip() or " 230 mm" in opened.toolTip(), opened.toolTip()
+
+
+def test_that_words_and_target_do_not_lie_over_each_other(designed: MainWindow) -> None:
+    begin_run(designed)
+    view, target = designed.stage.view, designed.controller.document.target
+    transform = view.transform()
+    assert transform is not None and target is not None
+    assert transform.to_pixels(target.points)[:, 1].min() >= CAPTION_HEIGHT

@@ -56,6 +56,7 @@ from kirigami_studio.gui.widgets.colour_scale import (
     paint_colour_bars,
     ratio_scale,
 )
+from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.widgets.mismatch_items import (
     Mismatch,
@@ -344,7 +345,7 @@ class LayoutView(Canvas):
         """Beside the legends that are on, at every angle alike, so that the picture rests while the sheet moves."""
         legend = Overlay.MISMATCH in self._wanted and self._target is not None
         size, font = (self.width(), self.height()), self.font().key()
-        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top())
+        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top(), self._design is None)
         if self._box is None or self._box[0] != key:  # asked for several times in every paint event
             self._box = (key, self._find_box(legend))
         return self._box[1]
@@ -353,6 +354,8 @@ class LayoutView(Canvas):
         view, bounds = QRectF(self.rect()), self.scene_bounds()
         if bounds is None:
             return view
+        if self._design is None:  # the target alone, below what is said of it
+            return view.adjusted(0, CAPTION_HEIGHT, 0, 0)
         metrics = self.fontMetrics()
         titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
         legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
@@ -556,7 +559,9 @@ class LayoutView(Canvas):
     def paint_notes(self, painter: QPainter) -> None:
         if self._design is None:
             if self._target is not None:
-                paint_caption(painter, "  ".join(self._hint[1:]), self.width(), self.palette_)
+                _, headline, hint = self._hint
+                said = fitted(painter.fontMetrics(), (f"{headline}  {hint}", headline), self.width() - 40.0)
+                paint_caption(painter, said, self.width(), self.palette_)
             return
         labels = self.legend(painter.fontMetrics())
         paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)
