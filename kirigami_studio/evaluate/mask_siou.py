@@ -44,6 +44,11 @@ RIM = 3
 #: Rotations tried for silhouettes with holes or several pieces, whose outer contour is not the whole shape.
 RAGGED_RING = 48
 
+#: How far the pose of the released evaluator's measure is climbed from the alignment: 4 % in scale, 0.1 rad, a pixel.
+#: That evaluator takes the first better pose it meets, not the best; with this reach poor matches, too, come within
+#: 0.007 of its values on average (24 pairs).
+RELEASED_REACH = (math.log(1.04), 0.1, 0.1, 0.1)
+
 #: How many of them are refined by a simplex.
 RAGGED_KEPT = 3
 
@@ -84,11 +89,40 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
     return value, second.to_source.compose(laid).compose(first.to_source.inverse())
 
 
-def _best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float, Similarity]:
-    """Align by outlines, and by pixels where outlines are not the whole shape."""
+def released_siou(design: npt.ArrayLike, target: npt.ArrayLike) -> float:
+    """sIoU as the paper's released evaluator takes it: the target in the design's pixels, cut off at their edge.
+
+    The pose is searched by this very measure.  What leaves the canvas does not count, so a target that outgrows it
+    fills a design that fills its canvas: the uniform sheet has about 0.93 on targets of the Sobol family.
+
+    Parameters
+    ----------
+    design, target : (H, W) bool, 0/1 or 0..255
+        Masks of any size; row 0 on top.
+
+    Raises
+    ------
+    KirigamiError
+        A mask that is empty, not 2-D, or not finite.
+    """
+    fixed, moving = FittedMask.from_array(design, 1), FittedMask.from_array(target, 2)
+
+    def cropped(pose: Similarity) -> float:
+        return _posed_iou(moving, fixed, pose, crop=True)
+
+    start = max(_poses(moving, fixed), key=cropped)
+    return max(cropped(start), cropped(_climbed(fixed, start, cropped, RELEASED_REACH)))
+
+
+def _poses(moving: FittedMask, fixed: FittedMask) -> list[Similarity]:
+    """Alignments by outlines, and by pixels where outlines are not the whole shape."""
     poses = _outline_poses(moving, fixed)
-    if not (moving.solid and fixed.solid):
-        poses += _pixel_poses(moving, fixed)
+    return poses if moving.solid and fixed.solid else [*poses, *_pixel_poses(moving, fixed)]
+
+
+def _best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float, Similarity]:
+    """The best of all alignments, measured both ways."""
+    poses = _poses(moving, fixed)
 
     def both_ways(pose: Similarity) -> float:
         return 0.5 * (_posed_iou(moving, fixed, pose, crop) + _posed_iou(fixed, moving, pose.inverse(), crop))
@@ -138,12 +172,21 @@ def _pixel_poses(moving: FittedMask, fixed: FittedMask) -> list[Similarity]:
     return [_climbed(fixed, starts[k], soft) for k in best]
 
 
-def _climbed(fixed: FittedMask, start: Similarity, value: Callable[[Similarity], float]) -> Similarity:
-    """Nelder-Mead on ``value`` in (log scale, rotation, x, y) about the middle of the fixed mask."""
+def _climbed(
+    fixed: FittedMask,
+    start: Similarity,
+    value: Callable[[Similarity], float],
+    reach: tuple[float, float, float, float] = (math.inf, math.inf, math.inf, math.inf),
+) -> Similarity:
+    """Nelder-Mead on ``value`` in (log scale, rotation, x, y) about the middle of the fixed mask, as far as ``reach``.
+
+    Lengths are in tenths of the mask.
+    """
     pivot = fixed.centroid()
     length = 0.1 * max(fixed.coverage.shape)
 
     def moved(move: FloatArray) -> Similarity:
+        move = np.clip(move, np.negative(reach), reach)
         factor = complex(np.exp(move[0] + 1j * move[1]))
         shift = pivot - factor * pivot + length * complex(move[2], move[3])
         return Similarity.from_complex(factor, shift).compose(start)

@@ -1,4 +1,4 @@
-"""What is printed on a sheet: one picture or two, and where they lie, on the opened sheet or on the flat one.
+"""Pictures on a sheet: one or two, and their places on the opened or on the flat sheet.
 
 Points of the plane are complex numbers x + iy with y up, pixels are u + iv with v down from the picture's upper left
 corner; a picture with the map (a, b) shows its pixel p at a conj(p) + b.
@@ -130,7 +130,7 @@ class Laid:
 
 @dataclass(frozen=True, slots=True)
 class Artwork:
-    """What is printed on a sheet.
+    """The pictures on a sheet.
 
     Attributes
     ----------

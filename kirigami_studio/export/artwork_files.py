@@ -57,7 +57,7 @@ OPENED_OVERLAP = 4e-4
 
 @dataclass(frozen=True, eq=False)
 class ArtworkJob:
-    """What the files of a printed sheet are made of.
+    """The contents of the files of a printed sheet.
 
     Attributes
     ----------

@@ -146,7 +146,7 @@ class Patch:
 
 
 def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf_mm: float) -> tuple[Patch, ...]:
-    """What is printed on the flat sheet, to be painted in this order.
+    """The print on the flat sheet, to be painted in this order.
 
     Parameters
     ----------

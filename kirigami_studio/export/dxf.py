@@ -221,7 +221,7 @@ def check_written(path: Path, strokes: Sequence[Stroke], size: tuple[float, floa
 def _first_difference(
     content: FileContent, strokes: Sequence[Stroke], size: tuple[float, float], version: str
 ) -> ExportError | None:
-    """What differs first from what was meant; None where nothing does."""
+    """The first difference from the plan; None where there is none."""
     if version != "R12" and content.unit != units.MM:
         return ExportError("dxf.other_unit", unit=content.unit)
     if content.extent != size:

@@ -59,7 +59,7 @@ NEARLY_CLOSED_MM = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FileReport:
-    """What is in a cut file.
+    """The contents of a cut file.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class FileReport:
 
 
 def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
-    """Read a DXF of any origin, or a cut SVG of this program, and list what would go wrong on the cutter.
+    """Read a DXF of any origin, or an own cut SVG, and list its faults for the cutter.
 
     Parameters
     ----------

@@ -161,7 +161,7 @@ class FilePath:
 
 @dataclass(slots=True)
 class DxfContent:
-    """What a DXF holds, with the problems seen while reading.
+    """The contents of a DXF, with the problems seen while reading.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ Judged = Callable[[Sequence[Verification]], Mapping[str, object]]
 
 @dataclass(frozen=True, slots=True)
 class ExportSet:
-    """What was written.
+    """The written files.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What every exporter gets and is."""
+"""The request and the interface of every exporter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a reader found in a cut file, and how it differs from what was meant."""
+"""The findings of a reader in a cut file, and its differences from the plan."""
 
 from __future__ import annotations
 

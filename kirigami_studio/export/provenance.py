@@ -37,7 +37,7 @@ VERSION = 1
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """What a file says about how it was made."""
+    """The record in a file of how it was made."""
     kerf = 0.0 if profile.slots else plan.kerf_mm
     paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
     return {

@@ -110,7 +110,7 @@ def read_with_xml(path: Path) -> FileContent:
 
 
 def is_svg(path: Path) -> bool:
-    """Whether a file's content, whatever its name, begins as an SVG does; False where it cannot be read."""
+    """Whether a file begins as an SVG does, whatever its name; False where it cannot be read."""
     try:
         with path.open("rb") as stream:
             start = stream.read(HEAD_BYTES)
@@ -120,7 +120,7 @@ def is_svg(path: Path) -> bool:
 
 
 def facts_of_svg(path: Path) -> dict[str, str]:
-    """What a cut SVG of this program says about how it was made; of an entry that is told twice, the first counts.
+    """Record in a cut SVG of this program of how it was made; the first of two entries counts.
 
     Raises
     ------

@@ -118,8 +118,9 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
     Raises
     ------
     ExportError
-        The folder is missing or cannot be written, the disk is full, ``path`` is a link that leads to no file, or
-        ``verify`` refused the file; an older file at ``path`` is untouched and nothing else is left behind.
+        The folder is missing or cannot be written, the disk is full, ``path`` is a device, a pipe or a socket or a link
+        that leads to no file, or ``verify`` refused the file; an older file at ``path`` is untouched and nothing else
+        is left behind.
     """
     temporary: Path | None = None
     try:
@@ -127,7 +128,13 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
         place.parent.mkdir(parents=True, exist_ok=True)
         if place.is_dir():
             raise ExportError("file.is_a_folder", path=path)
-        mode = stat.S_IMODE(place.stat().st_mode) if place.exists() else NEW_FILE_MODE
+        mode = NEW_FILE_MODE
+        if place.exists():
+            found = place.stat().st_mode
+            # Renaming a file over a device or a pipe would take it away from all who use it.
+            if not stat.S_ISREG(found):
+                raise ExportError("file.not_a_file", path=path)
+            mode = stat.S_IMODE(found)
         # Part of the name, since that of the file may already be as long as a name can be.
         # Only a reader that judges by the ending gets it: what a killed writer leaves must not look like a real file.
         ending = PART + (place.suffix if verify is not None else "")

@@ -15,9 +15,11 @@ The paper's hyper-parameters as a command, 400 epochs of 5000 targets::
     kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5
         --weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet
 
-and eight Euler steps when sampling.  Training here stays as for every network: designs are drawn endlessly instead of
-5000 over and over, the learning rate follows a cosine, and an exponential average of the weights stands for the paper's
-stochastic weight averaging.
+and eight Euler steps when sampling.  ``--designs`` visits 5000 designs over and over as the paper does; without it they
+are drawn endlessly.  The learning rate follows a cosine, and an exponential average of the weights stands for the
+paper's stochastic weight averaging.  The bundled ``paper`` has one pixel for each ratio instead of resized fields
+(``--latent 10``): resizing 10 x 10 to 16 x 16 and back keeps a sixth of the checkerboard mode, which moves outlines
+most.
 
 Built from ``torch.nn``.  ``diffusers`` and MONAI offer the same network ready-made, but neither is among this
 program's dependencies, and each brings far more than one network (model hubs, imaging formats, schedulers).

@@ -16,6 +16,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 import torch
+from safetensors import SafetensorError
 from safetensors.torch import load as load_tensors
 from safetensors.torch import save as save_tensors
 from torch import Tensor
@@ -30,6 +31,9 @@ MANIFEST = "manifest.json"
 FORMAT = 1
 #: Largest files that are read (bytes).
 LARGEST_MANIFEST, LARGEST_WEIGHTS = 4 * 2**20, 2**30
+#: What safetensors and torch raise for files of other networks and shapes that none has; a lack of memory, of a library
+#: or of a file of the system is no fault of the weights.
+UNFIT = (SafetensorError, ArithmeticError, LookupError, RuntimeError, TypeError, ValueError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +128,7 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
             raise ModelError("model.weights_not_finite", file=path.name)
     except ModelError:
         raise
-    except Exception as error:  # safetensors and torch raise many kinds; all mean the same to the user
+    except UNFIT as error:
         raise ModelError("model.weights_do_not_fit", file=path.name) from error
     return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 

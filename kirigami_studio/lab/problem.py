@@ -41,8 +41,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 
-#: Where targets come from: silhouettes of random ratio fields of two kinds, and shapes that people would draw.
-FAMILIES = ("structured", "sobol", "drawn")
+#: Where targets come from: silhouettes of random ratio fields of three kinds, and shapes that people would draw.
+FAMILIES = ("structured", "released", "sobol", "drawn")
 #: Seeds of drawn shapes; the bundled models were trained on the first kind and watched on the second.
 DRAWN_SEEDS = {"train": 0, "validation": 20_001, "test": 40_001}
 #: Ratios may lie this far, as a share, outside 0.1 .. 10: rounding of 10**z.
@@ -60,7 +60,7 @@ def designs(
     Parameters
     ----------
     family : str
-        ``structured`` or ``sobol``.
+        ``structured``, ``released`` or ``sobol``.
     split : str
         ``train``, ``validation`` or ``test``; they share no design.
     count : int, optional

@@ -147,7 +147,7 @@ class Pool:
         if not self._taken.acquire(blocking=False):
             return False
         try:
-            self._take_reports()
+            self._on_reports()
             return any(worker.ready and worker.alive for worker in self.workers)
         finally:
             self._taken.release()
@@ -240,7 +240,7 @@ class Pool:
     def _under_way(self, batch: int) -> bool:
         return any(worker.assignment is not None and worker.assignment.batch == batch for worker in self.workers)
 
-    def _take_reports(self) -> None:
+    def _on_reports(self) -> None:
         """Read what came in between two batches."""
         while True:
             try:

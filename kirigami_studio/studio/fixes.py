@@ -20,10 +20,14 @@ from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
+from kirigami_studio.settings.design import POLISH_STEPS
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
 from kirigami_studio.studio.cutting import plan_of
@@ -45,6 +49,14 @@ CROWDED = frozenset({"slit.no_room", "edge_cut.no_room", "plan.connectors_narrow
 COMBINED = (ConnectorStyle.CENTRED, ConnectorStyle.DOUBLE, ConnectorStyle.ARC)
 #: Sheets wider than this (mm) are not tried where the machine's bed is not known.
 WIDEST_MM = 1000.0
+#: Fewer voids each way, one grid after the other: by two, so that a grid keeps the symmetries that its parities allow.
+FEWER_VOIDS = (2, 4)
+#: Coarser grids than this are not tried.
+LEAST_VOIDS = 4
+#: Designs of a coarser grid: a quarter of them are fits from the uniform sheet.
+COARSER_DESIGNS = 12
+#: A coarser design that matches by more than this less than the one in its place is not worth offering.
+MOST_MATCH_LOST = 0.03
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -421,3 +433,45 @@ def _with(
         connector_mm=settings.connector_mm if connector_mm is None else connector_mm,
         width_mm=settings.width_mm if width_mm is None else width_mm,
     )
+
+
+def coarser_designs(candidate: Candidate, request: Request) -> Iterator[tuple[Candidate, ...]]:
+    """Fit the target on coarser grids, one after the other, from the uniform sheet.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The design whose place they are to take.
+    request : Request
+        What it was asked for by; grid and number of designs do not matter.
+
+    Yields
+    ------
+    tuple of Candidate
+        The designs of a grid, best first; grids whose best is not feasible or matches by far less are left out.
+    """
+    from kirigami_studio.pipeline.run import fits_from_uniform
+
+    rows, columns = candidate.sheet.grid
+    for fewer in FEWER_VOIDS:
+        grid = rows - fewer, columns - fewer
+        if min(grid) < LEAST_VOIDS:
+            return
+        wish = replace(
+            request,
+            grid=grid,
+            k=COARSER_DESIGNS,
+            polish=POLISH_STEPS,
+            near=None,
+            budget_seconds=None,
+            search=0,
+            trim=False,
+        )
+        answers = [task.carry_out(wish, never) for task in fits_from_uniform(wish)]
+        found = Ranking.of(wish).ranked([answer.candidate for answer in answers if answer.candidate is not None])
+        if (
+            found
+            and found[0].score.feasible
+            and found[0].score.iou_exact >= candidate.score.iou_exact - MOST_MATCH_LOST
+        ):
+            yield tuple(found)

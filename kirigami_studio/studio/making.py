@@ -284,7 +284,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
 
 
 def closed(request: CutRequest, made: Planned) -> AsCut | str:
-    """How the planned sheet does as cut, closed on its connectors in one go unless that is known, or why not."""
+    """How the planned sheet does as cut, closed in one go unless that is known, or why not."""
     from kirigami_studio.studio.verdict import closed_as_cut
 
     if request.as_cut is not None:
@@ -414,7 +414,7 @@ def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Can
 
 
 def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
-    """What to know before a PDF (width, height; mm) of many pages is written; None for one of few."""
+    """Warning before a PDF (width, height; mm) of many pages is written; None for few."""
     from kirigami_studio.export.paper import page_notes, tile
 
     notes = page_notes(size, paper)
@@ -465,7 +465,7 @@ def exporting_coupon(
 
 
 def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a cut file with the chosen design of a project as the project would cut it, and judge the sheet."""
+    """Compare a cut file with a project's chosen design as it would be cut; judge the sheet."""
     from kirigami_studio.export.verification import verify_export
 
     request = CutRequest.of(document)
@@ -556,8 +556,7 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.pipeline.coarser import coarser_designs
-    from kirigami_studio.studio.fixes import find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
     from kirigami_studio.studio.verdict import refused
 
     try:

@@ -198,7 +198,7 @@ def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None 
 
 
 def design_of(path: Path) -> Document | None:
-    """The project of the design that a cut file of this program carries; None for any other file."""
+    """Project of the design in a cut file of this program; None for any other file."""
     if path.suffix.lower() not in CUT_FILES:
         return None
     try:

@@ -107,7 +107,7 @@ def test_that_a_change_is_tested_on_every_python_and_system_that_is_served(
 def test_that_every_job_checks_out_sets_up_and_plays_tests(jobs: dict[str, Any]) -> None:
     for name, job in jobs.items():
         steps = job["steps"]
-        assert [step["uses"].partition("@")[0] for step in steps if "uses" in step] == [
+        assert [step["uses"].partition("@")[0] for step in steps if "uses" in step][:2] == [
             "actions/checkout", "actions/setup-python"
         ], name  # fmt: skip
         runs = [step["run"] for step in steps if "run" in step]

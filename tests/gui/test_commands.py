@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.window.main_window import TOOLBAR, MainWindow
 from kirigami_studio.project.document import Mark
@@ -22,8 +23,11 @@ def test_that_every_action_is_as_its_record_says(designed: MainWindow) -> None:
     state = designed.state()
     for command in designed.commands.records:
         action, wording = designed.commands[command.id], command.wording(state)
-        assert action.isEnabled() == command.enabled_when(state), command.id
-        assert action.isCheckable() == (command.checked_when is not None), command.id
+        if command.switch is None:
+            assert action.isEnabled() == command.enabled_when(state), command.id
+            assert action.isCheckable() == (command.checked_when is not None), command.id
+        else:
+            assert action is command.switch and action.isCheckable(), command.id
         assert action.text() == wording.text and action.statusTip() == wording.tip
         assert action.icon().isNull() == (not wording.icon), command.id
 
@@ -75,3 +79,23 @@ def test_that_the_guide_lists_keys_that_commands_have(window: MainWindow) -> Non
     listed = {re.sub("[←→↑↓]", lambda found: arrows[found[0]], keys) for keys in re.findall(r"`(Ctrl\+[^`]+)`", guide)}
     known = {keys for command in window.commands.records for keys in command.shortcuts}
     assert len(listed) > 15 and listed - known == {"Ctrl+A"}  # which selects all in every list
+
+
+def test_that_a_button_is_its_command(designed: MainWindow) -> None:
+    """One action for both: nothing is mirrored, so nothing can differ."""
+    stage, commands = designed.stage, designed.commands
+    for button, name in (
+        (stage.trim, "trim"),
+        (stage.hand, "hand"),
+        (stage.before, "before"),
+        (stage.cuts_switch, "cuts"),
+        (stage.plots_switch, "plots"),
+        (stage.toggles[Overlay.TARGET], "show_target"),
+        (designed.gallery.bar.compare, "compare"),
+    ):
+        assert button.defaultAction() is commands[name]
+        assert (button.isEnabled(), button.isChecked()) == (commands[name].isEnabled(), commands[name].isChecked())
+    stage.cuts_switch.click()
+    assert commands["cuts"].isChecked() and stage.showing_cuts and not stage.hand.isVisible()
+    commands["cuts"].trigger()
+    assert not stage.cuts_switch.isChecked() and not stage.showing_cuts

@@ -170,8 +170,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "pixels is not a multiple of {latent}. Give it fewer levels."
     ),
     "model.baseline_pixels": mark(
-        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. The pixels must be a multiple "
-        "of 4, and divide the mask."
+        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. They must be even at "
+        "every level of the network but the last, and divide the mask."
     ),
     "model.diffusion_steps": mark("A diffusion model samples in 1 to {most} steps, got {steps}."),
     "model.unknown_baseline": mark("There is no generator called '{kind:.40}'. Choose one of {choices}."),

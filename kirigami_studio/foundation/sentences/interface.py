@@ -95,6 +95,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Cannot write into {folder}: another export is writing there. Wait for it or choose another folder."
     ),
     "file.is_a_folder": mark("Cannot write {path}: it is a folder. Give a file name."),
+    "file.not_a_file": mark("Cannot write {path}: it is a device, a pipe or a socket. Give the name of a file."),
     "file.link_to_nothing": mark(
         "Cannot write {path}: it is a link to {target}, which does not exist. Delete the link or choose another name."
     ),

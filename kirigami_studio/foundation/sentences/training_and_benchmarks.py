@@ -89,6 +89,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "training.fit_share_out_of_range": mark("--fit-share must be between 0 and 1, got {share:g}."),
     "training.share_above_one": mark("{option} is a share from 0 to 1, got {share:g}."),
+    "training.cannot_record": mark(
+        "--recorded needs one process with a GPU, and the network is on {device:.20}. Leave it out."
+    ),
+    "training.fits_not_recorded": mark("--recorded does not go with --fits. Leave one of them out."),
+    "training.designs_of_other_grid": mark(
+        "The network draws {rows} x {columns} ratios, and the data set has tables of {shape}. Make one for this grid."
+    ),
+    "training.too_few_designs": mark("A step takes {batch} designs, and there are only {designs}. Lower --batch."),
     "training.minutes_not_positive": mark("--minutes must be above 0, got {minutes:g}."),
     # benchmark
     "benchmark.no_targets_found": mark(

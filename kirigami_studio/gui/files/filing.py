@@ -42,9 +42,7 @@ class ProjectFiles(QObject):
         session.set_status(tr("Saving {name} …", name=path.name))
         picture = self._tracer.picture_of(document.target)
         steps = partial(saving, document, picture, path, session.on_disk)
-        callbacks = JobCallbacks(
-            partial(self._take_saved, document, session.project), on_failed=self._report_save_failed
-        )
+        callbacks = JobCallbacks(partial(self._on_saved, document, session.project), on_failed=self._report_save_failed)
         session.queue.start(tr("saving {name}", name=path.name), steps, callbacks)
 
     def overwrite(self, changed: ChangedOnDisk) -> None:
@@ -57,7 +55,7 @@ class ProjectFiles(QObject):
         session = self._session
         session.set_status(tr("Opening {name} …", name=path.name))
         steps = partial(loading, path, self.new_folder(), session.on_disk)
-        callbacks = JobCallbacks(partial(self._take_opened, path), on_failed=session.report_failure)
+        callbacks = JobCallbacks(partial(self._on_opened, path), on_failed=session.report_failure)
         session.queue.start(tr("opening {name}", name=path.name), steps, callbacks)
 
     def new_folder(self) -> Path:
@@ -68,7 +66,7 @@ class ProjectFiles(QObject):
         self._count += 1
         return Path(self._folder.name) / f"{PASTED}{self._count}"
 
-    def _take_saved(self, document: Document, project: int, saved: Saved | ChangedOnDisk) -> None:
+    def _on_saved(self, document: Document, project: int, saved: Saved | ChangedOnDisk) -> None:
         if isinstance(saved, ChangedOnDisk):
             self.save_failed.emit()
             self._session.set_status(tr("Not saved: {name} was changed on disk.", name=saved.path.name))
@@ -86,7 +84,7 @@ class ProjectFiles(QObject):
         self.save_failed.emit()
         self._session.report_failure(sentence, trace)
 
-    def _take_opened(self, path: Path, project: Project) -> None:
+    def _on_opened(self, path: Path, project: Project) -> None:
         for note in project.notes:
             self._session.post(Message(note, Tone.WARNING))
         if project.picture is not None and project.document.target is not None:

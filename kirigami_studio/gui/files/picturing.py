@@ -70,7 +70,7 @@ class PictureMaker(QObject):
         """Put a picture of a view on the clipboard."""
         steps = partial(picture_jobs.drawing, self.record(view), self.scale)
         self._session.queue.start(
-            tr("copying a picture"), steps, JobCallbacks(self._take_image, on_failed=self._report_failure)
+            tr("copying a picture"), steps, JobCallbacks(self._on_image, on_failed=self._report_failure)
         )
 
     def copy_cuts(self) -> None:
@@ -80,7 +80,7 @@ class PictureMaker(QObject):
             self._session.post(Message(tr("No design to copy yet. Generate one first."), Tone.HINT))
             return
         self._session.set_status(tr("Planning the cuts …"))
-        callbacks = JobCallbacks(self._take_cuts, on_failed=self._report_failure)
+        callbacks = JobCallbacks(self._on_cuts, on_failed=self._report_failure)
         self._session.queue.start(tr("copying the cuts"), partial(picture_jobs.drawing_cuts, request), callbacks)
 
     # drawing -------------------------------------------------------------------------------------------------------
@@ -139,7 +139,7 @@ class PictureMaker(QObject):
         self._session.set_status(tr("Exported picture: {path}.", path=path))
         self.written.emit(path)
 
-    def _take_image(self, image: QImage) -> None:
+    def _on_image(self, image: QImage) -> None:
         QGuiApplication.clipboard().setImage(image)
         self._session.set_status(
             tr(
@@ -150,7 +150,7 @@ class PictureMaker(QObject):
         )
         self.copied.emit()
 
-    def _take_cuts(self, content: bytes) -> None:
+    def _on_cuts(self, content: bytes) -> None:
         data = QMimeData()
         data.setData(SVG_TYPE, content)
         data.setText(content.decode("utf-8"))

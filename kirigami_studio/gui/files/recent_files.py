@@ -74,24 +74,24 @@ class RecentFiles(QObject):
 
     def _change(self, change: Callable[[Recent], Recent]) -> None:
         if self._path is None:
-            self._take(change(self.present))
+            self._on_change(change(self.present))
             return
         try:
-            self._take(changed_file(self._path, change))
+            self._on_change(changed_file(self._path, change))
         except KirigamiError as error:
             self._path = None  # once is enough
             self._session.post(Message(str(error), Tone.WARNING))
-            self._take(change(self.present))
+            self._on_change(change(self.present))
 
     def _read_again(self) -> None:
         if self._path is not None:
             try:
-                self._take(recent.load(self._path))
+                self._on_change(recent.load(self._path))
             except KirigamiError as error:
                 self._path = None
                 self._session.post(Message(str(error), Tone.WARNING))
 
-    def _take(self, known: Recent) -> None:
+    def _on_change(self, known: Recent) -> None:
         if known != self.present:
             self.present = known
             self.changed.emit(known)

@@ -115,7 +115,7 @@ class Recovery(QObject):
         path = "" if session.path is None else str(session.path.absolute())
         digest = "" if session.path is None else session.on_disk.get(session.path, "")
         note = RecoveryNote(_name_of(document, session.path), path, recovery.now(), digest)
-        callbacks = JobCallbacks(self._take_kept, self._look_again, on_failed=self._report_not_kept)
+        callbacks = JobCallbacks(self._on_kept, self._look_again, on_failed=self._report_not_kept)
         steps = partial(keeping, document, self._tracer.picture_of(document.target), note, self._own)
         self._job = session.queue.start(tr("autosaving"), steps, callbacks)
 
@@ -129,7 +129,7 @@ class Recovery(QObject):
             self._lock = lock
         return True
 
-    def _take_kept(self, document: Document) -> None:
+    def _on_kept(self, document: Document) -> None:
         self._kept = document
         self._drop_pending()
         self.kept.emit(document)
@@ -223,7 +223,7 @@ class Recovery(QObject):
         """Open the kept work; its file goes once this session keeps the work itself."""
         self._session.set_status(tr("Recovering {name} …", name=_called(leftover)))
         callbacks = JobCallbacks(
-            partial(self._take_recovered, leftover), on_failed=partial(self._report_not_recovered, leftover)
+            partial(self._on_recovered, leftover), on_failed=partial(self._report_not_recovered, leftover)
         )
         steps = partial(loading, leftover.file, self._new_folder(), self._session.on_disk)
         self._session.queue.start(tr("recovering {called}", called=_called(leftover)), steps, callbacks)
@@ -241,7 +241,7 @@ class Recovery(QObject):
         if lock is not None:
             lock.unlock()
 
-    def _take_recovered(self, leftover: Leftover, project: Project) -> None:
+    def _on_recovered(self, leftover: Leftover, project: Project) -> None:
         for note in project.notes:
             self._session.post(Message(note, Tone.WARNING))
         document = project.document

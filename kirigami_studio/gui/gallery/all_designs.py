@@ -32,9 +32,6 @@ class AllDesigns(QFrame):
     closed = Signal()
     selection_changed = Signal(Selection)
     order_wanted = Signal(SortOrder)
-    show_all_wanted = Signal()
-    again_wanted = Signal()
-    alike_wanted = Signal()
     nearness_changed = Signal(int)  #: position of the slider
     comparing_changed = Signal(bool)
     compare_built = Signal(CompareFour)
@@ -85,14 +82,12 @@ class AllDesigns(QFrame):
         self.card_size.valueChanged.connect(self.table.set_size)
         self.card_size.setValue(1)
         self.again = ToolButton("allAgain", "again", tr("More designs (Ctrl+R)."))
-        self.again.clicked.connect(self.again_wanted)
         self.alike = QPushButton(tr("More like this"))
         self.alike.setObjectName("small")
         self.alike.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.alike.setToolTip(
             tr("Generate designs like the one that is marked, and add them. The slider says how near they are to it.")
         )
-        self.alike.clicked.connect(self.alike_wanted)
         self.nearness = QSlider(Qt.Orientation.Horizontal)
         self.nearness.setObjectName("allNearness")
         self.nearness.setRange(0, STEPS)
@@ -135,7 +130,6 @@ class AllDesigns(QFrame):
         self.show_all.setObjectName("link")
         self.show_all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.show_all.setToolTip(tr("Take every filter off."))
-        self.show_all.clicked.connect(self.show_all_wanted)
         layout = pane.layout()
         if isinstance(layout, QHBoxLayout):
             layout.addWidget(self.show_all)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class AllDesignsPresenter(QObject):
-    """Builds the table when it is first wanted; until then it costs the start of the window nothing.
+    """Builds the table when it is first wanted, so that the window starts without it.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class AllDesignsPresenter(QObject):
         self._pages, self._panel, self._designs, self._session = pages, panel, designs, session
         self._generation, self._marks, self._choose, self._phi = generation, marks, choose, phi
         self.page: AllDesigns | None = None
-        panel.bar.all_wanted.connect(lambda: self.show(True))
+        panel.bar.all.clicked.connect(lambda: self.show(True))
 
     @property
     def shown(self) -> bool:
@@ -81,7 +81,7 @@ class AllDesignsPresenter(QObject):
             return
         self.shown_changed.emit(True)
         page = self._page
-        self._follow_document()
+        self.show_document()
         self._pages.setCurrentWidget(page)
         page.table.go_to(self._designs.chosen)
         page.focus()
@@ -108,10 +108,10 @@ class AllDesignsPresenter(QObject):
         page.closed.connect(lambda: self.show(False))
         page.selection_changed.connect(bar.take)
         page.order_wanted.connect(bar.sort_by)
-        page.show_all_wanted.connect(bar.show_all)
+        page.show_all.clicked.connect(bar.show_all)
         bar.selection_changed.connect(page.show_selection)
-        page.again_wanted.connect(self._generation.again)
-        page.alike_wanted.connect(lambda: self._more_like(page.table.current))
+        page.again.clicked.connect(self._generation.again)
+        page.alike.clicked.connect(lambda: self._more_like(page.table.current))
         page.nearness_changed.connect(bar.nearness.setValue)
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())
@@ -119,28 +119,22 @@ class AllDesignsPresenter(QObject):
         table = page.table
         table.hint = lambda: view.hint
         table.left.connect(lambda: self.show(False))
-        table.taken.connect(self._take)
+        table.taken.connect(self._put_on_stage)
         table.pin_wanted.connect(self._marks.pin)
         table.reject_wanted.connect(self._designs.reject)
         table.alike_toggled.connect(view.toggle_alike)
         table.clear_wanted.connect(bar.show_all)
         table.menu_wanted.connect(self._show_menu)
         table.compared_changed.connect(self._show_compared)
-        session, run = self._session, self._generation.run
-        session.document_changed.connect(self._follow_document)
-        session.display.gallery_reset.connect(self._follow_document)
-        session.display.stage_changed.connect(self._follow_stage)
-        run.started.connect(self._follow_run)
-        run.ended.connect(self._follow_run)
         page.show_selection(view.model_.selection)
         self.page = page
-        self._follow_stage(session.stage)
-        self._follow_run()
+        self.show_design(self._session.stage)
+        self.show_run()
         return page
 
     def _connect_compare(self, compare: CompareFour) -> None:
         self._colour(compare)
-        compare.taken.connect(self._take_compared)
+        compare.taken.connect(self._on_compared)
 
     def _colour(self, part: QWidget) -> None:
         """Give new parts the colours of the theme."""
@@ -149,21 +143,26 @@ class AllDesignsPresenter(QObject):
 
     # what the session tells ----------------------------------------------------------------------------------------
 
-    def _follow_document(self, _: object = None) -> None:
-        self._page.table.set_target(self._session.document.target)
-        self._follow_run()
-        self._show_compared()
+    def show_document(self) -> None:
+        """The document or its designs have changed."""
+        if self.page is not None:
+            self.page.table.set_target(self._session.document.target)
+            self.show_run()
+            self._show_compared()
 
-    def _follow_run(self, _: object = None) -> None:
-        ready = bool(self._session.document.candidates) and not self._generation.run.running
-        self._page.set_ready(ready)
+    def show_run(self) -> None:
+        """A run has begun or ended: more designs can be asked for while there is none."""
+        if self.page is not None:
+            self.page.set_ready(bool(self._session.document.candidates) and not self._generation.run.running)
 
-    def _follow_stage(self, entry: Entry | None) -> None:
-        self._page.table.set_on_stage(None if entry is None else entry.candidate)
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
+        if self.page is not None:
+            self.page.table.set_on_stage(None if entry is None else entry.candidate)
 
     # what is asked for ---------------------------------------------------------------------------------------------
 
-    def _take(self, candidate: Candidate) -> None:
+    def _put_on_stage(self, candidate: Candidate) -> None:
         """Put a design on the stage and go back to the window."""
         self._choose(candidate)
         self.show(False)
@@ -173,7 +172,7 @@ class AllDesignsPresenter(QObject):
             self._designs.more_like(candidate)
 
     def rename_current(self) -> None:
-        """Ask for the name and the note of the design that is marked in the table, else of the chosen one."""
+        """Ask for name and note of the design marked in the table, else of the chosen one."""
         page = self.page
         if page is None or not self.shown:
             self._designs.rename(self._designs.chosen)
@@ -213,5 +212,5 @@ class AllDesignsPresenter(QObject):
             page.compare.bar.set_phi(self._phi())
             page.compare.fit()
 
-    def _take_compared(self, place: int) -> None:
-        self._take(self._page.table.compared[place])
+    def _on_compared(self, place: int) -> None:
+        self._put_on_stage(self._page.table.compared[place])

@@ -58,7 +58,7 @@ class ChosenDesignJob(Generic[T]):
         """Start a job on a design; ``name`` follows the word "while"."""
         self.stop()
         self._candidate = candidate
-        self._job.start(name, steps, JobCallbacks(self._take, self._end, self._end, self._fail))
+        self._job.start(name, steps, JobCallbacks(self._on_result, self._end, self._end, self._fail))
         self._on_busy(True)
 
     def stop(self) -> None:
@@ -72,7 +72,7 @@ class ChosenDesignJob(Generic[T]):
         if candidate != self._candidate:
             self.stop()
 
-    def _take(self, report: T) -> None:
+    def _on_result(self, report: T) -> None:
         before = self._candidate
         self.stop()
         if before is not None:
@@ -100,7 +100,7 @@ class TrimSwitch(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self.job = ChosenDesignJob[Decoded](session, self.busy_changed.emit, self._take)
+        self.job = ChosenDesignJob[Decoded](session, self.busy_changed.emit, self._on_result)
 
     @property
     def busy(self) -> bool:
@@ -134,7 +134,7 @@ class TrimSwitch(QObject):
         self.job.start(tr("trimming the design"), candidate, steps)
         self._session.set_status(tr("Trimming {name} …", name=chosen_name(document)))
 
-    def _take(self, before: Candidate, report: Decoded) -> None:
+    def _on_result(self, before: Candidate, report: Decoded) -> None:
         after, trim = report.candidate, report.candidate.trim
         if before != self._session.document.candidate or trim is None:
             return
@@ -163,7 +163,7 @@ class Refitter(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self.job = ChosenDesignJob[Refitted](session, self.busy_changed.emit, self._take)
+        self.job = ChosenDesignJob[Refitted](session, self.busy_changed.emit, self._on_result)
 
     @property
     def busy(self) -> bool:
@@ -189,7 +189,7 @@ class Refitter(QObject):
         self.job.stop()
         self._session.set_status(tr("Fitting stopped; nothing changed."))
 
-    def _take(self, before: Candidate, report: Refitted) -> None:
+    def _on_result(self, before: Candidate, report: Refitted) -> None:
         after = report.decoded.candidate
         numbers = {
             "before": 100 * before.score.iou_exact,
@@ -258,14 +258,14 @@ class SampledScores(QObject):
         if before is not None:
             self.known.emit(candidate, self._session.cache.entry(before))
             return
-        callbacks = JobCallbacks(partial(self._take, candidate, target), on_failed=self._session.report_failure)
+        callbacks = JobCallbacks(partial(self._on_result, candidate, target), on_failed=self._session.report_failure)
         self._job.start(tr("scoring the unpolished design"), partial(scoring_sample, candidate, target), callbacks)
 
     def stop(self) -> None:
         """Forget what is still being scored."""
         self._job.stop()
 
-    def _take(self, candidate: Candidate, target: Outline, report: Decoded) -> None:
+    def _on_result(self, candidate: Candidate, target: Outline, report: Decoded) -> None:
         self._session.cache.put(report.candidate, report.deployment)
         self._sampled[candidate, target] = report.candidate
         while len(self._sampled) > CAPACITY:

@@ -127,8 +127,6 @@ class Side(QWidget):
 class ComparePage(QWidget):
     """Shows the chosen design on the left and another one on the right, at one angle, zoom and place."""
 
-    swap_wanted = Signal()
-    leave_wanted = Signal()
     pair_changed = Signal()
     phi_changed = Signal(float)  #: radians
 
@@ -136,9 +134,7 @@ class ComparePage(QWidget):
         super().__init__(parent)
         self._entries: tuple[Entry | None, Entry | None] = (None, None)
         self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
-        self.swap.clicked.connect(self.swap_wanted)
         self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K)."))
-        self.leave.clicked.connect(self.leave_wanted)
         self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
         self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
         self.bar = DeploymentBar()

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_texts
 from kirigami_studio.gui.gallery.gallery_view import GalleryView
-from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.lattice.sheet import Sheet
 
 #: Nearness at the two ends of the slider, and where it starts.
@@ -62,9 +62,6 @@ class GalleryBar(QWidget):
     """Reports the selection that is wanted, and wishes for more designs."""
 
     selection_changed = Signal(Selection)
-    again_wanted = Signal()
-    alike_wanted = Signal(float)  #: nearness
-    all_wanted = Signal()  #: all designs in one window
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,12 +73,11 @@ class GalleryBar(QWidget):
         self.filters = FilterControls(self)
         self.filters.changed.connect(self._emit_selection)
         self.all = ToolButton("allDesigns", "table", tr("All designs in one window: flat, half open and open (A)."))
-        self.all.clicked.connect(self.all_wanted)
         self.filter = ToolButton("filterGallery", "filter", tr("Filter designs."), checkable=True)
         self.again = ToolButton("again", "again", tr("More designs (Ctrl+R)."))
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
         tip = tr("Compare two designs side by side (K). Ctrl+click a card to compare with it.")
-        self.compare = ToolButton("compare", "compare", tip, checkable=True)
+        self.compare = SwitchButton("compare", "compare", tip)
         row = QHBoxLayout()
         row.setSpacing(4)
         row.addWidget(self.order, 1)
@@ -98,7 +94,6 @@ class GalleryBar(QWidget):
             pane.hide()
         self.filter.toggled.connect(self._fold)
         self.alike.toggled.connect(self._fold)
-        self.again.clicked.connect(self.again_wanted)
         self.set_ready(False)
 
     def _alike_pane(self) -> QWidget:
@@ -113,7 +108,6 @@ class GalleryBar(QWidget):
         self.draw.setObjectName("small")
         self.draw.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.draw.setToolTip(tr("Generate designs like the chosen one and add them (Ctrl+Shift+R)."))
-        self.draw.clicked.connect(lambda: self.alike_wanted.emit(self.nearness_value))
         pane = QWidget()
         row = QHBoxLayout(pane)
         row.setContentsMargins(0, 0, 0, 2)

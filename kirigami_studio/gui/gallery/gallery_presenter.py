@@ -28,7 +28,7 @@ from kirigami_studio.studio.as_cut import AsCut
 
 
 class GalleryPresenter(QObject):
-    """Shows the designs of the document, or of a run, as cards, and passes on what is asked for at one.
+    """Shows the designs of the document, or of a run, as cards, and passes requests on.
 
     Parameters
     ----------
@@ -68,29 +68,23 @@ class GalleryPresenter(QObject):
         self.menu: QMenu | None = None
         self._ranked_as_cut = False
         self._connect(balance)
-        self._show_document(session.document)
-        self._show_idle()
+        self.show_document(session.document)
+        self.show_idle()
 
     def _connect(self, balance: SettingsPanel) -> None:
-        view, bar, run, session = self._view, self._panel.bar, self._generation.run, self._session
+        view, bar = self._view, self._panel.bar
         view.chosen.connect(self._choose)
         view.pin_wanted.connect(self._marks.pin)
         view.reject_wanted.connect(self.reject)
         view.menu_wanted.connect(self.show_menu)
         view.compare_wanted.connect(self.compare_wanted)
-        bar.again_wanted.connect(self._generation.again)
-        bar.alike_wanted.connect(self._generation.more_like)
-        run.started.connect(self._show_run)
-        run.ended.connect(self._show_idle)
+        bar.again.clicked.connect(self._generation.again)
+        bar.draw.clicked.connect(lambda: self._generation.more_like(bar.nearness_value))
         balance.regular_moved.connect(self._move_balance)
         balance.regular_chosen.connect(self._choose_balance)
         self._regularity.ranked.connect(lambda ranking: view.rank_by(self._estimated(ranking)))
         self._estimates.changed.connect(self._show_estimates)
         self._alikes.known.connect(view.set_groups)
-        session.document_changed.connect(self._show_document)
-        session.display.gallery_reset.connect(self._show_gallery)
-        session.display.candidate_found.connect(self._add_card)
-        session.display.stage_changed.connect(self._show_stage)
 
     @property
     def _running(self) -> bool:
@@ -98,11 +92,12 @@ class GalleryPresenter(QObject):
 
     # the run -------------------------------------------------------------------------------------------------------
 
-    def _show_run(self) -> None:
+    def show_run(self) -> None:
+        """A run has begun."""
         self._panel.bar.set_ready(False)
         self._view.set_hint(tr("Generating …"), tr("The first designs appear shortly."))
 
-    def _show_idle(self) -> None:
+    def show_idle(self) -> None:
         """No run is in progress."""
         hint = tr("Designs appear here, best first, as they are generated.")
         self._view.set_hint(tr("No designs yet"), hint)
@@ -151,7 +146,8 @@ class GalleryPresenter(QObject):
         found = {candidate: one.jam_phi for candidate, one in self._estimates.known.items()}
         return replace(ranking, jam_phi={**ranking.jam_phi, **found})
 
-    def _show_document(self, document: Document) -> None:
+    def show_document(self, document: Document) -> None:
+        """The document has changed: marks, names and order of the cards."""
         view, running = self._view, self._running
         view.set_measure(document.fabrication.width_mm, None if running else self._ranking)
         marks = dict(zip(document.candidates, document.marks, strict=True))
@@ -163,7 +159,8 @@ class GalleryPresenter(QObject):
         self._show_ready(document)
         self._show_chosen()
 
-    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
+    def show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        """Show other designs."""
         view, document = self._view, self._session.document
         ranking = self._session.display.ranking if self._running else self._ranking
         view.model_.set_ranking(ranking)
@@ -172,7 +169,8 @@ class GalleryPresenter(QObject):
         view.mark(document.candidate)
         self._show_chosen()
 
-    def _add_card(self, entry: Entry) -> None:
+    def add(self, entry: Entry) -> None:
+        """A run has found a design, or improved one."""
         self._view.add(entry)
         self._show_chosen()
 
@@ -183,7 +181,8 @@ class GalleryPresenter(QObject):
         self._panel.bar.set_chosen(None if candidate is None or not name else (candidate.sheet, name))
         self.named.emit(name)
 
-    def _show_stage(self, entry: Entry | None) -> None:
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
         self._view.mark(None if entry is None else entry.candidate)
         self._show_chosen()
 
@@ -221,7 +220,7 @@ class GalleryPresenter(QObject):
         compare: tuple[str, str, Callable[[], None]],
         rename: Callable[[], None],
     ) -> None:
-        """Open the menu of a design at a place where comparing and renaming mean something of their own."""
+        """Open the menu of a design, with comparing and renaming as the place has them."""
         menu = QMenu(self._panel)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.setToolTipsVisible(True)

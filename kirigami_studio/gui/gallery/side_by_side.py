@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QSignalBlocker
+from PySide6.QtCore import QObject
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
@@ -40,19 +40,15 @@ class SideBySide(QObject):
         turn: Callable[[bool], None],
     ) -> None:
         super().__init__(page)
-        self._view, self._button, self._page, self._session = panel.view, panel.bar.compare, page, session
+        self._view, self._switch, self._page, self._session = panel.view, panel.bar.compare.switch, page, session
         self._choose, self._turn = choose, turn
         self._comparing = False
         self._compared: Candidate | None = None
         self._chosen: Candidate | None = None
         self._shown: tuple[ComparedDesign, ComparedDesign, Outline | None] | None = None
-        self._button.clicked.connect(self.show)
-        page.swap_wanted.connect(self.swap)
-        page.leave_wanted.connect(lambda: self.show(False))
-        session.display.stage_changed.connect(self._take_stage)
-        session.display.gallery_reset.connect(self._show_pair)
-        session.display.candidate_found.connect(self._show_pair)
-        session.document_changed.connect(self._show_pair)
+        self._switch.triggered.connect(self.show)
+        page.swap.clicked.connect(self.swap)
+        page.leave.clicked.connect(lambda: self.show(False))
         self._show_switches(False)
 
     @property
@@ -83,7 +79,7 @@ class SideBySide(QObject):
         if on and not self._comparing:
             self._page.fit()
         self._turn(on)
-        self._show_pair()
+        self.show_pair()
 
     def follow(self, comparing: bool) -> None:
         """The stage shows two designs now, or one."""
@@ -95,20 +91,21 @@ class SideBySide(QObject):
         if self.compared is not None and self._comparing:
             self._choose(self.compared)
 
-    def _take_stage(self, entry: Entry | None) -> None:
+    def show_design(self, entry: Entry | None) -> None:
         """Another design was chosen; where that is the compared one, the two change sides."""
         candidate = None if entry is None else entry.candidate
         if candidate is not None and candidate == self._compared:
             self._compared = self._chosen
         self._chosen = candidate
-        self._show_pair()
+        self.show_pair()
 
     def _entry(self, candidate: Candidate | None) -> Entry | None:
         model = self._view.model_
         number = model.number_of(candidate)
         return model.all_entries[number - 1] if number else None
 
-    def _show_pair(self) -> None:
+    def show_pair(self) -> None:
+        """Show both as they are now, or one alone where the other is gone."""
         if not self._comparing:
             self._view.show_compared(None)
             return
@@ -128,8 +125,7 @@ class SideBySide(QObject):
         self._view.show_compared(other.candidate)
 
     def _show_switches(self, on: bool) -> None:
-        """The button shows whether two designs are on the stage."""
-        with QSignalBlocker(self._button):
-            self._button.setChecked(on)
+        """The switch says whether two designs are on the stage."""
+        self._switch.setChecked(on)
         if not on:
             self._view.show_compared(None)

@@ -341,7 +341,7 @@ class FabricationPanel(Card):
         self._warn(sentence, calm=False)
 
     def show_untrimmed(self) -> None:
-        """The design is whole: what was said of a trimmed one goes at once, before its own plan is made."""
+        """Forget the words on a trimmed design at once, before the plan of the whole one is made."""
         if self.summary.toolTip():
             self._forget_summary()
 

@@ -1,4 +1,4 @@
-"""How the chosen design is made: the numbers it is cut with, its plan, and what is to be expected of the sheet."""
+"""How the chosen design is made: its numbers, its plan, and the verdict on the sheet."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class FabricationPresenter(QObject):
-    """Shows plan and verdict in the panel, on the page of cuts and in the bar, and takes changes over.
+    """Shows plan and verdict in the panel, on the page of cuts and in the bar; takes changes.
 
     Parameters
     ----------
@@ -62,19 +62,19 @@ class FabricationPresenter(QObject):
         keeper.changed.connect(bar.show_state)
         keeper.changed.connect(panel.show_verdict)
         bar.fix_wanted.connect(apply_fix)
-        session.document_changed.connect(self._show_document)
-        session.display.stage_changed.connect(self._show_design)
-        self._show_document(session.document)
+        self.show_document(session.document)
 
     def show_run(self) -> None:
         """Designs are being made: there is no plan to show."""
         self._panel.show_waiting()
         self._cuts.show_plan(None)
 
-    def _show_document(self, document: Document) -> None:
+    def show_document(self, document: Document) -> None:
+        """The document has changed: the numbers that it is cut with."""
         self._panel.show_settings(document.fabrication)
 
-    def _show_design(self, entry: Entry | None) -> None:
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
         if entry is None or entry.candidate.trim is None:
             self._panel.show_untrimmed()
 

@@ -141,7 +141,7 @@ class VerdictKeeper(QObject):
             self._start(tr("judging the sheet"), request, made.verdict, steps)
 
     def _alternatives(self, request: CutRequest) -> tuple[dict[str, Candidate], Request | None]:
-        """Other designs by their names, and the run that coarser ones are asked for by, if there can be one."""
+        """Other designs by their names, and the run that would find coarser ones, if any."""
         document = self._session.document
         try:
             run = None if document.target is None else request_for(document.target, document.settings, request.settings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
@@ -12,9 +12,6 @@ from kirigami_studio.gui.widgets.theme import Palette
 
 class GenerateBar(QWidget):
     """One big button; while a run goes on, its progress and a Cancel button."""
-
-    generate_wanted = Signal()
-    cancel_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -42,8 +39,6 @@ class GenerateBar(QWidget):
         column.addLayout(buttons)
         column.addWidget(self.progress)
         column.addWidget(self.progress_text)
-        self.generate.clicked.connect(self.generate_wanted)
-        self.stop.clicked.connect(self.cancel_wanted)
         self.show_idle()
 
     def show_ready(self, ready: bool) -> None:

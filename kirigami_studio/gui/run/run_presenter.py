@@ -47,23 +47,24 @@ class RunPresenter(QObject):
         panel.changed.connect(change)
         panel.edited.connect(session.history.end_drag)
         panel.keep_changed.connect(self._keep_seed)
-        bar.generate_wanted.connect(generation.generate)
-        bar.cancel_wanted.connect(cancel)
-        run = generation.run
-        run.started.connect(bar.show_running)
-        run.progressed.connect(bar.show_progress)
-        run.ended.connect(self._show_idle)
+        bar.generate.clicked.connect(generation.generate)
+        bar.stop.clicked.connect(cancel)
+        generation.run.progressed.connect(bar.show_progress)
         regularity.busy_changed.connect(self._show_fitting)
         regularity.progressed.connect(bar.show_progress)
-        session.document_changed.connect(self._show_document)
-        self._show_idle()
-        panel.show_settings(session.document.settings)
+        self.show_idle()
+        self.show_document(session.document)
 
-    def _show_document(self, document: Document) -> None:
+    def show_document(self, document: Document) -> None:
+        """Show the settings of the next run, and whether there is a target for it."""
         self._panel.show_settings(document.settings)
         self._bar.show_ready(document.target is not None)
 
-    def _show_idle(self) -> None:
+    def show_run(self, total: int) -> None:
+        """A run for so many designs has begun."""
+        self._bar.show_running(total)
+
+    def show_idle(self) -> None:
         """No run is in progress."""
         self._bar.show_idle()
         self._bar.show_ready(self._session.document.target is not None)
@@ -73,7 +74,7 @@ class RunPresenter(QObject):
         if busy:
             self._bar.show_fitting()
         elif not self._generation.run.running:
-            self._show_idle()
+            self.show_idle()
 
     def _keep_seed(self, keeps: bool) -> None:
         self._generation.planner.keeps_seed = keeps

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from kirigami_studio.gui.session.overlays import Overlay
+from PySide6.QtGui import QAction
+
 from kirigami_studio.project.document import Mark
 
 
@@ -43,9 +44,7 @@ class WindowState:
         What can be done with the objects that are selected on the board.
     comparing : bool
         Two designs are shown side by side.
-    before, trim, hand, cuts, plots, ideal : Switch
-    overlays : frozenset of Overlay
-        What is drawn over the layout.
+    ideal : Switch
     dark, follows_system : bool
         The theme, and whether it is the desktop's.
     still : bool
@@ -64,13 +63,7 @@ class WindowState:
     editing_target: bool
     arrangements: frozenset[str]
     comparing: bool
-    before: Switch
-    trim: Switch
-    hand: Switch
-    cuts: Switch
-    plots: Switch
     ideal: Switch
-    overlays: frozenset[Overlay]
     dark: bool
     follows_system: bool
     still: bool
@@ -122,6 +115,8 @@ class Command:
         Whether it is checked; None for a command that is no switch.
     worded : callable or None
         Its text, tip and icon where they depend on the state of the window.
+    switch : QAction or None
+        The action of a switch that a panel owns: the command is that action, and ``run`` triggers it.
     """
 
     id: str
@@ -135,6 +130,7 @@ class Command:
     enabled_when: Callable[[WindowState], bool] = always
     checked_when: Callable[[WindowState], bool] | None = None
     worded: Callable[[WindowState], Wording] | None = None
+    switch: QAction | None = None
 
     def wording(self, state: WindowState) -> Wording:
         """Return its text, tip and icon in a state of the window."""

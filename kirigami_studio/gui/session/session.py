@@ -249,7 +249,7 @@ class Session(QObject):
         return self.display.stage
 
     def width_of(self, candidate: Candidate | None) -> float:
-        """Width of the flat sheet that a design would be cut from, mm: each design opens to the size asked for."""
+        """Width of the flat sheet of a design, mm: each design opens to the size asked for."""
         document = self.document
         return (document.fabrication if candidate is None else cut_for(document, candidate)).width_mm
 

@@ -40,13 +40,13 @@ class ArtworkKeeper(QObject):
     def open(self, path: Path) -> None:
         """Read a picture and lay it where the one before lay, or over the opened sheet."""
         self._session.set_status(tr("Reading {name} …", name=path.name))
-        callbacks = JobCallbacks(self._take, on_failed=self._refuse)
+        callbacks = JobCallbacks(self._on_result, on_failed=self._refuse)
         self._reading.start(tr("reading {name}", name=path.name), partial(reading_artwork, path), callbacks)
 
     def open_second(self, path: Path) -> None:
         """Read a picture that shares the sheet with the first one by stripes."""
         self._session.set_status(tr("Reading {name} …", name=path.name))
-        callbacks = JobCallbacks(self._take_second, on_failed=self._refuse)
+        callbacks = JobCallbacks(self._on_second, on_failed=self._refuse)
         self._reading.start(tr("reading {name}", name=path.name), partial(reading_artwork, path), callbacks)
 
     def share(self, stripes: int) -> None:
@@ -77,7 +77,7 @@ class ArtworkKeeper(QObject):
         """Forget what is still being read: another document comes."""
         self._reading.stop()
 
-    def _take(self, picture: ArtPicture) -> None:
+    def _on_result(self, picture: ArtPicture) -> None:
         before = self._session.document.artwork
         if before is None:
             artwork = Artwork(Laid(picture))
@@ -85,7 +85,7 @@ class ArtworkKeeper(QObject):
             artwork = replace(before, first=replace(before.first, picture=picture))
         self._session.apply(edits.set_artwork(self._session.document, artwork))
 
-    def _take_second(self, picture: ArtPicture) -> None:
+    def _on_second(self, picture: ArtPicture) -> None:
         artwork = self._session.document.artwork
         if artwork is not None:
             self._share(picture, artwork.stripes)

@@ -64,7 +64,7 @@ class AsCutReader(QObject):
         self._known: OrderedDict[Key, SimulatedSheet] = OrderedDict()
         self._candidate: Candidate | None = None
         self.state = UNKNOWN
-        session.display.stage_changed.connect(self._take_stage)
+        session.display.stage_changed.connect(self._on_stage)
         session.display.settled.connect(self._wait)
         session.fabrication_changed.connect(self._wait)
 
@@ -101,15 +101,15 @@ class AsCutReader(QObject):
             self._known.move_to_end(key)
             self._say(AsCutState(self._known[key]))
             return
-        callbacks = JobCallbacks(partial(self._take, key), on_failed=self._fail)
+        callbacks = JobCallbacks(partial(self._on_result, key), on_failed=self._fail)
         self._job.start(tr("closing the sheet as cut"), partial(simulating, request, made), callbacks)
         self._say(BUSY)
 
-    def _take_stage(self, entry: Entry | None) -> None:
+    def _on_stage(self, entry: Entry | None) -> None:
         if entry is None or entry.candidate != self._candidate:
             self.forget()
 
-    def _take(self, key: Key, found: SimulatedSheet | None) -> None:
+    def _on_result(self, key: Key, found: SimulatedSheet | None) -> None:
         if found is None:
             return
         self._known[key] = found
@@ -141,7 +141,7 @@ class AsCutEstimates(QObject):
         self.strain_limit = math.inf  #: of the material that they were estimated in
         self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
         self._timer.timeout.connect(self._begin)
-        session.display.gallery_reset.connect(self._take_entries)
+        session.display.gallery_reset.connect(self._on_entries)
         session.fabrication_changed.connect(self._timer.start)
 
     @property
@@ -153,7 +153,7 @@ class AsCutEstimates(QObject):
         """Estimate no more."""
         self._timer.stop()
 
-    def _take_entries(self, entries: tuple[Entry, ...]) -> None:
+    def _on_entries(self, entries: tuple[Entry, ...]) -> None:
         self._entries = entries
         self._timer.start()
 
@@ -177,9 +177,9 @@ class AsCutEstimates(QObject):
         )
         if missing:
             steps = partial(estimating, missing)
-            self._job.start(tr("estimating the designs as cut"), steps, JobCallbacks(self._take, self._tell))
+            self._job.start(tr("estimating the designs as cut"), steps, JobCallbacks(self._on_result, self._tell))
 
-    def _take(self, report: Estimated) -> None:
+    def _on_result(self, report: Estimated) -> None:
         self.known.update(report.found)
         self.strain_limit = report.strain_limit
 

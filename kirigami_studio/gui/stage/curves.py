@@ -78,14 +78,14 @@ class CurveReader(QObject):
         self.grown.emit(begun)
         while len(self._known) > CAPACITY:
             self._known.popitem(last=False)
-        callbacks = JobCallbacks(self._take, self._end, on_failed=self._session.report_failure)
+        callbacks = JobCallbacks(self._on_result, self._end, on_failed=self._session.report_failure)
         self._job.start(tr("computing the plots"), partial(plotting, design, self._target), callbacks)
 
     def stop(self) -> None:
         """Read no further."""
         self._job.stop()
 
-    def _take(self, readings: tuple[Reading, ...]) -> None:
+    def _on_result(self, readings: tuple[Reading, ...]) -> None:
         self._grow(readings, complete=False)
 
     def _end(self) -> None:

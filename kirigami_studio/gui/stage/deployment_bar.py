@@ -99,10 +99,10 @@ class DeploymentBar(QWidget):
         self._timer.timeout.connect(self._advance)
         self.play.toggled.connect(self._toggle)
         self.options.changed.connect(self._play_on)
-        self.slider.phi_changed.connect(self._take_phi)
+        self.slider.phi_changed.connect(self._on_phi)
         self.ideal.toggled.connect(self.slider.set_ideal)
         self.number.valueChanged.connect(lambda degrees: self.set_phi(math.radians(degrees)))
-        self._take_phi(self.slider.phi)
+        self._on_phi(self.slider.phi)
         self.set_ready(False)
 
     @property
@@ -130,7 +130,7 @@ class DeploymentBar(QWidget):
         for part in (self.play, self.slider, self.number):
             part.setEnabled(ready)
 
-    def _take_phi(self, phi: float) -> None:
+    def _on_phi(self, phi: float) -> None:
         with QSignalBlocker(self.number):
             self.number.setValue(math.degrees(phi))
         self.phi_changed.emit(phi)
@@ -198,9 +198,9 @@ class PlayOptions(QToolButton):
         menu.addSeparator()
         self.to_target = menu.addAction(tr("&Only to the target angle"))
         self.to_target.setCheckable(True)
-        self.to_target.toggled.connect(self._take_choice)
+        self.to_target.toggled.connect(self._on_choice)
         self.setMenu(menu)
-        self._take_choice()
+        self._on_choice()
 
     def _add_modes(self, menu: QMenu) -> None:
         words = {
@@ -215,7 +215,7 @@ class PlayOptions(QToolButton):
             action.setCheckable(True)
             action.setActionGroup(group)
             action.setChecked(mode is PlayMode.SWING)
-            action.toggled.connect(self._take_choice)
+            action.toggled.connect(self._on_choice)
             self.modes[mode] = action
 
     def _add_speeds(self, menu: QMenu) -> None:
@@ -226,7 +226,7 @@ class PlayOptions(QToolButton):
             action.setCheckable(True)
             action.setActionGroup(group)
             action.setChecked(speed == 1.0)
-            action.toggled.connect(self._take_choice)
+            action.toggled.connect(self._on_choice)
             self.speeds[speed] = action
 
     @property
@@ -253,7 +253,7 @@ class PlayOptions(QToolButton):
         self._palette = palette
         for mode, action in self.modes.items():
             action.setIcon(icons.icon(MODE_ICONS[mode], palette))
-        self._take_choice()
+        self._on_choice()
 
     def restore(self, settings: QSettings) -> None:
         """Play as the last time."""
@@ -271,7 +271,7 @@ class PlayOptions(QToolButton):
         settings.setValue("playSpeed", f"{self.speed:g}")
         settings.setValue("playToTarget", "yes" if self.to_target.isChecked() else "no")
 
-    def _take_choice(self, on: bool = True) -> None:
+    def _on_choice(self, on: bool = True) -> None:
         if not on and self.sender() is not self.to_target:
             return  # of two choices that trade places only the new one counts
         usual = self.speed == 1.0

@@ -54,7 +54,6 @@ class EmptyStage(QWidget):
 
     chosen = Signal(str)  #: key of a material
     declined = Signal()
-    tour_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -81,7 +80,6 @@ class EmptyStage(QWidget):
         self.tour.setObjectName("link")
         self.tour.setToolTip(tr("Six steps through the window, with a finished design."))
         self.tour.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.tour.clicked.connect(self.tour_wanted)
         self.question = MachineQuestion()
         self.question.chosen.connect(self.chosen)
         self.question.declined.connect(self.declined)

@@ -81,11 +81,11 @@ class GripFinder(QObject):
         else:
             width = self._session.document.fabrication.width_mm
             steps = partial(gripping, sheet, stage.design.deployment, width)
-            callbacks = JobCallbacks(partial(self._take, sheet), on_failed=self._fail)
+            callbacks = JobCallbacks(partial(self._on_result, sheet), on_failed=self._fail)
             self._job.start(tr("looking for grips"), steps, callbacks)
             self._say(GripState(sheet=sheet, busy=True))
 
-    def _take(self, sheet: SimulatedSheet, found: Gripping | None) -> None:
+    def _on_result(self, sheet: SimulatedSheet, found: Gripping | None) -> None:
         if found is None:
             return
         self._known[sheet] = found

@@ -505,10 +505,10 @@ class HandEditor(QObject):
             return
         gesture = self._waiting.popleft()
         steps = single(partial(_rescored, self._base, gesture.sheet, target))
-        callbacks = JobCallbacks(partial(self._take, gesture), on_failed=self._fail)
+        callbacks = JobCallbacks(partial(self._on_result, gesture), on_failed=self._fail)
         self._job.start(tr("scoring the change"), steps, callbacks)
 
-    def _take(self, gesture: _Gesture, report: Decoded) -> None:
+    def _on_result(self, gesture: _Gesture, report: Decoded) -> None:
         self._job.stop()  # the report is the end
         before = self._base
         if before is None:

@@ -215,7 +215,7 @@ class LayoutView(Canvas):
         target: Outline | None,
         second: SecondMatch | None = None,
     ) -> None:
-        """Show another design; without one the target it is to be for, without that the empty state.
+        """Show another design; without one the target, without that the empty state.
 
         ``second`` is how this very sheet shows a second target.
         """

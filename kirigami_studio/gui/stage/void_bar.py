@@ -19,7 +19,6 @@ class VoidBar(QWidget):
     ratio_wanted = Signal(frozenset, float)  #: of Void; ratio
     lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
     all_wanted = Signal(bool)  #: whether every void is to be locked
-    refit_wanted = Signal(bool)  #: begin, or stop
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -79,7 +78,6 @@ class VoidBar(QWidget):
         self.lock.clicked.connect(lambda on: self.lock_wanted.emit(self._voids, on))
         self.lock_all.triggered.connect(lambda: self.all_wanted.emit(True))
         self.unlock_all.triggered.connect(lambda: self.all_wanted.emit(False))
-        self.refit.clicked.connect(self.refit_wanted)
 
     def show_voids(self, voids: frozenset[Void], ratio: float | None, locked: frozenset[Void]) -> None:
         """Show what is selected; ``ratio`` is that of the first one, None where there is no design."""

@@ -198,9 +198,9 @@ class VoidGestures(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         kind = event.type()
         if isinstance(event, QKeyEvent):
-            return self._take_key(event)
+            return self._on_key(event)
         if isinstance(event, QWheelEvent):
-            return self._take_wheel(event)
+            return self._on_wheel(event)
         if isinstance(event, QContextMenuEvent):
             return self._request_menu(event)
         if kind == QEvent.Type.ToolTip:
@@ -281,7 +281,7 @@ class VoidGestures(QObject):
         self._point(event.position())
         return True
 
-    def _take_wheel(self, event: QWheelEvent) -> bool:
+    def _on_wheel(self, event: QWheelEvent) -> bool:
         self._point(event.position())
         if not self.active or self._hovered is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             return False
@@ -295,7 +295,7 @@ class VoidGestures(QObject):
         event.accept()
         return True
 
-    def _take_key(self, event: QKeyEvent) -> bool:
+    def _on_key(self, event: QKeyEvent) -> bool:
         """Arrows walk from void to void or move an edge cut, + and - change the ratio; the window has other keys."""
         if self._dragging and event.key() == Qt.Key.Key_Escape:
             self._cancel_drag(event)

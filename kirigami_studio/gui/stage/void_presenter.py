@@ -1,4 +1,4 @@
-"""Voids changed by hand: gestures on the layout, the bar below it, and what is said of the void that is pointed at."""
+"""Voids changed by hand: gestures on the layout, the bar below it, words on the void there."""
 
 from __future__ import annotations
 
@@ -87,8 +87,6 @@ class VoidPresenter(QObject):
         bar.ratio_wanted.connect(hand.set_ratio)
         bar.lock_wanted.connect(hand.lock)
         bar.all_wanted.connect(hand.lock_all)
-        self._session.document_changed.connect(self.refresh)
-        self._session.display.stage_changed.connect(self.refresh)
 
     @property
     def _width_mm(self) -> float:

@@ -50,7 +50,7 @@ class OpenedSizeRow(QWidget):
         self.height_.valueChanged.connect(lambda height: self._report(height, 1))
         for field in (self.width_, self.height_):
             field.editingFinished.connect(self.edited)
-        self.drawn.clicked.connect(self._take_drawn)
+        self.drawn.clicked.connect(self._on_drawn)
         self.show_size(None, follows=False)
 
     def show_size(self, size: OpenedSize | None, *, follows: bool) -> None:
@@ -77,7 +77,7 @@ class OpenedSizeRow(QWidget):
         if self._size is not None:
             self.size_wanted.emit(side * max(self._size.opened) / self._size.opened[which])
 
-    def _take_drawn(self) -> None:
+    def _on_drawn(self) -> None:
         if self._size is not None and self._size.drawn is not None:
             self.drawn_wanted.emit(max(self._size.drawn))
             self.edited.emit()

@@ -138,10 +138,10 @@ class OutlineBoard(QDialog):
         self.tools.grid_switched.connect(self._snap)
         self.undo.clicked.connect(lambda: self._step(-1))
         self.redo.clicked.connect(lambda: self._step(1))
-        self.take.clicked.connect(self._take)
+        self.take.clicked.connect(self._on_accept)
         self.cancel.clicked.connect(self.reject)
         for key, tool in KEYS.items():
-            QShortcut(QKeySequence(key), self).activated.connect(partial(self._take_tool, tool))
+            QShortcut(QKeySequence(key), self).activated.connect(partial(self._on_tool, tool))
         QShortcut(QKeySequence(QKeySequence.StandardKey.Undo), self).activated.connect(lambda: self._step(-1))
         QShortcut(QKeySequence("Ctrl+Shift+Z"), self).activated.connect(lambda: self._step(1))
 
@@ -167,7 +167,7 @@ class OutlineBoard(QDialog):
         self.tools.show_tool(tool)
         self.view.set_tool(tool)
 
-    def _take_tool(self, tool: Tool) -> None:
+    def _on_tool(self, tool: Tool) -> None:
         if self.tools.buttons[tool].isEnabled():
             self.set_tool(tool)
 
@@ -239,7 +239,7 @@ class OutlineBoard(QDialog):
         self.about.style().polish(self.about)
         self.about.setText(sentence)
 
-    def _take(self) -> None:
+    def _on_accept(self) -> None:
         if self.placed is not None:
             self.taken.emit(self.placed.outline)
             self.accept()

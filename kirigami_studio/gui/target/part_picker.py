@@ -211,7 +211,7 @@ class PartPicker(QDialog):
         self.painted.toggled.connect(self._remake)
         for field in (self.bridge, self.stroke):
             field.valueChanged.connect(self._remake)
-        self.take.clicked.connect(self._take)
+        self.take.clicked.connect(self._on_accept)
         self.cancel.clicked.connect(self.reject)
         self.finished.connect(lambda _: self._stop())
 
@@ -378,7 +378,7 @@ class PartPicker(QDialog):
             self.size_.setText(tr(TAKE[self._purpose][1], size=_size(found.outline.size, unit)))
         self._say(found.outline.notes, wrong=False)
         if self._accepts:
-            self._take()
+            self._on_accept()
 
     def _say(self, notes: tuple[str, ...], wrong: bool) -> None:
         more = len(notes) - SHOWN_NOTES
@@ -388,7 +388,7 @@ class PartPicker(QDialog):
         self.notes.setObjectName("warning" if wrong else "muted")
         self.notes.style().polish(self.notes)
 
-    def _take(self) -> None:
+    def _on_accept(self) -> None:
         if self._job.busy:
             self._accepts = True  # as soon as the outline is there
         elif self.result_ is not None:

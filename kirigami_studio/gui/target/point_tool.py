@@ -178,7 +178,7 @@ class PointTool(SketchTool):
         start = self._start
         self.drop()
         if grip is Grip.FIELD and field is not None:
-            self._take_field(field[0], pointer)
+            self._select_in_field(field[0], pointer)
         elif dragged is not None:
             points = tr_n("Move point", "Move points", len(self.selected))
             self._commit(dragged, tr("Move handle") if grip is Grip.HANDLE else points)
@@ -189,7 +189,7 @@ class PointTool(SketchTool):
             elif not start.shift:
                 self.select({chosen}, chosen)
 
-    def _take_field(self, start: PointerEvent, end: PointerEvent) -> None:
+    def _select_in_field(self, start: PointerEvent, end: PointerEvent) -> None:
         anchors = self._anchors
         if anchors is None or distance(start.pixel, end.pixel) < LEAST_DRAG:
             return
@@ -204,7 +204,7 @@ class PointTool(SketchTool):
         index = self._at(pointer.pixel)
         if index is not None:
             self.select({index}, index)
-            self._take_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
+            self._on_kind(Kind.AUTO if self._anchors.kinds[index] is Kind.CORNER else Kind.CORNER)
             return
         more, index = self._anchors.inserted(pointer.free)
         if self._pixels_between(more.places[index], pointer.pixel) <= REACH:
@@ -222,9 +222,9 @@ class PointTool(SketchTool):
         anchors = self._anchors
         if anchors is not None:
             soft = any(anchors.kinds[index] is not Kind.CORNER for index in self.selected)
-            self._take_kind(kind, cusp=soft and kind is Kind.CORNER)
+            self._on_kind(kind, cusp=soft and kind is Kind.CORNER)
 
-    def _take_kind(self, kind: Kind, cusp: bool = False) -> None:
+    def _on_kind(self, kind: Kind, cusp: bool = False) -> None:
         anchors = self._anchors
         if anchors is None or not self.selected or self.context.active is not self._shown:
             return

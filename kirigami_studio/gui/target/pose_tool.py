@@ -76,7 +76,7 @@ class PoseTool(SketchTool):
         elif index not in drawing.chosen:
             self.context.select({index})
 
-    def _take_field(self, start: PointerEvent, end: PointerEvent) -> None:
+    def _select_in_field(self, start: PointerEvent, end: PointerEvent) -> None:
         if distance(start.pixel, end.pixel) >= LEAST_DRAG:
             low, high = np.minimum(start.free, end.free), np.maximum(start.free, end.free)
             before = self.context.drawing.selected if start.shift else frozenset()
@@ -118,7 +118,7 @@ class PoseTool(SketchTool):
         made, grip, field, start = self._proposal, self._grip, self._field, self._start
         self.drop()
         if field is not None:
-            self._take_field(field[0], pointer)
+            self._select_in_field(field[0], pointer)
         elif made is not None:
             gesture = {TURN: _rotating, WHOLE: _moving}.get(grip or WHOLE, _resizing)(made)
             self.context.changed.emit(Change(gesture, lambda: made))

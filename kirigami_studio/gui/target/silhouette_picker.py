@@ -44,8 +44,8 @@ class SilhouettePicker(QFrame):
         column.addWidget(self.list, 1)
         column.addWidget(self.about)
         self._fill(palette)
-        self.list.itemClicked.connect(self._take)
-        self.list.itemActivated.connect(self._take)
+        self.list.itemClicked.connect(self._on_activated)
+        self.list.itemActivated.connect(self._on_activated)
         self.list.currentItemChanged.connect(self._describe)
         self.search.textChanged.connect(self._filter)
         self.search.textChanged.connect(self._listen)
@@ -86,7 +86,7 @@ class SilhouettePicker(QFrame):
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
             best = self._best()
             if best is not None:
-                self._take(best)
+                self._on_activated(best)
         else:
             super().keyPressEvent(event)
 
@@ -110,6 +110,6 @@ class SilhouettePicker(QFrame):
     def _describe(self, item: QListWidgetItem | None) -> None:
         self.about.setText(item.toolTip() if item is not None else tr("Choose a silhouette"))
 
-    def _take(self, item: QListWidgetItem) -> None:
+    def _on_activated(self, item: QListWidgetItem) -> None:
         self.chosen.emit(item.data(NAME_ROLE))
         self.close()

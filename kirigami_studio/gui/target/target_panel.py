@@ -61,9 +61,6 @@ DONE_HINT = mark("Press Generate (Ctrl+G) to design a sheet for this target.")
 class TargetPanel(Card):
     """The target view with its tools and the reader's notes."""
 
-    open_wanted = Signal()
-    wants_silhouette = Signal()
-    clear_wanted = Signal()
     editing_changed = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -114,9 +111,6 @@ class TargetPanel(Card):
         self.loose = LooseRow(self.view.context)
         self.body.addWidget(self.loose)
         self.view.context.selection_changed.connect(self._show_selection)
-        self.buttons["openTarget"].clicked.connect(self.open_wanted)
-        self.buttons["library"].clicked.connect(self.wants_silhouette)
-        self.buttons["clearTarget"].clicked.connect(self.clear_wanted)
         self.buttons["edit"].clicked.connect(self.set_editing)
         self.tools.tool_wanted.connect(self.set_tool)
         self.tools.grid_switched.connect(self.set_snapping)
@@ -277,13 +271,13 @@ class RefineBar(QWidget):
         )
         self.proportions.setChecked(True)
         row.addWidget(self.proportions)
-        self.width_.valueChanged.connect(self._take_width)
-        self.height_.valueChanged.connect(self._take_height)
+        self.width_.valueChanged.connect(self._on_width)
+        self.height_.valueChanged.connect(self._on_height)
 
-    def _take_width(self, width: float) -> None:
+    def _on_width(self, width: float) -> None:
         self.size_wanted.emit(width, width / self._ratio if self.proportions.isChecked() else self._size[1])
 
-    def _take_height(self, height: float) -> None:
+    def _on_height(self, height: float) -> None:
         self.size_wanted.emit(height * self._ratio if self.proportions.isChecked() else self._size[0], height)
 
     def show_placed(self, placed: Placed | None) -> None:
@@ -363,7 +357,6 @@ class ThresholdBar(QWidget):
     """Shown for targets that came from a picture; grey levels run from 0 (black) to 1 (white)."""
 
     changed = Signal(float)  #: grey level 0..1
-    automatic_wanted = Signal()
     edited = Signal()  #: the drag is over
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -394,9 +387,8 @@ class ThresholdBar(QWidget):
         row.addWidget(self.slider, 1)
         row.addWidget(self.number)
         row.addWidget(self.automatic)
-        self.slider.valueChanged.connect(self._take_level)
+        self.slider.valueChanged.connect(self._on_level)
         self.slider.sliderReleased.connect(self.edited)
-        self.automatic.clicked.connect(self.automatic_wanted)
 
     def show_levels(self, threshold: float, automatic: float) -> None:
         """Show the level that holds, 0..1; a slider that is being dragged is left where it is."""
@@ -406,7 +398,7 @@ class ThresholdBar(QWidget):
             self.number.setText(tr("{percent:.1f} %", percent=100 * threshold))
         self.automatic.setEnabled(threshold != automatic)
 
-    def _take_level(self, value: int) -> None:
+    def _on_level(self, value: int) -> None:
         self.number.setText(tr("{percent:.1f} %", percent=100 * value / GREY_LEVELS))
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():

@@ -11,7 +11,6 @@ from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.run.generation import DesignRun
 from kirigami_studio.gui.run.second_target_row import SecondTargetRow
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.run.start_tile import StartTile
@@ -32,15 +31,13 @@ from kirigami_studio.studio.two_states import flat_size, starts_as
 
 
 class TargetPresenter(QObject):
-    """Shows the target, takes over what is drawn, and withdraws error messages that no longer apply.
+    """Shows the target, takes drawings over, and withdraws errors that no longer apply.
 
     Parameters
     ----------
     panel : TargetPanel
     session : Session
     targeting : Targeting
-    run : DesignRun
-        The board closes when it starts.
     pasting : PasteReader
         Reads what is dropped on the panel.
     undo : callable
@@ -52,7 +49,6 @@ class TargetPresenter(QObject):
         session: Session,
         *,
         targeting: Targeting,
-        run: DesignRun,
         pasting: PasteReader,
         undo: Callable[[], None],
     ) -> None:
@@ -67,22 +63,21 @@ class TargetPresenter(QObject):
         self.discarded = DiscardedDesigns(session, self)
         self.discarded.undo_wanted.connect(undo)
         self._connect_sources(pasting)
-        self._connect_board(run)
-        session.document_changed.connect(self._show_document)
+        self._connect_board()
         self._show_target(session.document)
 
     def _connect_sources(self, pasting: PasteReader) -> None:
         panel, targeting = self._panel, self._targeting
-        panel.clear_wanted.connect(targeting.clear)
+        panel.buttons["clearTarget"].clicked.connect(targeting.clear)
         panel.view.content_dropped.connect(pasting.take)
         panel.threshold.changed.connect(targeting.change_threshold)
-        panel.threshold.automatic_wanted.connect(lambda: targeting.change_threshold(None))
+        panel.threshold.automatic.clicked.connect(lambda: targeting.change_threshold(None))
         panel.threshold.edited.connect(targeting.tracer.end_drag)
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)
         targeting.question_wanted.connect(self._ask)
 
-    def _connect_board(self, run: DesignRun) -> None:
+    def _connect_board(self) -> None:
         panel, reshaping = self._panel, self.reshaping
         panel.view.context.changed.connect(reshaping.take)
         panel.view.context.guides_changed.connect(self._take_guides)
@@ -96,7 +91,6 @@ class TargetPresenter(QObject):
         reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(panel.view.show_preview)
         reshaping.restarted.connect(panel.refine.restart)
-        run.started.connect(lambda _: panel.set_editing(False))
 
     def _take_guides(self, gesture: str) -> None:
         session = self._session
@@ -166,7 +160,8 @@ class TargetPresenter(QObject):
         if text:
             self._session.set_status(text)
 
-    def _show_document(self, document: Document) -> None:
+    def show_document(self, document: Document) -> None:
+        """Show target, objects and guides of the document, and drop questions that are settled."""
         before, self._shown = self._shown, document
         if self._question is not None and self._asked_in != self._session.project:
             self._drop_question()
@@ -232,8 +227,6 @@ class StartPresenter(QObject):
         tile.file_dropped.connect(reader.open)
         tile.other_wanted.connect(self.open_other)
         settings.other_start_wanted.connect(self.open_other)
-        session.document_changed.connect(self.show)
-        session.display.stage_changed.connect(self.show)
         self.show()
 
     def open_other(self, kind: str) -> None:

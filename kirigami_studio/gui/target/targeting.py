@@ -96,11 +96,11 @@ class PictureTracer(QObject):
 
     def _start(self, picture: Picture) -> None:
         callbacks: JobCallbacks[Traced] = JobCallbacks(
-            partial(self._take, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
+            partial(self._on_result, picture), partial(self._go_on, picture), on_failed=partial(self._fail, picture)
         )
         self._job.start(tr("tracing {name}", name=picture.path.name), partial(tracing, picture), callbacks)
 
-    def _take(self, picture: Picture, traced: Traced) -> None:
+    def _on_result(self, picture: Picture, traced: Traced) -> None:
         self.remember(traced.outline, replace(picture, traced=traced))
         self.traced.emit(traced.outline)
 
@@ -122,7 +122,7 @@ class PictureTracer(QObject):
 
 
 class ReadReason(Enum):
-    """Why a target is read: the program starts with it, the user wants it, or other parts of the present one."""
+    """Why a target is read: at the start, at a wish, or for other parts of the present one."""
 
     START = "start"
     WANTED = "wanted"
@@ -171,14 +171,14 @@ class TargetReader(QObject):
         self._finish(*self._asked, TargetRead(outline))
 
     def _start(self, source: str, reason: ReadReason, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
-        callbacks = JobCallbacks(partial(self._take, source, reason), on_failed=self.failed.emit)
+        callbacks = JobCallbacks(partial(self._on_result, source, reason), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
 
     def stop(self) -> None:
         """Forget what is still being read: something else took its place."""
         self._job.stop()
 
-    def _take(self, source: str, reason: ReadReason, found: TargetRead | PartsRead | DesignRead) -> None:
+    def _on_result(self, source: str, reason: ReadReason, found: TargetRead | PartsRead | DesignRead) -> None:
         if isinstance(found, PartsRead):
             self._asked = (source, reason)
             self.choice_wanted.emit(found)
@@ -205,14 +205,14 @@ class LatestRead(Generic[T]):
     """
 
     def __init__(self, session: Session, take: Callable[[T], None]) -> None:
-        self._session, self._take = session, take
+        self._session, self._on_result = session, take
         self._job = LatestJob[T](session.queue)
         self._refusal: Message | None = None
 
     def start(self, name: str, steps: Steps[T]) -> None:
         """Read it in the worker; ``name`` follows the word "while" in messages."""
         self.stop()
-        self._job.start(name, steps, JobCallbacks(self._take, on_failed=self._refuse))
+        self._job.start(name, steps, JobCallbacks(self._on_result, on_failed=self._refuse))
 
     def stop(self) -> None:
         """Forget what is still being read, and why the last one was refused: something else took its place."""
@@ -235,7 +235,7 @@ class StartReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._read = LatestRead[StartShape | PartsRead](session, self._take)
+        self._read = LatestRead[StartShape | PartsRead](session, self._on_result)
         self._check = LatestJob[str](session.queue)
 
     def open(self, source: str) -> None:
@@ -261,7 +261,7 @@ class StartReader(QObject):
         """Forget what is still being read: another start was chosen."""
         self._read.stop()
 
-    def _take(self, found: StartShape | PartsRead) -> None:
+    def _on_result(self, found: StartShape | PartsRead) -> None:
         if isinstance(found, PartsRead):
             self.choice_wanted.emit(found)
             return
@@ -278,13 +278,13 @@ class SecondReader(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._read = LatestRead[TargetRead | PartsRead](session, self._take_read)
+        self._read = LatestRead[TargetRead | PartsRead](session, self._on_read)
 
     def open(self, source: str) -> None:
         """Read a file, or a silhouette of the library by name."""
         self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
 
-    def _take_read(self, found: TargetRead | PartsRead) -> None:
+    def _on_read(self, found: TargetRead | PartsRead) -> None:
         if isinstance(found, PartsRead):
             self.choice_wanted.emit(found)
         else:
@@ -331,9 +331,9 @@ class Targeting(QObject):
         self._session = session
         self.tracer = PictureTracer(session, self)
         self.reader = TargetReader(session, self.tracer, self)
-        self.reader.read.connect(self._take_read)
+        self.reader.read.connect(self._on_read)
         self.reader.failed.connect(session.report_failure)
-        self.tracer.traced.connect(self._take_traced)
+        self.tracer.traced.connect(self._on_traced)
         self.tracer.refused.connect(session.set_status)
         self.tracer.settled.connect(session.history.end_drag)
 
@@ -380,11 +380,11 @@ class Targeting(QObject):
             self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
-    def _take_traced(self, outline: Outline) -> None:
+    def _on_traced(self, outline: Outline) -> None:
         self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
-    def _take_read(self, outline: Outline, reason: ReadReason) -> None:
+    def _on_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
         if reason is ReadReason.START and untouched:

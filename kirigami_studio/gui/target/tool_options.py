@@ -68,18 +68,18 @@ class ToolOptions(QWidget):
         for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
             row.addWidget(options)
             self._parts.append((frozenset({tool}), (options,)))
-        self.corners.valueChanged.connect(self._take_corners)
-        self.waist.valueChanged.connect(self._take_waist)
-        self.text.textChanged.connect(self._take_text)
+        self.corners.valueChanged.connect(self._on_corners)
+        self.waist.valueChanged.connect(self._on_waist)
+        self.text.textChanged.connect(self._on_text)
         self.show_tool(Tool.LOOK)
 
-    def _take_corners(self, corners: int) -> None:
+    def _on_corners(self, corners: int) -> None:
         self._context.corners = corners
 
-    def _take_waist(self, percent: float) -> None:
+    def _on_waist(self, percent: float) -> None:
         self._context.waist = percent / 100
 
-    def _take_text(self, text: str) -> None:
+    def _on_text(self, text: str) -> None:
         self._context.text = text
 
     def show_tool(self, tool: Tool) -> None:
@@ -214,8 +214,8 @@ class FontOptions(QWidget):
         self.bold = ToolButton("fontBold", "bold", tr("Bold letters. Thick strokes work better than thin ones."), True)
         self.italic = ToolButton("fontItalic", "italic", tr("Italic letters."), True)
         self.bold.setChecked(context.bold)
-        self.bold.toggled.connect(self._take_style)
-        self.italic.toggled.connect(self._take_style)
+        self.bold.toggled.connect(self._on_style)
+        self.italic.toggled.connect(self._on_style)
         self._row.addWidget(self.bold)
         self._row.addWidget(self.italic)
 
@@ -230,13 +230,13 @@ class FontOptions(QWidget):
         self.family.setMaximumWidth(190)
         with QSignalBlocker(self.family):
             self.family.setCurrentFont(QFont(self._context.family) if self._context.family else self.font())
-        self.family.currentFontChanged.connect(self._take_family)
+        self.family.currentFontChanged.connect(self._on_family)
         self._row.insertWidget(0, self.family)
 
-    def _take_style(self) -> None:
+    def _on_style(self) -> None:
         self._context.bold, self._context.italic = self.bold.isChecked(), self.italic.isChecked()
 
-    def _take_family(self, font: QFont) -> None:
+    def _on_family(self, font: QFont) -> None:
         self._context.family = font.family()
 
 

@@ -33,11 +33,13 @@ class CommandActions:
     def _action(self, command: Command) -> QAction:
         if command.menu not in self._menus:
             self._menus[command.menu] = self._window.menuBar().addMenu(command.menu)
-        action = QAction(command.text, self._window)
+        action = command.switch
+        if action is None:
+            action = QAction(command.text, self._window)
+            action.setCheckable(command.checked_when is not None)
+            action.triggered.connect(partial(self._run, command.id))
         action.setObjectName(command.id)
-        action.setCheckable(command.checked_when is not None)
         action.setShortcuts([QKeySequence(keys) for keys in command.shortcuts])
-        action.triggered.connect(partial(self._run, command.id))
         if command.gap:
             self._menus[command.menu].addSeparator()
         self._menus[command.menu].addAction(action)
@@ -80,7 +82,8 @@ class CommandActions:
     def _show(self, command: Command) -> None:
         """Show one command as it is in the state of the window."""
         action, wording = self.actions[command.id], command.wording(self._state)
-        action.setEnabled(command.enabled_when(self._state))
+        if command.switch is None:  # else its panel says so
+            action.setEnabled(command.enabled_when(self._state))
         if command.checked_when is not None:
             action.setChecked(command.checked_when(self._state))
         if self._worded.get(command.id) == wording:
@@ -88,6 +91,8 @@ class CommandActions:
         self._worded[command.id] = wording
         action.setText(wording.text)
         action.setStatusTip(wording.tip)
+        if command.switch is not None:
+            return
         if command.shortcuts:
             keys = QKeySequence(command.shortcuts[0]).toString(QKeySequence.SequenceFormat.NativeText)
             action.setToolTip(f"{wording.tip} ({keys})")

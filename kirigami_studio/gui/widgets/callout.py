@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPainterPath, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
@@ -42,10 +42,6 @@ class Ring(QWidget):
 class Callout(QWidget):
     """Title, text, and the buttons Back, Next and Skip."""
 
-    next_wanted = Signal()
-    back_wanted = Signal()
-    skip_wanted = Signal()
-
     def __init__(self, window: QWidget) -> None:
         super().__init__(window)
         self._window = window
@@ -62,9 +58,6 @@ class Callout(QWidget):
         self.skip = self._button(tr("&Skip the tour"), tr("End the tour (Esc). Restart it from Help > Tour."), "link")
         self.back = self._button(tr("&Back"), tr("Previous step (Left)."))
         self.next = self._button(tr("&Next"), tr("Next step (Right or Return)."))
-        self.skip.clicked.connect(self.skip_wanted)
-        self.back.clicked.connect(self.back_wanted)
-        self.next.clicked.connect(self.next_wanted)
         head, buttons = QHBoxLayout(), QHBoxLayout()
         head.addWidget(self.title, 1)
         head.addWidget(self.count)

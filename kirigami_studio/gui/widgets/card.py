@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QAction, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QFrame,
@@ -71,6 +71,22 @@ class ToolButton(QToolButton):
         """Draw in other colours."""
         self._palette = palette
         self.show_icon(self._icon_name)
+
+
+class SwitchButton(ToolButton):
+    """A button that shows a switch, which is a checkable action: a command may be the same action."""
+
+    def __init__(self, name: str, icon: str, tip: str) -> None:
+        super().__init__(name, icon, tip)
+        self.switch = QAction(self)
+        self.switch.setCheckable(True)
+        self.switch.setToolTip(tip)
+        self.setDefaultAction(self.switch)
+
+    def show_icon(self, name: str) -> None:
+        self._icon_name = name
+        if self._palette is not None:
+            self.switch.setIcon(icons.icon(name, self._palette))
 
 
 class ElidedLabel(QLabel):

@@ -1,4 +1,4 @@
-"""Forms made of settings: a field for each, bound both ways."""
+"""Forms made of settings: a field for each, and one binder that reports edits and shows values."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Form(QObject):
         return box
 
     def decimal(self, name: str, suffix: str = "") -> DecimalField:
-        """Make the field of a number; its unit stands in its caption, or behind it as ``suffix``."""
+        """Make the field of a number, its unit in the caption but for an angle or a ``suffix``."""
         one = self.settings[name]
         setting, scale = one.setting, one.setting.scale
         box = LengthField() if setting.unit == "mm" else DecimalField()
@@ -100,7 +100,7 @@ class Form(QObject):
         return captioned(caption, self.fields[name], self.fields[name] if content is None else content)
 
     def remaining(self, elsewhere: Collection[str] = ()) -> list[QVBoxLayout]:
-        """Make the missing fields of settings with a caption, but of those that stand ``elsewhere``."""
+        """Make the fields of settings with a caption that have none yet, here or ``elsewhere``."""
         found = []
         for name, one in self.settings.items():
             if one.setting.label and name not in (*self.fields, *elsewhere) and one.is_plain:
@@ -118,7 +118,7 @@ class Form(QObject):
         return found
 
     def show(self, values: Mapping[str, Any]) -> None:
-        """Show values by the names of settings, without an edit; None leaves a field as it is."""
+        """Show values by the names of their settings, without an edit; None leaves a field as is."""
         for name, value in values.items():
             if name in self.fields and value is not None:
                 with QSignalBlocker(self.fields[name]):

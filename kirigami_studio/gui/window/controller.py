@@ -175,10 +175,10 @@ class Controller(QObject):
 
     def warm_up(self) -> None:
         """Import in the worker what the first run needs, and learn which generators there are."""
-        callbacks = JobCallbacks(self._take_variants, on_failed=self.session.report_failure)
+        callbacks = JobCallbacks(self._on_variants, on_failed=self.session.report_failure)
         self.queue.start(tr("loading the generator"), importing.warming, callbacks)
 
-    def _take_variants(self, variants: tuple[str, ...]) -> None:
+    def _on_variants(self, variants: tuple[str, ...]) -> None:
         if variants:
             self.variants_known.emit(variants)
 

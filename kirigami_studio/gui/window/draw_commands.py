@@ -2,42 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.target.arrangements import EVERY, Arrangement
+from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.outlines.combining import Combine
 
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
+
+def commands(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Command, ...]:
+    """Return the commands of the Draw menu for a drawing board; ``post`` shows refusals."""
+    return (_board(panel), *_tools(panel, post), *_modes(panel), *_aids(panel), *_arrangements(panel))
 
 
-def commands(window: MainWindow) -> tuple[Command, ...]:
-    """Return the commands of the Draw menu."""
-    return (_board(window), *_tools(window), *_modes(window), *_aids(window), *_arrangements(window))
-
-
-def _board(window: MainWindow) -> Command:
+def _board(panel: TargetPanel) -> Command:
     return Command(
         "edit_target",
         tr("D&raw"),
         tr("&Edit target"),
         tr("Open or leave the drawing board"),
-        window.target.buttons["edit"].click,
+        panel.buttons["edit"].click,
         shortcuts=("E",),
         icon="edit",
     )
 
 
-def _tools(window: MainWindow) -> tuple[Command, ...]:
+def _tools(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Command, ...]:
     """A command for each tool, which opens the board."""
 
     def tool(which: Tool, text: str, key: str, tip: str, icon: str = "", gap: bool = False) -> Command:
-        take = partial(_take_tool, window, which)
+        take = partial(_on_tool, panel, post, which)
         return Command(which.value, tr("D&raw"), text, tip, take, (key,), icon or which.value, gap)
 
     return (
@@ -53,7 +51,7 @@ def _tools(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _modes(window: MainWindow) -> tuple[Command, ...]:
+def _modes(panel: TargetPanel) -> tuple[Command, ...]:
     """How the next shape joins the target; only on the board."""
 
     def mode(name: str, how: Combine, text: str, key: str, tip: str, icon: str) -> Command:
@@ -62,7 +60,7 @@ def _modes(window: MainWindow) -> tuple[Command, ...]:
             tr("D&raw"),
             text,
             tip,
-            partial(_set_mode, window, how),
+            partial(_set_mode, panel, how),
             (key,),
             icon,
             gap=how is Combine.NEW,
@@ -80,15 +78,15 @@ def _modes(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _aids(window: MainWindow) -> tuple[Command, ...]:
-    strip = window.target.tools
+def _aids(panel: TargetPanel) -> tuple[Command, ...]:
+    strip = panel.tools
     return (
         Command(
             "axis",
             tr("D&raw"),
             tr("M&irror while drawing"),
             tr("Switch to the next mirror axis"),
-            partial(_cycle_axis, window),
+            partial(_cycle_axis, panel),
             shortcuts=("Shift+M",),
             icon="axis-upright",
             gap=True,
@@ -105,9 +103,9 @@ def _aids(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _arrangements(window: MainWindow) -> tuple[Command, ...]:
+def _arrangements(panel: TargetPanel) -> tuple[Command, ...]:
     """The Arrange menu: what can be done with the selected objects."""
-    context = window.target.view.context
+    context = panel.view.context
 
     def command(one: Arrangement) -> Command:
         return Command(
@@ -124,19 +122,19 @@ def _arrangements(window: MainWindow) -> tuple[Command, ...]:
     return tuple(command(one) for one in EVERY.values())
 
 
-def _take_tool(window: MainWindow, tool: Tool) -> None:
-    if window.target.tools.buttons[tool].isEnabled():
-        window.target.set_tool(tool)
+def _on_tool(panel: TargetPanel, post: Callable[[Message], None], tool: Tool) -> None:
+    if panel.tools.buttons[tool].isEnabled():
+        panel.set_tool(tool)
     else:
         sentence = tr("No target to edit yet. Draw or open one first.")
-        window.messages.add(Message(sentence, Tone.HINT))
+        post(Message(sentence, Tone.HINT))
 
 
-def _set_mode(window: MainWindow, mode: Combine) -> None:
-    if window.target.tools.modes[mode].isEnabled():
-        window.target.tools.set_mode(mode)
+def _set_mode(panel: TargetPanel, mode: Combine) -> None:
+    if panel.tools.modes[mode].isEnabled():
+        panel.tools.set_mode(mode)
 
 
-def _cycle_axis(window: MainWindow) -> None:
-    window.target.set_editing(True)
-    window.target.tools.axis.cycle()
+def _cycle_axis(panel: TargetPanel) -> None:
+    panel.set_editing(True)
+    panel.tools.axis.cycle()

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from PySide6.QtGui import QGuiApplication
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.picturing import PictureMaker
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.target.pasting import PasteReader
+from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.open_dialogs import Dialogs
 
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
-
-def commands(window: MainWindow) -> tuple[Command, ...]:
+def commands(
+    controller: Controller, dialogs: Dialogs, pasting: PasteReader, picturing: PictureMaker
+) -> tuple[Command, ...]:
     """Return the commands of the Edit menu."""
-    controller, picturing, menu = window.controller, window.picturing, tr("&Edit")
+    menu = tr("&Edit")
     return (
         Command(
             "undo",
@@ -44,7 +45,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&History …"),
             tr("List all steps and jump to one"),
-            window.dialogs.show_history,
+            dialogs.show_history,
             shortcuts=("Ctrl+Shift+H",),
         ),
         Command(
@@ -52,7 +53,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Paste target"),
             tr("Paste a picture, SVG or path as the target"),
-            lambda: window.pasting.take(QGuiApplication.clipboard().mimeData()),
+            lambda: pasting.take(QGuiApplication.clipboard().mimeData()),
             shortcuts=("Ctrl+V",),
             gap=True,
         ),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QLocale, QObject
 
@@ -11,14 +11,13 @@ from kirigami_studio.export.paper import Paper
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.stage.empty_stage import moves
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.preferences import Motion, TypedSize
 from kirigami_studio.studio.projects import Pair, reading_sample
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
 #: Longer side (mm) of opened shapes that are cut by hand: their sheets fit on one page of A4 or Letter.
 BY_HAND_MM = 150.0
@@ -38,34 +37,35 @@ LETTER_LANDS = frozenset(
 class FirstStart(QObject):
     """Begins once the window is shown; a question that was answered, or declined, is not asked again."""
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
-        super().__init__(window)
-        self._window = window
-        self._controller = controller
-        empty = window.stage.empty
+    def __init__(
+        self, stage: StagePanel, session: Session, preferences: UserPreferences, start_tour: Callable[[], None]
+    ) -> None:
+        super().__init__(stage)
+        self._stage, self._session, self._preferences = stage, session, preferences
+        empty = stage.empty
         empty.chosen.connect(self.choose)
         empty.declined.connect(self.decline)
-        empty.tour_wanted.connect(lambda: window.tour.start())
+        empty.tour.clicked.connect(start_tour)
 
     def begin(self) -> None:
         """Read the sample and ask the question, if it was not asked before."""
-        callbacks: JobCallbacks[Pair] = JobCallbacks(self._take_sample)
-        self._controller.queue.start(tr("reading the sample"), reading_sample, callbacks)
-        if not self._controller.preferences.present.machine_asked:
-            question = self._window.stage.empty.question
+        callbacks: JobCallbacks[Pair] = JobCallbacks(self._on_sample)
+        self._session.queue.start(tr("reading the sample"), reading_sample, callbacks)
+        if not self._preferences.present.machine_asked:
+            question = self._stage.empty.question
             question.offer(library().materials)
             question.show()
 
-    def _take_sample(self, sample: Pair) -> None:
-        stage = self._window.stage
+    def _on_sample(self, sample: Pair) -> None:
+        stage = self._stage
         stage.empty.show_sample(sample.design, sample.target)
         stage.place_sample()
-        if moves(self._controller.preferences.present.motion, self._window.style()):
+        if moves(self._preferences.present.motion, self._stage.style()):
             stage.empty.start()
 
     def choose(self, material: str) -> None:
         """Cut with this material from now on, in this project and in new ones."""
-        preferences, session = self._controller.preferences, self._controller.session
+        preferences, session = self._preferences, self._session
         known = library().materials.get(material)
         wanted = replace(preferences.present, material=material, machine_asked=True)
         if known is not None and known.by_hand:
@@ -80,22 +80,22 @@ class FirstStart(QObject):
             session.apply(Edit(tr("Change the material"), changed))
         else:  # nothing was done yet: this is how it starts
             session.restart(changed, session.path)
-        self._window.stage.empty.question.hide()
+        self._stage.empty.question.hide()
         name = material if known is None else tr(known.name)
         session.set_status(tr("Cutting {material}. Press Generate (Ctrl+G).", material=name))
 
     def decline(self) -> None:
         """Do not ask again."""
-        preferences = self._controller.preferences
+        preferences = self._preferences
         preferences.keep(replace(preferences.present, machine_asked=True))
-        self._window.stage.empty.question.hide()
+        self._stage.empty.question.hide()
 
     def switch_motion(self) -> None:
         """Let what moves by itself stand still, or move again."""
-        preferences, empty = self._controller.preferences, self._window.stage.empty
+        preferences, empty = self._preferences, self._stage.empty
         still = preferences.present.motion is Motion.STILL
         preferences.keep(replace(preferences.present, motion=Motion.SYSTEM if still else Motion.STILL))
-        if moves(preferences.present.motion, self._window.style()):
+        if moves(preferences.present.motion, self._stage.style()):
             empty.start()
         else:
             empty.stop()

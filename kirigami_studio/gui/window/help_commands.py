@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.open_dialogs import Dialogs
 
 
-def commands(window: MainWindow) -> tuple[Command, ...]:
+def commands(dialogs: Dialogs, start_tour: Callable[[], None], open_sample: Callable[[], None]) -> tuple[Command, ...]:
     """Return the commands of the Help menu."""
-    dialogs, menu = window.dialogs, tr("&Help")
+    menu = tr("&Help")
     return (
         Command(
             "guide", menu, tr("&Guide"), tr("Open the user guide"), dialogs.show_guide, shortcuts=("F1",), icon="guide"
@@ -31,7 +29,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Tour"),
             tr("Take a six-step tour"),
-            lambda: window.tour.start(),
+            start_tour,
             gap=True,
         ),
         Command(
@@ -39,7 +37,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Open &sample project"),
             tr("Open a sample project with heart designs"),
-            window.files.open_sample,
+            open_sample,
         ),
         Command(
             "about",

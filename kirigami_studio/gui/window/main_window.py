@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QLabel,
@@ -70,8 +69,14 @@ TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
 
 def all_commands(window: MainWindow) -> tuple[Command, ...]:
     """Return the commands of a window in the order of its menus, one record each."""
-    menus = (file_commands, edit_commands, draw_commands, design_commands, view_commands, help_commands)
-    return tuple(one for menu in menus for one in menu.commands(window))
+    return (
+        *file_commands.commands(window),
+        *edit_commands.commands(window.controller, window.dialogs, window.pasting, window.picturing),
+        *draw_commands.commands(window.target, window.messages.add),
+        *design_commands.commands(window),
+        *view_commands.commands(window),
+        *help_commands.commands(window.dialogs, lambda: window.tour.start(), window.files.open_sample),
+    )
 
 
 class MainWindow(QMainWindow):
@@ -172,7 +177,7 @@ class MainWindow(QMainWindow):
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
-        offer_context_menus(self)
+        offer_context_menus(self.target, self.stage, self.commands)
         controller, refresh = self.controller, self.commands.refresh
         for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
             document_signal.connect(refresh)
@@ -182,7 +187,6 @@ class MainWindow(QMainWindow):
         for busy_signal in (part.busy_changed for part in working):
             busy_signal.connect(refresh)
         self.stage.switches_changed.connect(refresh)
-        self.stage.overlays_changed.connect(refresh)
         self.stage.comparing_changed.connect(refresh)
         self.target.editing_changed.connect(refresh)
         self.target.view.context.selection_changed.connect(refresh)
@@ -203,13 +207,7 @@ class MainWindow(QMainWindow):
             editing_target=self.target.editing,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,
-            before=_switch(stage.before),
-            trim=_switch(stage.trim),
-            hand=_switch(stage.hand),
-            cuts=_switch(stage.cuts_switch),
-            plots=_switch(stage.plots_switch),
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
-            overlays=stage.view.overlays,
             dark=self.palette_.dark,
             follows_system=self.appearance.follows_system,
             still=controller.preferences.present.motion == "still",
@@ -340,7 +338,3 @@ class MainWindow(QMainWindow):
         self.hide()  # the worker may be deep in an import: let it end out of sight
         self.controller.close()
         event.accept()
-
-
-def _switch(button: QAbstractButton) -> Switch:
-    return Switch(button.isEnabled(), button.isChecked())

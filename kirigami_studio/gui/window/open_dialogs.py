@@ -55,7 +55,7 @@ class Dialogs(QObject):
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
         self.parts: PartPicker | None = None
-        self._take_parts: Callable[[Outline, bool], None] = controller.targeting.reader.take_chosen
+        self._on_parts: Callable[[Outline, bool], None] = controller.targeting.reader.take_chosen
         self.artwork: ArtworkEditor | None = None
         self.label: LabelEditor | None = None
 
@@ -165,9 +165,9 @@ class Dialogs(QObject):
         if self.parts is None:
             session = self._controller.session
             self.parts = PartPicker(self._window, self._controller.queue)
-            self.parts.taken.connect(lambda outline, usual: self._take_parts(outline, usual))
+            self.parts.taken.connect(lambda outline, usual: self._on_parts(outline, usual))
             self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
-        self._take_parts = take
+        self._on_parts = take
         self.parts.begin(read, purpose)
         self._colour(self.parts)
         bring_to_front(self.parts)

@@ -53,8 +53,8 @@ class PairGallery(QDialog):
         column.setContentsMargins(12, 12, 12, 10)
         column.addWidget(self.list, 1)
         column.addWidget(self.about)
-        self.list.itemClicked.connect(self._take)
-        self.list.itemActivated.connect(self._take)
+        self.list.itemClicked.connect(self._on_activated)
+        self.list.itemActivated.connect(self._on_activated)
 
     def read(self) -> None:
         """Read the pairs in the worker, once."""
@@ -108,6 +108,6 @@ class PairGallery(QDialog):
         if self._undrawn:
             self._drawing.start()
 
-    def _take(self, item: QListWidgetItem) -> None:
+    def _on_activated(self, item: QListWidgetItem) -> None:
         self.chosen.emit(self.pairs[self.list.row(item)].path)
         self.accept()

@@ -1,4 +1,4 @@
-"""The window as a whole: its title, messages and status line, and what one place of it has to tell another."""
+"""The window as a whole: title, messages, status line, and calls from place to place."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
 from kirigami_studio.gui.run.run_presenter import RunPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.void_presenter import VoidPresenter
 from kirigami_studio.gui.target.target_presenter import SecondPresenter, StartPresenter, TargetPresenter
 from kirigami_studio.gui.window.controller import Controller
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
 
 
 class Connections(QObject):
-    """Gives the presenter of each place its panel and its parts, and passes on what concerns another place."""
+    """Gives each place's presenter its panel and parts, and passes on calls between places."""
 
     def __init__(self, window: MainWindow, controller: Controller) -> None:
         super().__init__(window)
         self._window = window
         self._controller = controller
-        session, run, stage, gallery = controller.session, controller.run, window.stage, window.gallery
+        session, stage, gallery = controller.session, window.stage, window.gallery
         self.designs = GalleryPresenter(
             gallery,
             window.settings,
@@ -69,7 +70,6 @@ class Connections(QObject):
             window.target,
             session,
             targeting=controller.targeting,
-            run=run,
             pasting=window.pasting,
             undo=controller.undo,
         )
@@ -132,21 +132,27 @@ class Connections(QObject):
             showing_before=lambda: stage.showing_before,
             command=lambda name: window.commands[name],
         )
-        self._connect_run()
+        self._connect_session()
         self._connect_stage()
         self._connect_pages()
         self._connect_target()
         self._connect_files()
         self._connect_messages()
-        self.first_start = FirstStart(window, controller)
+        self.first_start = FirstStart(stage, session, controller.preferences, lambda: window.tour.start())
         self._show_idle()
         self._show_document(controller.document)
         window.status_text.setText(tr("Choose or draw a target to begin."))
 
-    def _connect_run(self) -> None:
+    def _connect_session(self) -> None:
+        """Signals of document, stage and run, passed down to each place in this order."""
         window, controller, run = self._window, self._controller, self._controller.run
+        session = controller.session
         run.started.connect(self._show_run)
         run.ended.connect(self._show_idle)
+        session.document_changed.connect(self._show_document)
+        session.display.stage_changed.connect(self._show_design)
+        session.display.gallery_reset.connect(self._show_gallery)
+        session.display.candidate_found.connect(self._show_found)
         controller.variants_known.connect(window.settings.set_variants)
         controller.reader.known.connect(self._show_reading)
 
@@ -158,19 +164,18 @@ class Connections(QObject):
         self.voids.editable.connect(stage.set_editable)
         self.voids.refresh()
         stage.before_wanted.connect(controller.show_before)
-        stage.trim_wanted.connect(controller.trim)
-        stage.voids.refit_wanted.connect(self.refit)
+        stage.trim.switch.triggered.connect(controller.trim)
+        stage.voids.refit.clicked.connect(self.refit)
         controller.sampled.known.connect(stage.show_sample)
         controller.trimming.busy_changed.connect(stage.show_trimming)
         controller.refitting.busy_changed.connect(stage.voids.show_fitting)
         controller.as_cut.changed.connect(stage.show_as_cut)
         controller.artwork.painted.connect(stage.view.show_artwork)
         controller.cutting.planned.connect(stage.show_title)
-        for changed in (controller.run.started, controller.run.ended, stage.switches_changed):
-            changed.connect(self.voids.refresh)
+        stage.switches_changed.connect(self.voids.refresh)
 
     def _connect_pages(self) -> None:
-        """What is shown in the place of something else."""
+        """A view in the place of another."""
         window, stage = self._window, self._window.stage
         self.designs.compare_wanted.connect(self.side_by_side.compare_with)
         stage.comparing_changed.connect(self.side_by_side.follow)
@@ -180,8 +185,8 @@ class Connections(QObject):
 
     def _connect_target(self) -> None:
         window, panel, controller = self._window, self._window.target, self._controller
-        panel.open_wanted.connect(window.files.ask_target)
-        panel.wants_silhouette.connect(window.dialogs.show_library)
+        panel.buttons["openTarget"].clicked.connect(window.files.ask_target)
+        panel.buttons["library"].clicked.connect(window.dialogs.show_library)
         panel.view.file_dropped.connect(window.files.open)
         controller.targeting.reader.design_read.connect(window.files.open_design)
         panel.opened.size_wanted.connect(controller.fabrication.set_opened_size)
@@ -208,20 +213,65 @@ class Connections(QObject):
 
     def _connect_messages(self) -> None:
         window, session = self._window, self._controller.session
-        session.document_changed.connect(self._show_document)
         session.message_posted.connect(window.messages.add)
         session.status_changed.connect(window.status_text.setText)
         session.message_withdrawn.connect(window.messages.drop)
 
     # what concerns several places ----------------------------------------------------------------------------------
 
-    def _show_run(self) -> None:
+    def _show_run(self, total: int) -> None:
+        """A run has begun."""
+        self.designs.show_run()
+        self.all_designs.show_run()
+        self._window.target.set_editing(False)
         self.stage.show_run()
         self.making.show_run()
+        self.run.show_run(total)
+        self.voids.refresh()
         self._window.messages.dismiss(Tone.HINT, Tone.DONE)
 
     def _show_idle(self) -> None:
+        """No run is in progress."""
+        self.designs.show_idle()
+        self.all_designs.show_run()
         self.stage.show_idle()
+        self.run.show_idle()
+        self.voids.refresh()
+
+    def _show_document(self, document: Document) -> None:
+        """The document has changed."""
+        self.designs.show_document(document)
+        self.side_by_side.show_pair()
+        self.all_designs.show_document()
+        self.target.show_document(document)
+        self.stage.show_document()
+        self.making.show_document(document)
+        self.run.show_document(document)
+        self.start.show()
+        self.voids.refresh()
+        self._window.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
+        self._show_title()
+
+    def _show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
+        self.designs.show_design(entry)
+        self.side_by_side.show_design(entry)
+        self.all_designs.show_design(entry)
+        self.stage.show_design(entry)
+        self.making.show_design(entry)
+        self.start.show()
+        self.voids.refresh()
+
+    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        """Other designs are in the gallery."""
+        self.designs.show_gallery(entries)
+        self.side_by_side.show_pair()
+        self.all_designs.show_document()
+
+    def _show_found(self, entry: Entry) -> None:
+        """A run has found a design, or improved one."""
+        self.designs.add(entry)
+        self.side_by_side.show_pair()
 
     def _show_reading(self, reading: TargetReading | None) -> None:
         """Show what the target's shape says of symmetry and grid."""
@@ -260,9 +310,8 @@ class Connections(QObject):
             controller.cancel()
         self._window.stage.voids.show_fitting(controller.refitting.busy)
 
-    def _show_document(self, document: Document) -> None:
+    def _show_title(self) -> None:
         window, controller = self._window, self._controller
-        window.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
         unsaved = controller.history.unsaved
         name = controller.path.name if controller.path is not None else tr("Untitled")
         literal = name.replace("[*]", "[*][*]")  # or Qt would take it for the place of its own star

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import QAction, QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -22,7 +22,7 @@ from kirigami_studio.gui.stage.ends_line import EndsLine
 from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, LayoutView
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
 from kirigami_studio.gui.stage.void_bar import VoidBar
-from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.two_states import TwoStates
 
@@ -57,8 +57,6 @@ class StagePanel(Card):
 
     overlays_changed = Signal(frozenset)  #: of Overlay
     before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
-    trim_wanted = Signal(bool)
-    plots_wanted = Signal(bool)
     status = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
     comparing_changed = Signal(bool)  #: whether two designs are shown side by side
@@ -86,18 +84,17 @@ class StagePanel(Card):
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
-        self.cuts_switch = ToolButton("cuts", "cuts", tr(CUTS), checkable=True)
-        self.cuts_switch.toggled.connect(self._toggle_cuts)
-        self.before = ToolButton("before", "before", tr(BEFORE), checkable=True)
-        self.before.toggled.connect(self._toggle_before)
-        self.trim = ToolButton("trim", "trim", tr(TRIM), checkable=True)
-        self.trim.clicked.connect(self.trim_wanted)
+        self.cuts_switch = SwitchButton("cuts", "cuts", tr(CUTS))
+        self.cuts_switch.switch.toggled.connect(self._toggle_cuts)
+        self.before = SwitchButton("before", "before", tr(BEFORE))
+        self.before.switch.toggled.connect(self._toggle_before)
+        self.trim = SwitchButton("trim", "trim", tr(TRIM))
         tip = tr(
             "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
             "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
         )
-        self.hand = ToolButton("hand", "hand", tip, checkable=True)
-        self.hand.toggled.connect(self._toggle_hand)
+        self.hand = SwitchButton("hand", "hand", tip)
+        self.hand.switch.toggled.connect(self._toggle_hand)
         for switch in (self.cuts_switch, self.before, self.trim, self.hand):
             self.header.addWidget(switch)
         self.header.addSpacing(6)
@@ -117,13 +114,16 @@ class StagePanel(Card):
     def _add_overlays(self) -> None:
         """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
         self.toggles: dict[Overlay, ToolButton] = {}
+        self.overlays: dict[Overlay, QAction] = {}
         for overlay, icon, tip in OVERLAYS:
-            button = ToolButton(f"show{overlay.value.capitalize()}", icon, tr(tip), checkable=True)
-            button.setChecked(True)
-            button.toggled.connect(self._update_overlays)
-            self.toggles[overlay] = button
-            self.header.addWidget(button)
-        self._other_overlays: frozenset[Overlay] = USUAL - self.toggles.keys()
+            toggle = SwitchButton(f"show{overlay.value.capitalize()}", icon, tr(tip))
+            self.toggles[overlay], self.overlays[overlay] = toggle, toggle.switch
+            self.header.addWidget(toggle)
+        for overlay in Overlay:
+            switch = self.overlays.setdefault(overlay, QAction(self))
+            switch.setCheckable(True)
+            switch.setChecked(overlay in USUAL)
+            switch.toggled.connect(self._update_overlays)
         self.overlays_button = ToolButton("overlays", "overlays", tr("Overlays on the layout."))
         self.overlays_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.overlay_menu = QMenu(self.overlays_button)
@@ -133,8 +133,8 @@ class StagePanel(Card):
         for button in self.cuts.toggles.values():
             self.header.addWidget(button)
             button.hide()
-        self.plots_switch = ToolButton("plots", "plots", tr(PLOTS), checkable=True)
-        self.plots_switch.toggled.connect(self._toggle_plots)
+        self.plots_switch = SwitchButton("plots", "plots", tr(PLOTS))
+        self.plots_switch.switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
         self.whole = ToolButton("fit", "fit", tr("Fit view (0)."))
         self.whole.clicked.connect(self.fit)
@@ -231,7 +231,7 @@ class StagePanel(Card):
     def set_comparing(self, on: bool) -> None:
         """Show two designs side by side, or one alone."""
         if on != self.comparing:
-            self.cuts_switch.setChecked(False)
+            self.cuts_switch.switch.setChecked(False)
             self._turn_to(self.compare if on else self._layout_page)
 
     def _toggle_cuts(self, on: bool) -> None:
@@ -243,8 +243,8 @@ class StagePanel(Card):
             bar.play.setChecked(False)
         self.pages.setCurrentWidget(page)
         cuts = page is self.cuts
-        for button in (self.before, self.hand, self.plots_switch):
-            button.setVisible(page is self._layout_page)
+        for switch in (self.before, self.hand, self.plots_switch):
+            switch.setVisible(page is self._layout_page)
         for button in (self.overlays_button, *self.toggles.values()):
             button.setVisible(not cuts)
         for button in self.cuts.toggles.values():
@@ -263,7 +263,7 @@ class StagePanel(Card):
 
     def set_editable(self, editable: bool) -> None:
         """Whether there is a design that may be changed by hand now."""
-        self.hand.setEnabled(editable and not self.showing_cuts)
+        self.hand.switch.setEnabled(editable and not self.showing_cuts)
 
     @property
     def showing_before(self) -> bool:
@@ -334,14 +334,15 @@ class StagePanel(Card):
         candidate = None if self._entry is None else self._entry.candidate
         comparable = candidate is not None and candidate.sampled_sheet is not None
         trimmed = candidate is not None and candidate.trim is not None
-        self.before.setEnabled(comparable)
+        before, trim = self.before.switch, self.trim.switch
+        before.setEnabled(comparable)
         never = NEVER_SAMPLED if candidate is not None and candidate.polished else NEVER_POLISHED
-        self.before.setToolTip(tr(BEFORE if comparable or candidate is None else never))
-        with QSignalBlocker(self.before):
-            self.before.setChecked(comparable and self.before.isChecked())
-        self.trim.setEnabled(candidate is not None and self._target is not None and self._trimmable)
-        self.trim.setToolTip(tr(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM))
-        self.trim.setChecked(trimmed or self._trimming)
+        before.setToolTip(tr(BEFORE if comparable or candidate is None else never))
+        with QSignalBlocker(before):
+            before.setChecked(comparable and before.isChecked())
+        trim.setEnabled(candidate is not None and self._target is not None and self._trimmable)
+        trim.setToolTip(tr(TRIMMING if self._trimming else UNTRIM if trimmed else TRIM))
+        trim.setChecked(trimmed or self._trimming)
         self.switches_changed.emit()
 
     def _show_ends(self) -> None:
@@ -423,7 +424,6 @@ class StagePanel(Card):
     def _toggle_plots(self, on: bool) -> None:
         self.plots.setVisible(on)
         self._place_plots()
-        self.plots_wanted.emit(on)
         self.switches_changed.emit()
 
     def _place_plots(self) -> None:
@@ -441,7 +441,7 @@ class StagePanel(Card):
         sizes = settings.value("plotsSplit")
         if isinstance(sizes, QByteArray):
             self.split.restoreState(sizes)
-        self.plots_switch.setChecked(settings.value("plots") == "yes")
+        self.plots_switch.switch.setChecked(settings.value("plots") == "yes")
 
     def remember(self, settings: QSettings) -> None:
         """Keep how it is played and whether plots are shown for the next time."""
@@ -459,15 +459,10 @@ class StagePanel(Card):
 
     def set_overlay(self, overlay: Overlay, on: bool) -> None:
         """Draw something over the layout, or no longer."""
-        if overlay in self.toggles:
-            self.toggles[overlay].setChecked(on)
-        elif on != (overlay in self._other_overlays):
-            self._other_overlays ^= {overlay}
-            self._update_overlays()
+        self.overlays[overlay].setChecked(on)
 
     def _update_overlays(self) -> None:
-        chosen = frozenset(overlay for overlay, button in self.toggles.items() if button.isChecked())
-        chosen |= self._other_overlays
+        chosen = frozenset(overlay for overlay, switch in self.overlays.items() if switch.isChecked())
         self.view.set_overlays(chosen)
         self.overlays_changed.emit(chosen)
 

@@ -1,4 +1,4 @@
-"""The stage of the window: the chosen design, how it was sampled, trimmed and does as cut, and its facts in words."""
+"""The stage of the window: the chosen design as sampled, trimmed and cut, and its facts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.curves import CurveReader
 from kirigami_studio.gui.stage.gripping import GripFinder
 from kirigami_studio.gui.window.stage_panel import StagePanel
-from kirigami_studio.project.document import Document
 from kirigami_studio.studio.two_states import match_of_start, start_of
 
 
@@ -45,15 +44,13 @@ class StagePresenter(QObject):
         super().__init__(panel)
         self._panel, self._session, self._curves, self._name_of = panel, session, curves, name_of
         self._running = False
-        panel.plots_wanted.connect(curves.want)
+        panel.plots_switch.switch.toggled.connect(curves.want)
         panel.status.connect(session.set_status)
         panel.overlays_changed.connect(lambda shown: grips.want(Overlay.GRIPS in shown))
         curves.grown.connect(panel.plots.show_curves)
         grips.changed.connect(panel.view.show_grips)
-        session.document_changed.connect(self._show_document)
-        session.display.stage_changed.connect(self._show_design)
-        self._show_document(session.document)
-        self._show_design(None)
+        self.show_document()
+        self.show_design(None)
 
     def show_run(self) -> None:
         """A run has begun: its target is shown, then the best design so far."""
@@ -81,11 +78,12 @@ class StagePresenter(QObject):
         )
         self._panel.set_hint("target", tr("Start with a target"), hint)
 
-    def _show_document(self, document: Document) -> None:
+    def show_document(self) -> None:
+        """The document has changed."""
         self._show_width()
         self._show_hint()
 
-    def _show_design(self, entry: Entry | None) -> None:
+    def show_design(self, entry: Entry | None) -> None:
         """Another design is chosen, or none."""
         target, candidate = self._session.document.target, None if entry is None else entry.candidate
         self._show_width()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QAction, QActionGroup
@@ -14,13 +13,13 @@ from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
 from kirigami_studio.foundation.words import languages, tr
 from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
+from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import TargetView
+from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.language import NAMES, SYSTEM
+from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.gui.window.view_commands import Appearance
 from kirigami_studio.project.recent import Recent
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
 #: Commands by id, "" for a gap.  Those that cannot be given now are grey.
 BOARD = (
@@ -192,29 +191,28 @@ class LanguageMenu(QMenu):
         self._appearance.choose_language(code)
 
 
-def offer_context_menus(window: MainWindow) -> None:
-    """Give the views of a window their menus."""
-    target, stage = window.target, window.stage
-    _offer(window, stage.view, lambda: STAGE)
-    _offer(window, stage.cuts.view, lambda: CUTS)
-    _offer(window, target.view, lambda: BOARD if target.editing else TARGET)
+def offer_context_menus(target: TargetPanel, stage: StagePanel, commands: CommandActions) -> None:
+    """Give the views of target and stage their menus."""
+    _offer(commands, stage.view, lambda: STAGE)
+    _offer(commands, stage.cuts.view, lambda: CUTS)
+    _offer(commands, target.view, lambda: BOARD if target.editing else TARGET)
 
 
-def _offer(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...]]) -> None:
+def _offer(commands: CommandActions, view: QWidget, names: Callable[[], tuple[str, ...]]) -> None:
     view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
-    view.customContextMenuRequested.connect(partial(_open, window, view, names))
+    view.customContextMenuRequested.connect(partial(_open, commands, view, names))
 
 
-def _open(window: MainWindow, view: QWidget, names: Callable[[], tuple[str, ...]], place: QPoint) -> None:
+def _open(commands: CommandActions, view: QWidget, names: Callable[[], tuple[str, ...]], place: QPoint) -> None:
     if isinstance(view, TargetView):
         view.select_at(QPointF(place))
-    window.commands.refresh()
+    commands.refresh()
     menu = QMenu(view)
     menu.setObjectName("contextMenu")
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     for name in names():
         if name:
-            menu.addAction(window.commands[name])
+            menu.addAction(commands[name])
         else:
             menu.addSeparator()
     menu.popup(view.mapToGlobal(place))

@@ -146,9 +146,9 @@ class Tour(QObject):
         self.at = -1
         self.ring = Ring(window)
         self.callout = Callout(window)
-        self.callout.next_wanted.connect(lambda: self._go(self.at + 1))
-        self.callout.back_wanted.connect(lambda: self._go(self.at - 1))
-        self.callout.skip_wanted.connect(self.end)
+        self.callout.next.clicked.connect(lambda: self._go(self.at + 1))
+        self.callout.back.clicked.connect(lambda: self._go(self.at - 1))
+        self.callout.skip.clicked.connect(self.end)
         self._soon = QTimer(self)  # panels that fold or grow settle first
         self._soon.setSingleShot(True)
         self._soon.setInterval(0)

@@ -176,18 +176,8 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
     stage = window.stage
 
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
-        which = OVERLAY_COMMANDS[name]
-        return Command(
-            name,
-            tr("&View"),
-            text,
-            tip,
-            lambda: stage.set_overlay(which, which not in stage.view.overlays),
-            (key,),
-            icon,
-            gap,
-            checked_when=lambda now: which in now.overlays,
-        )
+        switch = stage.overlays[OVERLAY_COMMANDS[name]]
+        return Command(name, tr("&View"), text, tip, switch.trigger, (key,), icon, gap, switch=switch)
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")
@@ -238,44 +228,41 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Before polish"),
             tr("Show the design before polishing"),
-            stage.before.click,
+            stage.before.switch.trigger,
             shortcuts=("B",),
             icon="before",
             gap=True,
-            enabled_when=lambda now: now.before.enabled,
-            checked_when=lambda now: now.before.checked,
+            switch=stage.before.switch,
         ),
         Command(
             "cuts",
             menu,
             tr("&Cuts"),
             tr("Show the cut plan at kerf width"),
-            stage.cuts_switch.click,
+            stage.cuts_switch.switch.trigger,
             shortcuts=("C",),
             icon="cuts",
-            enabled_when=lambda now: now.cuts.enabled,
-            checked_when=lambda now: now.cuts.checked,
+            switch=stage.cuts_switch.switch,
         ),
         Command(
             "plots",
             menu,
             tr("P&lots"),
             tr("Show match, size and gaps at every angle"),
-            stage.plots_switch.click,
+            stage.plots_switch.switch.trigger,
             shortcuts=("J",),
             icon="plots",
-            enabled_when=lambda now: now.plots.enabled,
-            checked_when=lambda now: now.plots.checked,
+            switch=stage.plots_switch.switch,
         ),
         Command(
             "compare",
             menu,
             tr("Si&de by side"),
             tr("Compare two designs side by side"),
-            lambda: comparison.show(not stage.comparing),
+            window.gallery.bar.compare.switch.trigger,
             shortcuts=("K",),
             icon="compare",
-            checked_when=lambda now: now.comparing,
+            switch=window.gallery.bar.compare.switch,
         ),
         Command(
             "all_designs",

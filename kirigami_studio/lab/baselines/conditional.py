@@ -47,7 +47,7 @@ class FieldPixels:
     z_scale: float = 0.5
 
     def __post_init__(self) -> None:
-        if self.rows < 1 or self.columns < 1 or self.latent < 4 or self.latent % 4 or self.mask % self.latent:
+        if self.rows < 1 or self.columns < 1 or self.latent < 4 or self.latent % 2 or self.mask % self.latent:
             raise UsageError("model.baseline_pixels", latent=self.latent, mask=self.mask)
 
     def to_json(self) -> dict[str, Any]:

@@ -14,6 +14,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator, FieldPixels, normal
 
 LATENT_CHANNELS = 4
@@ -107,6 +108,8 @@ class Cvae(ConditionalGenerator):
     def __init__(self, pixels: FieldPixels | None = None, channels: tuple[int, ...] = (32, 64, 64)) -> None:
         super().__init__()
         self.pixels = pixels or FieldPixels()
+        if self.pixels.latent % 2 ** (len(channels) - 1):
+            raise UsageError("model.baseline_pixels", latent=self.pixels.latent, mask=self.pixels.mask)
         self.channels = tuple(channels)
         self.encoder, self.decoder = Encoder(self.channels), Decoder(self.channels)
 

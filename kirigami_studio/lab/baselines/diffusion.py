@@ -47,7 +47,8 @@ class Diffusion(ConditionalGenerator):
             self.shape.rows, self.shape.columns, self.shape.latent, self.shape.mask, self.shape.z_scale
         )
         self.network = UNetVelocity(self.shape)
-        self.signal = kept_signal().float()
+        self.signal: Tensor
+        self.register_buffer("signal", kept_signal().float(), persistent=False)
 
     def settings(self) -> dict[str, Any]:
         return self.shape.to_json()
@@ -56,7 +57,7 @@ class Diffusion(ConditionalGenerator):
         """Mean squared error of the predicted noise, at random noise steps."""
         step = torch.randint(NOISE_STEPS, (len(z),), generator=draws, device=draws.device)
         noise = normal(tuple(z.shape), draws)
-        kept = self.signal.to(z.device)[step][:, None]
+        kept = self.signal[step][:, None]
         noisy = kept.sqrt() * z / self.pixels.z_scale + (1.0 - kept).sqrt() * noise
         return functional.mse_loss(self._noise(noisy, step, self._code(masks)), noise)
 
@@ -71,11 +72,10 @@ class Diffusion(ConditionalGenerator):
         if not 1 <= steps <= NOISE_STEPS:
             raise UsageError("model.diffusion_steps", steps=steps, most=NOISE_STEPS)
         code, limit = self._code(masks), LOG_RATIO_LIMIT / self.pixels.z_scale
-        signal = self.signal.to(masks.device)
         x = normal((len(masks), self.pixels.rows * self.pixels.columns), draws)
         taken = torch.linspace(NOISE_STEPS - 1, 0, steps + 1).round().long()[:-1]
         # What is left of the signal before the first and after each of these steps; after the last nothing is noise.
-        left = torch.cat([signal[taken], signal.new_ones(1)])
+        left = torch.cat([self.signal[taken], self.signal.new_ones(1)])
         for place, step in enumerate(taken):
             now, then = left[place], left[place + 1]
             noise = self._noise(x, step.expand(len(x)).to(x.device), code)

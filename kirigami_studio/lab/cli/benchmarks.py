@@ -578,6 +578,5 @@ def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[O
         return {"targets": found}
     from kirigami_studio.lab import problem
 
-    families = dict.fromkeys(arguments.families if "families" in arguments else ("structured", "sobol"))
     asked = arguments.split, arguments.count, arguments.data_seed
-    return {family: list(problem.targets(family, *asked, exact=exact)) for family in families}
+    return {family: list(problem.targets(family, *asked, exact=exact)) for family in dict.fromkeys(arguments.families)}

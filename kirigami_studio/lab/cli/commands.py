@@ -73,7 +73,14 @@ def targets_of_a_suite(usual: int) -> tuple[Option, ...]:
             "--split",
             default="test",
             choices=("test", "validation"),
-            help="split of both families that gives the targets (default test)",
+            help="split of each family that gives the targets (default test)",
+        ),
+        option(
+            "--families",
+            nargs="+",
+            choices=("structured", "released", "sobol", "drawn"),
+            default=["structured", "sobol"],
+            help="families of targets (default: structured sobol)",
         ),
         option("--count", type=count, default=usual, help=f"number of targets from each family (default {usual})"),
         option("--data-seed", type=whole, default=0, help="seed of the splits (default 0)"),
@@ -109,6 +116,28 @@ def run_of_training(validate_every: int) -> tuple[Option, ...]:
     )
 
 
+#: The designs that a generator is trained on, or whose silhouettes are its targets.
+TRAINING_DESIGNS = (
+    option(
+        "--family",
+        default="mixed",
+        choices=("mixed", "structured", "released", "sobol"),
+        help="endless designs of this family (default mixed)",
+    ),
+    option("--designs", default=None, metavar="FILE", help="instead of them a data set that 'dataset' wrote"),
+)
+
+AVERAGE_DECAY = option(
+    "--average-decay", type=amount, default=0.999, help="decay of the averaged weights to write (default 0.999)"
+)
+
+RECORDED = option(
+    "--recorded",
+    action="store_true",
+    help="GPU: record a step once and replay it, several times as fast where networks are small",
+)
+
+
 def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -> tuple[Option, ...]:
     """Options of the generators that the paper compares with its own; its settings are the defaults."""
     return (
@@ -129,14 +158,18 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
             help="pixels each way into which fields are drawn; fewer than the grid's 10 lose detail (default 32)",
         ),
         *more,
+        *TRAINING_DESIGNS,
+        AVERAGE_DECAY,
+        RECORDED,
         *run_of_training(500),
     )
 
 
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("dataset", "generate and verify training data as the paper describes", "lab.cli.learning:dataset", (
-        option("family", choices=("sobol", "structured", "drawn"),
-               help="distribution of the ratio fields; drawn: fits of procedural drawn shapes, for training only"),
+        option("family", choices=("sobol", "structured", "released", "drawn"),
+               help="distribution of the ratio fields; released: smooth fields with the moments of the paper's "
+                    "released generator; drawn: fits of procedural drawn shapes, for training only"),
         option("--out", required=True,
                help="folder for FAMILY-SPLIT.npz; drawn: for drawn.npz, which an earlier run may have begun"),
         option("--split", default="all", choices=("all", "train", "validation", "test"),
@@ -177,6 +210,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--feedback", action=argparse.BooleanOptionalAction, default=None,
                help="perceptron: give it the gap between current outline and target (default: yes)"),
         option("--outline-weight", type=amount, default=50.0, help="weight of the outline error (default 50)"),
+        *TRAINING_DESIGNS,
+        AVERAGE_DECAY,
+        RECORDED,
         *run_of_training(500),
     ), ("kirigami-studio train prior --out runs/prior --device auto",
         "kirigami-studio train prior --warm-start bundled --fits runs/drawn/drawn.npz --out runs/again",
@@ -242,6 +278,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="decay of the averaged weights to write (default 0: write the last weights)"),
         option("--keep-at", type=whole, nargs="+", default=[], metavar="CALLS",
                help="also write the weights after so many calls, 0 for the start, for 'benchmark grpo'"),
+        *TRAINING_DESIGNS,
         *run_of_training(50),
     ), ("kirigami-studio train grpo --reward accuracy --start bundled --calls 10000 --out runs/accuracy",
         "kirigami-studio train grpo --reward balanced --start runs/prior/prior.safetensors --out runs/both",
@@ -339,8 +376,6 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="MODULE:CALLABLE (targets -> tables of ratios), a baseline (uniform, cma-es, swarm, local-search, "
                     "powell, fit, sample, sample-fit, a bundled variant), or a .safetensors file of a training run"),
         *targets_of_a_suite(50),
-        option("--families", nargs="+", choices=("structured", "sobol", "drawn"), default=["structured", "sobol"],
-               help="families of targets (default: structured sobol)"),
         EXACT, GRID, SEED, *FIGURES,
     ), ("kirigami-studio benchmark judge mine:generate prior",
         "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),

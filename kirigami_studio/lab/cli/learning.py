@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kirigami_studio.generator.velocity import Network, Shape
     from kirigami_studio.generator.weights import Model
     from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
+    from kirigami_studio.lab.training.dataset import Split
     from kirigami_studio.lab.training.ranks import Process
     from kirigami_studio.lab.training.train_flow import Sources
 
@@ -121,6 +122,8 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
         batch=arguments.batch,
         coupling=arguments.coupling,
         outline_weight=arguments.outline_weight,
+        average_decay=arguments.average_decay,
+        **_named(arguments, sources.designs),
         seed=arguments.seed,
         shape=shape,
     )
@@ -132,6 +135,7 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
         process.device,
         validator(VALIDATION_COUNT, process.device),
         sources=sources,
+        recorded=arguments.recorded,
         seconds=seconds,
         validate_every=arguments.validate_every,
     ):
@@ -156,11 +160,20 @@ def _shape(arguments: argparse.Namespace) -> Shape:
     if arguments.feedback:
         raise UsageError("training.feedback_with_unet")
     usual = UNetShape()
+    latent = arguments.latent or usual.latent
     return UNetShape(
         channels=usual.channels if arguments.channels is None else _channels(arguments.channels),
         residuals=arguments.residuals or usual.residuals,
-        latent=arguments.latent or usual.latent,
+        latent=latent,
+        mask=_mask_pixels(latent),
     )
+
+
+def _mask_pixels(latent: int) -> int:
+    """Pixels of a target's mask: the paper's 128, or as many below as are averaged to whole ones."""
+    from kirigami_studio.foundation.paper import MASK_SIZE
+
+    return max(1, MASK_SIZE // latent) * latent
 
 
 def _channels(text: str) -> tuple[int, ...]:
@@ -203,13 +216,21 @@ def _train_baseline(
     from kirigami_studio.lab.training.validation import baseline_validator
 
     seconds = seconds_allowed(arguments)
+    designs = _designs(arguments)
     settings = BaselineSettings(
         kind,
-        {**network, "latent": arguments.latent, "channels": list(_channels(arguments.channels))},
+        {
+            **network,
+            "latent": arguments.latent,
+            "mask": _mask_pixels(arguments.latent),
+            "channels": list(_channels(arguments.channels)),
+        },
         steps=arguments.steps,
         batch=arguments.batch,
         learning_rate=arguments.learning_rate,
         first_moment=first_moment,
+        average_decay=arguments.average_decay,
+        **_named(arguments, designs),
         seed=arguments.seed,
     )
     folder = Path(arguments.out)
@@ -219,6 +240,8 @@ def _train_baseline(
         folder,
         process.device,
         baseline_validator(VALIDATION_COUNT, process.device),
+        designs=designs,
+        recorded=arguments.recorded,
         seconds=seconds,
         validate_every=arguments.validate_every,
     ):
@@ -239,7 +262,22 @@ def _sources(arguments: argparse.Namespace) -> Sources:
     if not 0.0 < arguments.fit_share < 1.0:
         raise UsageError("training.fit_share_out_of_range", share=arguments.fit_share)
     start = None if arguments.warm_start is None else starting_model(arguments.warm_start)
-    return Sources(start, None if arguments.fits is None else FittedFields.load(Path(arguments.fits)))
+    fits = None if arguments.fits is None else FittedFields.load(Path(arguments.fits))
+    return Sources(start, fits, _designs(arguments))
+
+
+def _designs(arguments: argparse.Namespace) -> Split | None:
+    """The data set to train on, if one is given."""
+    from kirigami_studio.lab.training.dataset import Split
+
+    return None if arguments.designs is None else Split.load(Path(arguments.designs))
+
+
+def _named(arguments: argparse.Namespace, designs: Split | None) -> dict[str, str]:
+    """Training designs as settings name them."""
+    if designs is None:
+        return {"family": arguments.family}
+    return {"family": str(designs.about["family"]), "designs": str(designs.about["sha256"])}
 
 
 def grpo(arguments: argparse.Namespace) -> int:
@@ -253,7 +291,7 @@ def grpo(arguments: argparse.Namespace) -> int:
     check_alone()
     seconds = seconds_allowed(arguments)
     device = training_device(arguments.device, arguments.threads)
-    start = starting_model(arguments.start)
+    start, designs = starting_model(arguments.start), _designs(arguments)
     settings = GrpoSettings(
         reward=arguments.reward,
         start=start.digest,
@@ -268,6 +306,7 @@ def grpo(arguments: argparse.Namespace) -> int:
         reference=arguments.reference,
         least_spread=arguments.least_spread,
         average_decay=arguments.average_decay,
+        **_named(arguments, designs),
         seed=arguments.seed,
     )
     watched = validator(VALIDATION_COUNT, device, settings.rollout_steps)
@@ -284,6 +323,7 @@ def grpo(arguments: argparse.Namespace) -> int:
         device,
         validate,
         start,
+        designs=designs,
         seconds=seconds,
         validate_every=arguments.validate_every,
         keep_at=arguments.keep_at,

@@ -1,9 +1,10 @@
-"""Endless training pairs, decoded on the fly: chunk k of seed s is always the same."""
+"""Training pairs, decoded on the fly and endless, or those of a data set: chunk k of seed s is always the same."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import torch
@@ -11,6 +12,7 @@ from numpy.random import Generator
 from torch import Tensor
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.conditioning import normalised, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -54,11 +56,45 @@ class Corpus:
     def chunk(self, number: int) -> Chunk:
         """Generate chunk ``number``."""
         rng = np.random.default_rng((self.seed, number))
-        fields = self.sampler(self.chunk_size, self.lattice.rows, self.lattice.columns, rng)
-        z = torch.tensor(fields, dtype=torch.float32, device=self.lattice.device)
-        with torch.no_grad():
-            polygons = torch.cat([zero_outline(self.lattice, part) for part in z.split(2048)])
-        return Chunk(z.flatten(1), normalised(polygons))
+        return decoded(self.sampler(self.chunk_size, self.lattice.rows, self.lattice.columns, rng), self.lattice)
+
+
+class FixedDesigns:
+    """The designs of a data set as the only chunk, visited in a new order in every pass.
+
+    Parameters
+    ----------
+    ratios : (N, m, n) float
+    seed : int
+        Of the order.
+    device : torch.device
+
+    Raises
+    ------
+    UsageError
+        The designs are of another grid.
+    """
+
+    def __init__(self, ratios: FloatArray, rows: int, columns: int, seed: int, device: torch.device) -> None:
+        if ratios.shape[1:] != (rows, columns):
+            raise UsageError("training.designs_of_other_grid", rows=rows, columns=columns, shape=ratios.shape[1:])
+        self.seed, self.chunk_size = seed, len(ratios)
+        self.lattice = BatchedLattice(rows, columns, device)
+        self._chunk = decoded(np.log10(ratios), self.lattice)
+
+    def chunk(self, number: int) -> Chunk:
+        """All designs, whatever the number."""
+        return self._chunk
+
+
+class Designs(Protocol):
+    """Where batches come from: a ``Corpus``, or ``FixedDesigns``."""
+
+    seed: int
+    chunk_size: int
+    lattice: BatchedLattice
+
+    def chunk(self, number: int) -> Chunk: ...
 
 
 class ChunkBatches:
@@ -66,16 +102,19 @@ class ChunkBatches:
 
     Parameters
     ----------
-    corpus : Corpus
+    corpus : Designs
     batch : int
         Designs of a step.
     passes : int
         How often each chunk is visited before the next.
     """
 
-    def __init__(self, corpus: Corpus, batch: int, passes: int) -> None:
+    def __init__(self, corpus: Designs, batch: int, passes: int) -> None:
+        if batch > corpus.chunk_size:
+            raise UsageError("training.too_few_designs", designs=corpus.chunk_size, batch=batch)
         self.corpus, self.batch, self.passes = corpus, batch, passes
         self._chunk: tuple[int, Chunk] | None = None
+        self._order: tuple[int, Tensor] | None = None
 
     def at(self, step: int) -> Chunk:
         """The designs of a step."""
@@ -84,9 +123,10 @@ class ChunkBatches:
         number = sweep // self.passes
         if self._chunk is None or self._chunk[0] != number:
             self._chunk = number, self.corpus.chunk(number)
-        order = torch.Generator().manual_seed(1_000_003 * self.corpus.seed + sweep)
-        picked = torch.randperm(size, generator=order)[place * self.batch : (place + 1) * self.batch]
-        picked = picked.to(self.corpus.lattice.device)
+        if self._order is None or self._order[0] != sweep:
+            draws = torch.Generator().manual_seed(1_000_003 * self.corpus.seed + sweep)
+            self._order = sweep, torch.randperm(size, generator=draws).to(self.corpus.lattice.device)
+        picked = self._order[1][place * self.batch : (place + 1) * self.batch]
         chunk = self._chunk[1]
         return Chunk(chunk.z[picked], chunk.polygons[picked])
 
@@ -113,6 +153,14 @@ class Disturbance:
         turns = torch.randn(polygons.shape[:1], generator=generator, device=device)
         moved = turned(polygons + self.vertex_noise * noise, self.turn_noise * turns)
         return turned(moved, -square_pose(moved)) if upright else moved
+
+
+def decoded(fields: FloatArray, lattice: BatchedLattice) -> Chunk:
+    """Fields z (C, m, n) with their silhouettes, on the lattice's device."""
+    z = torch.tensor(fields, dtype=torch.float32, device=lattice.device)
+    with torch.no_grad():
+        polygons = torch.cat([zero_outline(lattice, part) for part in z.split(2048)])
+    return Chunk(z.flatten(1), normalised(polygons))
 
 
 def zero_outline(lattice: BatchedLattice, z: Tensor) -> Tensor:

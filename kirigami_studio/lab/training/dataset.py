@@ -32,13 +32,13 @@ from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import opened_file, write_atomically
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
-from kirigami_studio.lab.training.corpus import zero_outline
-from kirigami_studio.lab.training.fields import sobol_fields, structured_fields
+from kirigami_studio.lab.training.corpus import Corpus, Designs, FixedDesigns, zero_outline
+from kirigami_studio.lab.training.fields import SAMPLERS, sobol_fields
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
-FAMILIES = ("sobol", "structured")
+FAMILIES = ("sobol", "structured", "released")
 #: Split sizes of the paper (Appendix "Dataset generation") and the seed offsets that keep splits independent.
 SPLITS = {"train": (5000, 0), "validation": (500, 1), "test": (500, 2)}
 #: A mask that fills less or more of its 128 x 128 image than this is no silhouette (digest: 3-97 %).
@@ -94,6 +94,39 @@ class Split:
         return split
 
 
+def digest_of_designs(designs: Split | None) -> str:
+    """SHA-256 of a data set's content, by which settings of training name it; empty for none."""
+    return "" if designs is None else str(designs.about["sha256"])
+
+
+def designs_of(
+    family: str, fixed: Split | None, rows: int, columns: int, seed: int, chunk: int, device: torch.device
+) -> Designs:
+    """The designs that a run trains on: those of a data set, over and over, or endless ones of a family.
+
+    Parameters
+    ----------
+    family : str
+        Of :data:`kirigami_studio.lab.training.fields.SAMPLERS`; not asked where there is a data set.
+    fixed : Split, optional
+    rows, columns : int
+    seed : int
+    chunk : int
+        Endless designs that are made together.
+    device : torch.device
+
+    Raises
+    ------
+    UsageError
+        No such family, or a data set of another grid.
+    """
+    if family not in SAMPLERS:
+        raise UsageError("training.unknown_family", family=family, choices=", ".join(SAMPLERS))
+    if fixed is not None:
+        return FixedDesigns(fixed.ratios, rows, columns, seed, device)
+    return Corpus(SAMPLERS[family], rows, columns, seed, chunk, device)
+
+
 def content_hash(ratios: FloatArray, masks: BoolArray) -> str:
     """SHA-256 of designs and masks, in their order; the same on every machine.
 
@@ -122,7 +155,7 @@ def generate_split(
     Parameters
     ----------
     family : str
-        ``sobol`` or ``structured``, see :mod:`kirigami_studio.lab.training.fields`.
+        One of ``FAMILIES``, see :mod:`kirigami_studio.lab.training.fields`.
     count : int
     seed : int
         Splits with different seeds are independent; the same seed gives the same content.
@@ -236,10 +269,10 @@ def _batches(family: str, grid: tuple[int, int], seed: int) -> Iterator[FloatArr
         while True:
             yield sobol_fields(BATCH, *grid, seed=seed, skip=taken)
             taken += BATCH
-    if family == "structured":
+    if family in FAMILIES:
         rng: Generator = np.random.default_rng(seed)
         while True:
-            yield structured_fields(BATCH, *grid, rng)
+            yield SAMPLERS[family](BATCH, *grid, rng)
     raise UsageError("training.unknown_family", family=family, choices=", ".join(FAMILIES))
 
 

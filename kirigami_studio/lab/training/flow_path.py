@@ -78,15 +78,24 @@ def cfm_errors(velocity: Tensor, sample: PathSample) -> Tensor:
     return (velocity - sample.dx_t).square().mean(dim=1)
 
 
-def pair_noise(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) -> Tensor:
-    """Reorder ``noise`` (B, D) so that row b belongs to design ``z[b]`` with condition ``conditions[b]``."""
-    if coupling == "independent":
-        return noise
-    if coupling not in COUPLINGS:
+def pairing_cost(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) -> Tensor:
+    """Cost of pairing design ``z[b]`` (B, D), of condition ``conditions[b]``, with each row of ``noise``: (B, B).
+
+    Raises
+    ------
+    UsageError
+        A coupling that pairs nothing, or none of ``COUPLINGS``.
+    """
+    if coupling not in COUPLINGS[1:]:
         raise UsageError("training.unknown_coupling", coupling=coupling, choices=", ".join(COUPLINGS))
     cost = torch.cdist(z, noise).square()
-    if coupling == "conditional-ot":
-        # Noise b was drawn for target b: moving it to another target costs the squared distance between the two.
-        cost = cost + CONDITION_WEIGHT * torch.cdist(conditions, conditions).square()
+    if coupling == "ot":
+        return cost
+    # Noise b was drawn for target b: moving it to another target costs the squared distance between the two.
+    return cost + CONDITION_WEIGHT * torch.cdist(conditions, conditions).square()
+
+
+def paired_noise(noise: Tensor, cost: Tensor) -> Tensor:
+    """``noise`` (B, D) in the order in which all designs together cost least: row b belongs to design b."""
     _, columns = linear_sum_assignment(cost.cpu().numpy())
     return noise[torch.as_tensor(columns, device=noise.device)]

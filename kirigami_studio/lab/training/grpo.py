@@ -40,8 +40,8 @@ from kirigami_studio.generator.conditioning import square_pose, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Code, Network
 from kirigami_studio.generator.weights import Model, store_model, variants_about
-from kirigami_studio.lab.training.corpus import Corpus
-from kirigami_studio.lab.training.fields import mixed_fields
+from kirigami_studio.lab.training.corpus import ChunkBatches
+from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
 from kirigami_studio.lab.training.flow_path import ConditionalPath, PathSample, cfm_errors
 from kirigami_studio.lab.training.learner import CHECKPOINT, Checkpoint, Learner, logged, opened
 from kirigami_studio.lab.training.rewards import Group, GroupReward, Reward, reward_named
@@ -86,6 +86,8 @@ class GrpoSettings:
         Groups whose rewards have a smaller standard deviation are left out of the loss.
     average_decay : float
         Of the moving average of weights that is handed over; 0 hands over the last ones.
+    family, designs : str
+        Whose silhouettes are the targets, see :class:`kirigami_studio.lab.training.train_flow.FlowSettings`.
     seed : int
     """
 
@@ -102,6 +104,8 @@ class GrpoSettings:
     reference: float = 0.0
     least_spread: float = 0.0
     average_decay: float = 0.0
+    family: str = "mixed"
+    designs: str = ""
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -182,6 +186,7 @@ def train_grpo(
     validate: Callable[[Network], dict[str, float]],
     start: Model,
     *,
+    designs: Split | None = None,
     seconds: float = math.inf,
     validate_every: int = 50,
     keep_at: Sequence[int] = (),
@@ -199,6 +204,8 @@ def train_grpo(
         Maps the network that would be handed over to figures for the log.
     start : Model
         The prior; it is not written to.
+    designs : Split, optional
+        The data set that the settings name.
     seconds : float
         Stop with a checkpoint after this wall time even if calls remain.
     validate_every : int
@@ -224,9 +231,9 @@ def train_grpo(
     """
     if max(keep_at, default=0) > settings.calls:
         raise UsageError("training.kept_after_end", kept=max(keep_at), calls=settings.calls)
-    if start.digest != settings.start:
+    if (start.digest, digest_of_designs(designs)) != (settings.start, settings.designs):
         raise ModelError("training.other_start")
-    run = GrpoRun(settings, opened(folder), device, start)
+    run = GrpoRun(settings, opened(folder), device, start, designs)
     waiting = _to_keep(folder, run, keep_at)
     began = time.perf_counter()
 
@@ -283,7 +290,9 @@ def aligned_network(folder: Path, start: Model) -> Network:
 class GrpoRun:
     """The mutable part of a run: one rollout, its rewards and one update a step."""
 
-    def __init__(self, settings: GrpoSettings, path: Path, device: torch.device, start: Model) -> None:
+    def __init__(
+        self, settings: GrpoSettings, path: Path, device: torch.device, start: Model, designs: Split | None = None
+    ) -> None:
         self.settings, self.path, self.device = settings, path, device
         self.prior = copy.deepcopy(start.network).to(device).eval().requires_grad_(False)
         self.network = copy.deepcopy(self.prior).requires_grad_(True)
@@ -292,7 +301,8 @@ class GrpoRun:
         self.learner = Learner(self.network, optimiser, self.generator, device)
         shape = start.network.shape
         self.grid, self.z_scale = (shape.rows, shape.columns), shape.z_scale
-        self.corpus = Corpus(mixed_fields, *self.grid, settings.seed, settings.batch, device)
+        corpus = designs_of(settings.family, designs, *self.grid, settings.seed, settings.batch, device)
+        self.batches = ChunkBatches(corpus, settings.batch, passes=1)
         self.reward: GroupReward = reward_named(settings.reward)
         self.calls = 0
         self._totals: Counter[str] = Counter()
@@ -354,7 +364,7 @@ class GrpoRun:
 
     def _targets(self, number: int, count: int) -> tuple[Tensor, list[Outline]]:
         """Training silhouettes of step ``number``: as the network sees them (B, L, 2), and for the evaluator."""
-        polygons = self.corpus.chunk(number).polygons[:count]
+        polygons = self.batches.at(number).polygons[:count]
         outlines = [Outline.from_points(polygon) for polygon in polygons.cpu().double().numpy()]
         return turned(polygons, -square_pose(polygons)), outlines
 

@@ -147,9 +147,10 @@ class Learner(Generic[Learning]):
         self.step = 0
         self.ranks = Ranks.present()
         self._parallel: DistributedDataParallel | None = None
+        self._pairs: tuple[list[Tensor], list[Tensor]] | None = None
 
     def loss(self, compute: Callable[[], Tensor]) -> Tensor:
-        """The loss of this process's share of a batch, by ``compute``; :meth:`learn` then averages over all shares."""
+        """The loss of this process's share of a batch, by ``compute``; :meth:`descend` averages over all shares."""
         if self.ranks.count == 1:
             return compute()
         if self._parallel is None:
@@ -160,14 +161,32 @@ class Learner(Generic[Learning]):
 
     def learn(self, loss: Tensor, decay: float, largest_gradient: float | None = None) -> None:
         """One step down ``loss``, its gradient bounded if asked for; the average keeps ``decay`` of itself."""
+        self.descend(loss, largest_gradient)
+        self.follow(decay)
+
+    def descend(self, loss: Tensor, largest_gradient: float | None = None) -> None:
+        """One step down ``loss``, its gradient bounded if asked for."""
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         if largest_gradient is not None:
             torch.nn.utils.clip_grad_norm_(self.network.parameters(), largest_gradient)
         self.optimiser.step()
+
+    def follow(self, decay: float) -> None:
+        """Move the average of weights towards the present ones; it keeps ``decay`` of itself."""
         with torch.no_grad():
-            names, values = zip(*self.network.state_dict().items(), strict=True)
-            torch._foreach_lerp_([self.average[name] for name in names], list(values), 1.0 - decay)
+            if self._pairs is None:
+                values = self.network.state_dict()
+                self._pairs = [self.average[name] for name in values], list(values.values())
+            torch._foreach_lerp_(*self._pairs, 1.0 - decay)
+
+    def set_rate(self, learning_rate: float) -> None:
+        """Set the learning rate of the next step, in place where a recorded step reads it on the GPU."""
+        for group in self.optimiser.param_groups:
+            if isinstance(group["lr"], Tensor):
+                group["lr"].fill_(learning_rate)
+            else:
+                group["lr"] = learning_rate
 
     def averaged(self, network: Learning) -> Learning:
         """``network``, a fresh one of the same shape, with the averaged weights, ready to sample."""
@@ -204,7 +223,11 @@ class Learner(Generic[Learning]):
         state.check_settings(settings, path)
         self.network.load_state_dict(state.network)
         self.average = {name: value.to(self.device) for name, value in state.average.items()}
+        # How steps are taken belongs to the present device, not to the one that wrote the checkpoint.
+        for group, stored in zip(self.optimiser.param_groups, state.optimiser["param_groups"], strict=True):
+            stored |= {name: group[name] for name in ("lr", "fused", "foreach", "capturable")}
         self.optimiser.load_state_dict(state.optimiser)
+        self._pairs = None
         states = [state.generator, *state.others]
         if self.ranks.rank < len(states):
             self.generator.set_state(states[self.ranks.rank])
@@ -212,6 +235,23 @@ class Learner(Generic[Learning]):
             self.generator.manual_seed(self.generator.initial_seed() + 1_000_003 * state.step)
         self.step = state.step
         return state.more
+
+
+def adamw(
+    network: nn.Module,
+    learning_rate: float,
+    betas: tuple[float, float],
+    weight_decay: float,
+    device: torch.device,
+    recorded: bool,
+) -> torch.optim.AdamW:
+    """The optimiser of flows and baselines; of ``recorded`` steps one that leaves everything on the GPU."""
+    if not recorded:
+        return torch.optim.AdamW(network.parameters(), lr=learning_rate, betas=betas, weight_decay=weight_decay)
+    rate = torch.tensor(learning_rate, device=device)
+    return torch.optim.AdamW(
+        network.parameters(), lr=rate, betas=betas, weight_decay=weight_decay, fused=True, capturable=True
+    )
 
 
 def opened(folder: Path) -> Path:

@@ -13,13 +13,16 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from torch import Tensor
 
+from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import generator_of
-from kirigami_studio.lab.training.corpus import ChunkBatches, Corpus, Disturbance
-from kirigami_studio.lab.training.fields import mixed_fields
-from kirigami_studio.lab.training.learner import CHECKPOINT, Learner, opened, trained
+from kirigami_studio.lab.training.corpus import ChunkBatches, Disturbance
+from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
+from kirigami_studio.lab.training.learner import CHECKPOINT, Checkpoint, Learner, adamw, opened, trained
 from kirigami_studio.lab.training.ranks import Ranks
+from kirigami_studio.lab.training.recorded import Recorded, own_stream
 from kirigami_studio.lab.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: Designs generated together, and how often each is visited before the next.
@@ -48,7 +51,9 @@ class BaselineSettings:
     vertex_noise, turn_noise : float
         See :class:`kirigami_studio.lab.training.corpus.Disturbance`.
     chunk : int
-        Designs generated together.
+        Endless designs generated together.
+    family, designs : str
+        Of the training designs, see :class:`kirigami_studio.lab.training.train_flow.FlowSettings`.
     seed : int
     """
 
@@ -63,6 +68,8 @@ class BaselineSettings:
     vertex_noise: float = 0.003
     turn_noise: float = 0.02
     chunk: int = CHUNK
+    family: str = "mixed"
+    designs: str = ""
     seed: int = 0
 
     def to_json(self) -> dict[str, Any]:
@@ -75,6 +82,8 @@ def train_baseline(
     device: torch.device,
     validate: Callable[[ConditionalGenerator], dict[str, float]],
     *,
+    designs: Split | None = None,
+    recorded: bool = False,
     seconds: float = math.inf,
     validate_every: int = 500,
 ) -> Iterator[dict[str, float]]:
@@ -88,6 +97,10 @@ def train_baseline(
     device : torch.device
     validate : callable
         Maps the averaged network to figures for the log.
+    designs : Split, optional
+        The data set that the settings name.
+    recorded : bool
+        Whether steps are recorded, see :mod:`kirigami_studio.lab.training.recorded`.
     seconds : float
         Stop with a checkpoint after this wall time even if steps remain.
     validate_every : int
@@ -98,15 +111,20 @@ def train_baseline(
     ExportError
         The folder cannot be made or written.
     ModelError
-        The checkpoint in ``folder`` belongs to other settings.
+        The checkpoint in ``folder`` belongs to other settings, or the data set does.
     """
-    run = BaselineRun(settings, opened(folder), device)
-    yield from trained(run, settings.steps, folder, validate, seconds, validate_every)
+    if digest_of_designs(designs) != settings.designs:
+        raise ModelError("training.other_start")
+    with own_stream(device, recorded):
+        run = BaselineRun(settings, opened(folder), device, designs, recorded)
+        yield from trained(run, settings.steps, folder, validate, seconds, validate_every)
 
 
 def trained_baseline(settings: BaselineSettings, folder: Path, device: torch.device) -> ConditionalGenerator:
     """The averaged network of the checkpoint in ``folder``."""
-    return BaselineRun(settings, folder / CHECKPOINT, device).averaged()
+    network = generator_of(settings.kind, settings.network)
+    network.load_state_dict(Checkpoint.load(folder / CHECKPOINT).average)
+    return network.to(device).eval()
 
 
 class BaselineRun:
@@ -118,26 +136,36 @@ class BaselineRun:
     path : Path
         Of the checkpoint.
     device : torch.device
+    designs : Split, optional
+        The data set that the settings name.
+    recorded : bool
+        Whether steps are recorded, see :mod:`kirigami_studio.lab.training.recorded`.
     """
 
-    def __init__(self, settings: BaselineSettings, path: Path, device: torch.device) -> None:
+    def __init__(
+        self,
+        settings: BaselineSettings,
+        path: Path,
+        device: torch.device,
+        designs: Split | None = None,
+        recorded: bool = False,
+    ) -> None:
         self.settings, self.path = settings, path
         torch.manual_seed(settings.seed)
         network = generator_of(settings.kind, settings.network).to(device)
-        optimiser = torch.optim.AdamW(
-            network.parameters(),
-            lr=settings.learning_rate,
-            betas=(settings.first_moment, 0.999),
-            weight_decay=settings.weight_decay,
-        )
+        betas = settings.first_moment, 0.999
+        optimiser = adamw(network, settings.learning_rate, betas, settings.weight_decay, device, recorded)
         ranks = Ranks.present()
         self.seed = ranks.seed(settings.seed)
         self.generator = torch.Generator(device=device).manual_seed(self.seed)
         self.learner = Learner(network, optimiser, self.generator, device)
         pixels = network.pixels
-        corpus = Corpus(mixed_fields, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
+        corpus = designs_of(settings.family, designs, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
         self.designs = ChunkBatches(corpus, ranks.share(settings.batch), PASSES)
         self.disturbance = Disturbance(settings.vertex_noise, settings.turn_noise)
+        self._descended: Callable[..., tuple[Tensor, ...]] = self._descend
+        if recorded:
+            self._descended = Recorded(self._descend, self.generator)
         if path.exists():
             self.learner.resume(path, settings.to_json())
 
@@ -148,19 +176,24 @@ class BaselineRun:
 
     def advance(self) -> dict[str, float]:
         """One optimiser step; returns the loss."""
-        settings, network = self.settings, self.learner.network
-        for group in self.learner.optimiser.param_groups:
-            group["lr"] = settings.learning_rate * schedule(self.step, settings.steps)
+        settings = self.settings
+        self.learner.set_rate(settings.learning_rate * schedule(self.step, settings.steps))
         # Dropout draws from torch's own generator: by the step, so that a resumed run draws the same.
         torch.manual_seed(1_000_003 * self.seed + self.step)
         designs = self.designs.at(self.step)
-        masks = network.pixels.masks(self.disturbance.seen(designs.polygons, self.generator))
-        loss = self.learner.loss(lambda: network.loss(designs.z, masks, self.generator))
+        (loss,) = self._descended(designs.z, designs.polygons)
         # Random weights must not linger in the average.
-        decay = min(settings.average_decay, (2 + self.step) / (11 + self.step))
-        self.learner.learn(loss, decay, LARGEST_GRADIENT)
+        self.learner.follow(min(settings.average_decay, (2 + self.step) / (11 + self.step)))
         self.learner.step += 1
-        return {"loss": float(loss.detach())}
+        return {"loss": float(loss)}
+
+    def _descend(self, z: Tensor, polygons: Tensor) -> tuple[Tensor]:
+        """One step on designs z (B, m * n) with their silhouettes (B, L, 2); returns the loss."""
+        network = self.learner.network
+        masks = network.pixels.masks(self.disturbance.seen(polygons, self.generator))
+        loss = self.learner.loss(lambda: network.loss(z, masks, self.generator))
+        self.learner.descend(loss, LARGEST_GRADIENT)
+        return (loss.detach(),)
 
     def averaged(self) -> ConditionalGenerator:
         """A copy of the network with the averaged weights."""

@@ -17,7 +17,7 @@ from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Network, Velocity
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.training.corpus import zero_outline
-from kirigami_studio.lab.training.fields import sobol_fields, structured_fields
+from kirigami_studio.lab.training.fields import released_fields, sobol_fields, structured_fields
 from kirigami_studio.lab.training.preference_loss import total_variation as batched_variation
 from kirigami_studio.lab.training.sampled_targets import drawn_polygons
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -88,6 +88,7 @@ def match_figures(draw: Draw, count: int, lattice: BatchedLattice) -> dict[str, 
     rows, columns, device = lattice.rows, lattice.columns, lattice.device
     families = {
         "structured": structured_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED)),
+        "released": released_fields(count, rows, columns, np.random.default_rng(VALIDATION_SEED)),
         "sobol": sobol_fields(count, rows, columns, VALIDATION_SEED),
     }
     figures: dict[str, float] = {}

@@ -61,7 +61,6 @@ def _matched(design: ks.Design) -> float:
     return design.iou
 
 
-@pytest.mark.slow
 def test_that_designs_go_to_another_process(hearts: ks.Designs) -> None:
     with get_context("spawn").Pool(1) as pool:
         assert pool.map(_matched, list(hearts)[:2]) == [design.iou for design in list(hearts)[:2]]

@@ -22,6 +22,15 @@ def figures(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
     return json.loads(capsys.readouterr().out)
 
 
+def test_that_a_suite_is_measured_on_the_families_that_it_is_asked_for(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    words = ("--families", "released", "--count", "1", "--seeds", "0", "--k", "2", "--processes", "1")
+    found = figures(capsys, "generators", "--generators", "paper", *words, "--out", str(tmp_path))
+    assert list(found["families"]) == ["released"]
+    assert found["families"]["released"]["rows"]["paper"]["runs"] == 1
+
+
 def test_that_variants_are_measured_on_both_families_of_either_split(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

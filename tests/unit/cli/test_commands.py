@@ -352,6 +352,7 @@ def test_that_impossible_numbers_of_the_learning_commands_are_wrong_usage(
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 @pytest.mark.parametrize("words", [("targets",), ("targets", "--json")])
 def test_that_a_full_disk_behind_standard_output_is_one_sentence(words: tuple[str, ...]) -> None:
+    assert Path("/dev/full").is_char_device(), "something has put a file in the place of this machine's device"
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "kirigami_studio", *words],

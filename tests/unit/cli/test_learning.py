@@ -62,6 +62,23 @@ def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
 
 
 @pytest.mark.usefixtures("small_runs")
+def test_that_the_papers_network_is_trained_at_the_fields_own_pixels_on_a_data_set(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert main(["dataset", "released", "--split", "train", "--count", "9", "--out", str(tmp_path), "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    words = ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--latent", "10", "--residuals", "1"]
+    words += ["--batch", "8", "--noises", "1", "--outline-weight", "0", "--average-decay", "0.5", "--steps", "1"]
+    words += ["--designs", made["files"]["train"], "--device", "cpu", "--out", str(tmp_path / "run"), "--json"]
+    assert main(words) == 0
+    entry = json.loads((tmp_path / "run" / "manifest.json").read_text())["variants"]["prior"]
+    assert (entry["shape"]["latent"], entry["shape"]["mask"]) == (10, 120)
+    settings = entry["about"]["settings"]
+    assert (settings["family"], settings["average_decay"]) == ("released", 0.5)
+    assert settings["designs"] == made["splits"]["train"]["sha256"]
+
+
+@pytest.mark.usefixtures("small_runs")
 def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     words = ["train", "prior", "--backbone", "unet", "--channels", "8,16", "--coupling", "ot", "--batch", "16"]
     words += ["--noises", "1", "--learning-rate", "2e-5", "--weight-decay", "0.05", "--outline-weight", "0"]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import rotate, zoom
 
-from kirigami_studio.evaluate.mask_siou import mask_siou
+from kirigami_studio.evaluate.mask_siou import mask_siou, released_siou
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
@@ -33,6 +33,21 @@ def test_that_poor_matches_are_not_flattered_by_the_canvas(oracles: Mapping[str,
     assert ((ours > 0.3) & (ours <= 1.0)).all()
     assert (ours - reference).max() < 0.02
     assert (ours - reference).min() > -0.2
+
+
+def test_that_the_released_measure_scores_as_the_released_evaluator_does(oracles: Mapping[str, np.ndarray]) -> None:
+    masks = oracles["10x10_mask"]
+    pairs, reference = oracles["siou_pairs"][16:28], oracles["siou_values"][16:28]
+    found = np.array([released_siou(masks[i], masks[j]) for i, j in pairs])
+    assert np.abs(found - reference).mean() < 0.015
+    near = zip(oracles["near_candidate_mask"][:6], oracles["near_target_mask"][:6], strict=True)
+    assert [released_siou(a, b) for a, b in near] == pytest.approx(list(oracles["near_siou"][:6]), abs=0.01)
+
+
+def test_that_the_released_measure_forgives_what_leaves_the_designs_canvas() -> None:
+    sheet, disc = np.ones((128, 128), dtype=np.bool_), rasterise(silhouettes.load("circle").points)
+    assert released_siou(sheet, disc) > mask_siou(sheet, disc)[0] + 0.05
+    assert released_siou(disc, disc) == 1.0
 
 
 def test_that_swapping_the_masks_changes_nothing(oracles: Mapping[str, np.ndarray]) -> None:

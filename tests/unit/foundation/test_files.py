@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import socket
 import stat
 from pathlib import Path
 
@@ -109,3 +111,32 @@ def test_that_links_to_nothing_and_in_circles_are_refused_in_a_sentence(tmp_path
     with pytest.raises(ExportError, match=r"one\.kiri: the link leads back to itself\. Delete"):
         write_atomically(one, b"x")
     assert all(link.is_symlink() for link in (broken, one, other)) and len(list(tmp_path.iterdir())) == 3
+
+
+def special_files(folder: Path) -> dict[str, Path]:
+    """A pipe, a socket and, where this user may make one, a device that is always full; links to each."""
+    made = {"pipe": folder / "pipe", "socket": folder / "socket"}
+    os.mkfifo(made["pipe"])
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(str(made["socket"]))
+    with contextlib.suppress(OSError):
+        os.mknod(folder / "device", stat.S_IFCHR | 0o600, os.makedev(1, 7))
+        made["device"] = folder / "device"
+    for name, path in tuple(made.items()):
+        made[f"link to a {name}"] = folder / f"link_{name}"
+        made[f"link to a {name}"].symlink_to(path)
+    return made
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_that_pipes_sockets_and_devices_are_refused_and_stay(tmp_path: Path) -> None:
+    for name, path in special_files(tmp_path).items():
+        before = path.stat()
+        assert not stat.S_ISREG(before.st_mode), f"the {name} is one, so this test can fail"
+        with pytest.raises(ExportError) as refused:
+            write_atomically(path, b"a drawing")
+        assert refused.value.code == "file.not_a_file" and str(path) in str(refused.value)
+        after = path.stat()
+        assert (after.st_mode, after.st_ino) == (before.st_mode, before.st_ino)
+        assert path.is_symlink() == name.startswith("link")
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []

@@ -12,6 +12,7 @@ import torch
 
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.generator import weights
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, TargetCode, VelocityNetwork
@@ -211,3 +212,26 @@ def test_that_every_bundled_variant_loads_and_is_small_enough_for_git() -> None:
     tuned = ["paper-accuracy", "paper-balanced", "paper-regularity"]
     assert [file.stem for file in files] == ["aligned", *tuned, "paper", "prior"]
     assert all(file.stat().st_size < 16_000_000 for file in files)
+
+
+@pytest.mark.parametrize("fault", [MemoryError(), ImportError("no module"), FileNotFoundError("/proc")])
+def test_that_a_fault_of_the_machine_is_not_blamed_on_the_file(
+    fault: Exception, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(_: object) -> None:
+        raise fault
+
+    monkeypatch.setattr(weights, "load_tensors", failing)
+    with pytest.raises(type(fault)):
+        load_model("tiny", folder)
+
+
+def test_that_weights_of_another_shape_or_without_an_entry_are_those_of_another_network(folder: Path) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    for change in ({"width": 8}, {"width": "wide"}, {"width": None}, {"width": -1}, {"width": 10**30}, {"depth": 1.5}):
+        shape = manifest["variants"]["tiny"]["shape"] | change
+        entry = manifest["variants"]["tiny"] | {"shape": shape}
+        (folder / "manifest.json").write_text(json.dumps(manifest | {"variants": {"tiny": entry}}))
+        load_model.cache_clear()
+        with pytest.raises(ModelError):
+            load_model("tiny", folder)

@@ -12,8 +12,8 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.pipeline.coarser import LOSS, coarser_designs
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.studio.fixes import MOST_MATCH_LOST, coarser_designs
 
 
 @pytest.fixture(scope="module")
@@ -36,5 +36,5 @@ def test_that_coarser_grids_keep_parities_symmetry_and_rank(dense: Candidate) ->
 def test_that_a_far_worse_match_is_not_offered(dense: Candidate) -> None:
     best = replace(dense, score=replace(dense.score, iou_exact=1.0))
     found = list(coarser_designs(best, Request(load("heart"), grid=(8, 9), k=1, polish=0)))
-    assert all(designs[0].score.iou_exact >= 1.0 - LOSS for designs in found)
+    assert all(designs[0].score.iou_exact >= 1.0 - MOST_MATCH_LOST for designs in found)
     assert [designs[0].sheet.grid for designs in found] != [(6, 7), (4, 5)]

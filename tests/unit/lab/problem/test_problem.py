@@ -20,7 +20,7 @@ from kirigami_studio.outlines.silhouettes import load
 
 pytestmark = pytest.mark.torch
 
-CARD = Path(__file__).parents[3] / "docs" / "data-card.md"
+CARD = Path(__file__).parents[4] / "docs" / "data-card.md"
 
 
 @pytest.fixture(scope="module")

@@ -16,9 +16,17 @@ from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.velocity import Network
 from kirigami_studio.generator.weights import Model, load_model, load_weights, store_model, variants_about
-from kirigami_studio.lab.training.corpus import Corpus
+from kirigami_studio.lab.training.corpus import Corpus, FixedDesigns
+from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.fields import mixed_fields, structured_fields
-from kirigami_studio.lab.training.grpo import GrpoSettings, advantages, aligned_network, group_weights, train_grpo
+from kirigami_studio.lab.training.grpo import (
+    GrpoRun,
+    GrpoSettings,
+    advantages,
+    aligned_network,
+    group_weights,
+    train_grpo,
+)
 from kirigami_studio.lab.training.train_flow import FlowSettings, train_flow, trained_network
 from kirigami_studio.lab.training.validation import VALIDATION_SEED, group_figures
 from tests.refusals import refused
@@ -171,6 +179,21 @@ def test_that_a_finished_run_is_validated_again_and_stays_as_it_is(
     (again,) = align(tiny, tmp_path, start)
     assert again["calls"] == 33.0
     assert same(before, aligned_network(tmp_path, start))
+
+
+def test_that_targets_are_silhouettes_of_the_data_set_that_the_settings_name(
+    tmp_path: Path, start: Model, tiny: GrpoSettings
+) -> None:
+    split = generate_split("released", 6, seed=0, grid=(4, 4))
+    settings = replace(tiny, family="released", designs=str(split.about["sha256"]))
+    known = FixedDesigns(split.ratios, 4, 4, 0, CPU).chunk(0).polygons.flatten(1)
+    run = GrpoRun(settings, tmp_path / "none", CPU, start, split)
+    drawn = torch.stack([run.batches.at(step).polygons for step in range(4)]).flatten(0, 1).flatten(1)
+    assert torch.cdist(drawn, known).min(dim=1).values.max() < 1e-4
+    assert align(settings, tmp_path / "run", start, designs=split)[-1]["calls"] == 33.0
+    with pytest.raises(ModelError) as caught:
+        align(settings, tmp_path / "other", start)
+    assert caught.value.code == "training.other_start"
 
 
 def test_that_training_targets_are_not_the_validation_ones() -> None:

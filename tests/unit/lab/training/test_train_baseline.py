@@ -6,13 +6,23 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from command_line import answer
 
-from kirigami_studio.foundation.errors import ModelError
+from kirigami_studio.foundation.errors import ModelError, UsageError
+from kirigami_studio.lab.baselines.cgan import Cgan
+from kirigami_studio.lab.baselines.conditional import FieldPixels
+from kirigami_studio.lab.baselines.cvae import Cvae
 from kirigami_studio.lab.baselines.stored import KINDS, load_generator
-from kirigami_studio.lab.training.train_baseline import BaselineSettings, train_baseline, trained_baseline
+from kirigami_studio.lab.training.dataset import generate_split
+from kirigami_studio.lab.training.train_baseline import (
+    BaselineRun,
+    BaselineSettings,
+    train_baseline,
+    trained_baseline,
+)
 from kirigami_studio.lab.training.validation import baseline_validator
 
 pytestmark = pytest.mark.torch
@@ -54,8 +64,29 @@ def test_that_validation_scores_every_family(kind: str, tmp_path: Path) -> None:
     settings = tiny(kind)
     train(settings, tmp_path)
     figures = baseline_validator(4, CPU, steps=2)(trained_baseline(settings, tmp_path, CPU))
-    assert set(figures) == {"structured_iou", "sobol_iou", "drawn_iou"}
+    assert set(figures) == {"structured_iou", "released_iou", "sobol_iou", "drawn_iou"}
     assert all(0.0 < figure <= 1.0 for figure in figures.values())
+
+
+def test_that_a_run_visits_the_data_set_that_its_settings_name(tmp_path: Path) -> None:
+    split = generate_split("released", 8, seed=0, grid=(4, 4))
+    settings = replace(tiny("cvae"), family="released", designs=str(split.about["sha256"]))
+    run = BaselineRun(settings, tmp_path / "none", CPU, split)
+    known = torch.tensor(np.log10(split.ratios), dtype=torch.float32).flatten(1)
+    assert torch.cdist(run.designs.at(5).z, known).min(dim=1).values.max() < 1e-5
+    with pytest.raises(ModelError) as caught:
+        train(settings, tmp_path / "run")
+    assert caught.value.code == "training.other_start"
+
+
+def test_that_baselines_draw_into_as_many_pixels_as_the_field_has() -> None:
+    pixels = FieldPixels(latent=10, mask=120)
+    masks = torch.ones(2, 1, 10, 10)
+    for network in (Cgan(pixels), Cvae(pixels, (16, 32))):
+        assert network.draw(masks, torch.Generator().manual_seed(0), 1).shape == (2, 100)
+    with pytest.raises(UsageError) as caught:
+        Cvae(pixels, (16, 32, 32))
+    assert caught.value.code == "model.baseline_pixels"
 
 
 def test_that_the_command_writes_weights_that_can_be_loaded(

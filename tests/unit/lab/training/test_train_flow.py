@@ -12,8 +12,9 @@ import torch
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.weights import Model, load_model, store_model
+from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.fitted_fields import FittedFields, fitted_block
-from kirigami_studio.lab.training.flow_path import pair_noise
+from kirigami_studio.lab.training.flow_path import paired_noise, pairing_cost
 from kirigami_studio.lab.training.learner import training_device
 from kirigami_studio.lab.training.train_flow import FlowRun, FlowSettings, Sources, train_flow, trained_network
 from kirigami_studio.lab.training.validation import validator
@@ -91,8 +92,7 @@ def test_that_the_log_keeps_a_line_for_each_validation(tmp_path: Path) -> None:
 def test_that_transport_pairs_noise_with_nearer_designs(coupling: str) -> None:
     generator = torch.Generator().manual_seed(0)
     noise, z = torch.randn((2, 64, 9), generator=generator)
-    conditions = torch.zeros(64, 3)
-    paired = pair_noise(coupling, noise, z, conditions)
+    paired = paired_noise(noise, pairing_cost(coupling, noise, z, torch.zeros(64, 3)))
     assert (paired - z).square().sum() < (noise - z).square().sum()
     assert torch.equal(paired.sort(dim=0).values, noise.sort(dim=0).values)
 
@@ -101,17 +101,25 @@ def test_that_conditional_transport_keeps_noise_with_its_own_far_away_target() -
     generator = torch.Generator().manual_seed(0)
     noise, z = torch.randn((2, 16, 9), generator=generator)
     conditions = 100.0 * torch.eye(16)
-    assert torch.equal(pair_noise("conditional-ot", noise, z, conditions), noise)
+    assert torch.equal(paired_noise(noise, pairing_cost("conditional-ot", noise, z, conditions)), noise)
 
 
-def test_that_independent_pairing_changes_nothing() -> None:
-    noise = torch.randn(4, 9)
-    assert pair_noise("independent", noise, torch.zeros(4, 9), torch.zeros(4, 1)) is noise
+def test_that_a_run_visits_the_data_set_that_its_settings_name(tmp_path: Path) -> None:
+    split = generate_split("released", 20, seed=0, grid=(4, 4))
+    settings = replace(TINY, family="released", designs=str(split.about["sha256"]))
+    run = FlowRun(settings, tmp_path / "none", CPU, Sources(designs=split))
+    known = torch.tensor(np.log10(split.ratios), dtype=torch.float32).flatten(1)
+    for step in range(3):
+        assert torch.cdist(run.random.at(step).z, known).min(dim=1).values.max() < 1e-5
+    train(settings, tmp_path / "run", Sources(designs=split))
+    with pytest.raises(ModelError) as caught:
+        train(settings, tmp_path / "other")
+    assert caught.value.code == "training.other_start"
 
 
 def test_that_unknown_couplings_and_devices_are_refused() -> None:
     with pytest.raises(UsageError, match="conditional-ot"):
-        pair_noise("magic", torch.zeros(2, 1), torch.zeros(2, 1), torch.zeros(2, 1))
+        pairing_cost("magic", torch.zeros(2, 1), torch.zeros(2, 1), torch.zeros(2, 1))
     with pytest.raises(UsageError):
         training_device("abacus")
     with pytest.raises(UsageError):
