@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.option_types import parse_grid, workers
@@ -273,7 +273,7 @@ def _designs(arguments: argparse.Namespace) -> Split | None:
     return None if arguments.designs is None else Split.load(Path(arguments.designs))
 
 
-def _named(arguments: argparse.Namespace, designs: Split | None) -> dict[str, str]:
+def _named(arguments: argparse.Namespace, designs: Split | None) -> dict[str, Any]:
     """Training designs as settings name them."""
     if designs is None:
         return {"family": arguments.family}
