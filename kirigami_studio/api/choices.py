@@ -1,4 +1,4 @@
-"""Choices as keywords of functions: which there are, with which defaults, and numbers of NumPy as Python's own."""
+"""Settings as keywords of functions, with their defaults; numbers of NumPy as Python's."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def explicit_signature(
 
 
 def checked_choices(given: Mapping[str, Any], known: Mapping[str, NamedSetting], function: str) -> dict[str, Any]:
-    """Choices with Python's own numbers in the place of NumPy's; a switch of a number as that number.
+    """Return choices with Python's own numbers; a switch of a number as that number.
 
     Raises
     ------

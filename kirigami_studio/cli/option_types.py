@@ -1,4 +1,4 @@
-"""Options made of settings, and values of options: text -> grid, angle or number, refused as ``argparse`` does."""
+"""Options made of settings, and their values: text -> grid, angle or number."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def setting_options(kind: type, *names: str, over: object = None) -> tuple[Optio
 
 
 def setting_values(arguments: argparse.Namespace, kind: type) -> dict[str, Any]:
-    """What was chosen for the settings of a dataclass that have an option, by name."""
+    """Return the values of a dataclass's settings that have an option, by name."""
     return {name: getattr(arguments, name) for name, one in settings_of(kind).items() if one.setting.option}
 
 
@@ -66,7 +66,7 @@ def _setting_option(one: NamedSetting, over: object) -> Option:
 
 
 def _help(one: NamedSetting, usual: object, project: bool) -> str:
-    """What an option means, in one clause, and what holds without it."""
+    """Return the meaning of an option in one clause, and its default."""
     text = one.setting.help
     if not text:
         sentences = one.setting.about.format_map(one.numbers).removesuffix(".").split(". ")

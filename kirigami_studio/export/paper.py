@@ -16,7 +16,7 @@ Box = tuple[float, float, float, float]
 
 
 class Paper(StrEnum):
-    """Paper that PDFs are spread over; the values are the names on the command line and in files."""
+    """Paper that PDFs are spread over; its values stand on the command line and in files."""
 
     NONE = "none"  #: one page as large as the sheet
     A4 = "a4"

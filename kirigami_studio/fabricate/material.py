@@ -51,9 +51,7 @@ def _number(
     scale: float = 1.0,
     zero: bool = False,
 ) -> Mapping[str, Setting]:
-    """A number with its field in the editor of materials, which shows ``scale`` times as much; above 0 unless it may
-    be ``zero``.
-    """
+    """Describe a number, above 0 unless it may be ``zero``; the editor shows ``scale`` times it."""
     setting = Setting(
         about=about,
         label=label,

@@ -25,7 +25,7 @@ COPY_GAP_MM = 5.0
 
 
 class ConnectorStyle(StrEnum):
-    """How a slit ends before its hinge; the values are the names on the command line and in files."""
+    """Ends of slits before their hinge; the values stand on the command line and in files."""
 
     CENTRED = "centred"
     STRAIGHT = "straight"
@@ -36,7 +36,7 @@ class ConnectorStyle(StrEnum):
 
 
 class CutOrder(StrEnum):
-    """In which order the slits are cut; the values are the names on the command line and in files."""
+    """Order of the slits; its values stand on the command line and in files."""
 
     SHORTEST = "shortest"
     ROWS = "rows"

@@ -1,4 +1,4 @@
-"""Settings: fields of a dataclass that carry their own range, words, and names on the command line and in the window.
+"""Settings: fields of a dataclass with their range, words and names as metadata.
 
 A field is a setting when its metadata has a :class:`Setting`::
 
@@ -34,7 +34,7 @@ class Choice(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SpecialValue:
-    """A number with a meaning of its own: its word on the command line and its text in the window."""
+    """A number with a meaning: its word on the command line, its text in the window."""
 
     value: int
     word: str
@@ -43,7 +43,7 @@ class SpecialValue:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """One setting; sentences are English, and marked for translation where the window shows them.
+    """One setting; sentences are English, and marked for translation if the window shows them.
 
     Attributes
     ----------
@@ -169,7 +169,7 @@ class NamedSetting:
         low, high = (given if given is not None else end for given, end in zip((one.low, one.high), shown, strict=True))
         return {"least": one.least, "most": one.most, "low": low, "high": high}
 
-    def fitting(self, value: object, **told: object) -> object:
+    def fitting(self, value: object, **facts: object) -> object:
         """The value, a choice as the member of its enumeration that goes by this value.
 
         Raises
@@ -183,7 +183,7 @@ class NamedSetting:
             try:
                 return self.kind(value)
             except ValueError:
-                raise self._refusal(value, told) from None
+                raise self._refusal(value, facts) from None
         if self.kind is str:
             fits = isinstance(value, str) and (bool(value) or self.setting.may_be_empty)
         elif self.kind is bool:
@@ -192,7 +192,7 @@ class NamedSetting:
             number = isinstance(value, int if self.kind is int else (int, float)) and not isinstance(value, bool)
             fits = number and self.setting.holds(value)  # type: ignore[arg-type]
         if not fits:
-            raise self._refusal(value, told)
+            raise self._refusal(value, facts)
         return value
 
     @staticmethod
@@ -200,8 +200,8 @@ class NamedSetting:
         """A choice as it stands in files and on the command line; other values as they are."""
         return value.value if isinstance(value, Enum) else value
 
-    def _refusal(self, value: object, told: Mapping[str, object]) -> KirigamiError:
-        setting, values = self.setting, {self.name: value, **told, "name": self.name, "value": value}
+    def _refusal(self, value: object, facts: Mapping[str, object]) -> KirigamiError:
+        setting, values = self.setting, {self.name: value, **facts, "name": self.name, "value": value}
         words = ", ".join(str(one.value) for one in self.kind) if issubclass(self.kind, Enum) else ""
         values |= {"choices": words, "kind": self.kind.__name__, "least": setting.least, "most": setting.most}
         return setting.error(setting.code, **values)
@@ -228,10 +228,10 @@ def _plain(hint: Any) -> tuple[type, bool]:
     return (hint if isinstance(hint, type) else object), False
 
 
-def check(instance: object, **told: object) -> None:
-    """Refuse a value that does not fit its setting, and turn words into members of their enumerations.
+def check(instance: object, **facts: object) -> None:
+    """Refuse values that do not fit, and turn words into members of their enumerations.
 
-    The sentences of refusals may also name what is ``told``.
+    The sentences of refusals may also name ``facts``.
 
     Raises
     ------
@@ -241,6 +241,6 @@ def check(instance: object, **told: object) -> None:
     kind: type = type(instance)
     for name, one in settings_of(kind).items():
         value = getattr(instance, name)
-        fitting = one.fitting(value, **told)
+        fitting = one.fitting(value, **facts)
         if fitting is not value:
             object.__setattr__(instance, name, fitting)

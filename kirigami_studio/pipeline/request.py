@@ -122,12 +122,12 @@ class Request(DesignChoices):
 
     @classmethod
     def of(cls, target: Outline, settings: DesignSettings, **more: Any) -> Request:
-        """The run for a target that the settings of a project ask for, with ``more`` that they do not hold."""
+        """Ask for a run for a target by settings of a project, with ``more`` fields."""
         return cls(target, None if settings.auto_grid else settings.grid, **choices_of(settings) | more)
 
     @property
     def settings(self) -> DesignSettings:
-        """What a project keeps of it.
+        """The settings that a project keeps of it.
 
         Raises
         ------

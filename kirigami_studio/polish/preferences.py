@@ -44,7 +44,7 @@ class Preference:
 
 
 class FitPreference(StrEnum):
-    """Names of preferences, from the best match to the lowest total variation, on the command line and in files."""
+    """Names of preferences, from the best match to the lowest total variation."""
 
     ACCURACY = "accuracy"
     BALANCED = "balanced"

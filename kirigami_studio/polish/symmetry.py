@@ -27,7 +27,7 @@ BOTH_MEANT = 0.95
 
 
 class KeptSymmetry(StrEnum):
-    """What designs have to keep; the values are the names on the command line and in files."""
+    """Symmetry that designs have to keep; its values stand on the command line and in files."""
 
     AUTO = "auto"  #: the symmetries that the target shows within a tolerance
     NONE = "none"

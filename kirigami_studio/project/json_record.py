@@ -1,4 +1,4 @@
-"""JSON read field by field: whatever is missing or of the wrong kind is refused by its place in the file."""
+"""JSON read field by field; a missing or wrong entry is refused by its place in the file."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def one_of(kind: type[Choice], name: object) -> Choice:
 
 
 def settings_json(instance: object) -> dict[str, object]:
-    """The plain settings of a dataclass; those that need not be written are left out where they are the default."""
+    """Return the plain settings of a dataclass, without defaults that need not be written."""
     kind: type = type(instance)
     return {
         name: one.word(getattr(instance, name))
@@ -165,7 +165,7 @@ def settings_json(instance: object) -> dict[str, object]:
 
 
 def settings_values(record: Record, kind: type) -> dict[str, Any]:
-    """The values that a record has for the plain settings of a dataclass; where one need not be written, it may lack.
+    """Return the values of the plain settings of a dataclass; optional ones may be missing.
 
     Raises
     ------

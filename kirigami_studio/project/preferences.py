@@ -35,7 +35,7 @@ class TypedSize(StrEnum):
 
 
 class Motion(StrEnum):
-    """Whether parts that move by themselves follow the desktop's setting for animations, or stand still."""
+    """Whether moving parts follow the desktop's setting for animations, or stand still."""
 
     SYSTEM = "system"
     STILL = "still"

@@ -1,4 +1,4 @@
-"""How designs are searched for: the settings that a request, a project and the forms of the window share."""
+"""Settings of a search for designs, shared by requests, projects and the window."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class RimRule(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignChoices:
-    """What a search is asked for, whatever its grid and its target.
+    """Choices of a search, whatever its grid and its target.
 
     Attributes
     ----------
@@ -357,7 +357,7 @@ class DesignSettings(DesignChoices):
 
 
 class DesignChange(TypedDict, total=False):
-    """Values for fields of :class:`DesignChoices`, for those who check types; choices also by their words."""
+    """Types of values for :class:`DesignChoices`, whose choices may be given by their words."""
 
     phi: float
     k: int
@@ -373,7 +373,7 @@ class DesignChange(TypedDict, total=False):
 
 
 def choices_of(one: DesignChoices) -> dict[str, Any]:
-    """What a request and the settings of a project share, by name, to make one of the other."""
+    """Return the choices of a request or of a project's settings, to make one of the other."""
     return {entry.name: getattr(one, entry.name) for entry in fields(DesignChoices)}
 
 
@@ -388,6 +388,6 @@ def with_balance(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def chosen_settings(grid: tuple[int, int] | None, choices: dict[str, Any], **more: Any) -> DesignSettings:
-    """The settings of a search with these choices, by name; without a grid every run chooses one."""
+    """Make the settings of a search of choices by name; without a grid every run chooses one."""
     fixed: dict[str, Any] = {} if grid is None else {"grid": grid}
     return DesignSettings(**fixed, auto_grid=grid is None, **with_balance(choices), **more)

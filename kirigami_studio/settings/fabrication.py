@@ -1,4 +1,4 @@
-"""How the chosen design is cut: sheet, material, machine and files; choices about the cuts are ``CutOptions``."""
+"""Settings of a cut: sheet, material, machine and files, beside the ``CutOptions``."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ class FabricationSettings:
 
 
 class SheetChange(TypedDict, total=False):
-    """Values for settings of a sheet and its files, for those who check types; choices also by their words."""
+    """Types of values for a sheet and its files; choices may be given by their words."""
 
     width_mm: float
     material: str
@@ -266,12 +266,12 @@ class CutChange(SheetChange, OptionsChange, total=False):
 
 
 def stored_material(settings: FabricationSettings) -> Material | None:
-    """Return the numbers of the settings' material as the project stores them; None for bundled materials."""
+    """Return the material's numbers as the project stores them; None for bundled materials."""
     return settings.own if settings.own is not None and settings.own.key == settings.material else None
 
 
 def material_for(settings: FabricationSettings) -> Material:
-    """Return the material that the settings name: from the library, else as it is stored in the project.
+    """Return the material that the settings name, from the library or as the project has it.
 
     Raises
     ------

@@ -136,10 +136,13 @@ def called_otherwise(english: str, german: str, texts: Mapping[str, tuple[str, .
 
 
 def texts_of_the_window(package: Path) -> set[str]:
-    """Sentences of the window and of settings, as ``tr``, ``tr_n`` and ``mark`` get them, without mnemonics."""
+    """What the window, and settings, give to ``tr``, ``tr_n`` and ``mark``, without mnemonics and dots."""
     found, sayings = set(), ("tr", "tr_n", "mark")
-    for path in (one for part in ("gui", "settings", "fabricate") for one in (package / part).rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for path in package.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        if package / "gui" not in path.parents and "foundation.settings import" not in text:
+            continue
+        for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in sayings:
                 words = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
                 found |= {re.sub(r"&(?=\w)", "", text) for text in words}

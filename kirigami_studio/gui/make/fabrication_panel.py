@@ -404,7 +404,7 @@ def rows_of_copies(plan: CutPlan) -> tuple[str, ...]:
 
 
 def format_slots(planned: Planned) -> str:
-    """What slots cost, where the machine profile asks for them."""
+    """Return the cost of slots, where the machine profile asks for them."""
     open_mm = len(planned.plan.copies) * planned.plan.cut_length_mm
     # Copies alone leave the length of every cut as it is.
     if planned.work is None or abs(planned.work.cut_length_mm / open_mm - 1.0) < SAME_LENGTH:
@@ -417,7 +417,7 @@ def format_slots(planned: Planned) -> str:
 
 
 def format_times(times: CutTimes) -> str:
-    """What the time consists of."""
+    """Return the parts of the time in words."""
     return tr(
         "About {total}: {cut} cutting, {travel} travel, {extra} switching.\nRange: half to twice the acceleration.",
         total=readable_time(times.total),

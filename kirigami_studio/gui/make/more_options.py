@@ -1,4 +1,4 @@
-"""Choices about the cuts that most sheets leave as they are: connector style, order, tabs, what files are for."""
+"""Options that most sheets leave as they are: connector style, order, tabs, copies, files."""
 
 from __future__ import annotations
 

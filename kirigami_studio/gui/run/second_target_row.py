@@ -1,4 +1,4 @@
-"""The second target among the design settings: which shape, at which angle, and how much it counts."""
+"""The second target among the design settings: its shape, its angle and its weight."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the next run designs: grid, symmetry, match or regular, angle, number; under More how it searches."""
+"""The form of the next run: grid, symmetry, balance, angle, number; under More the search."""
 
 from __future__ import annotations
 
@@ -199,7 +199,7 @@ class SettingsPanel(Card):
         self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
 
     def _choose_start(self) -> None:
-        """Report the start that was chosen; the box keeps the present one until a shape has been loaded."""
+        """Report the start that was chosen; the box keeps the present one until a shape is loaded."""
         chosen = self.start.currentData()
         if chosen in (value for value, _, _ in OTHER_STARTS):
             self._show_start(self._start)
@@ -237,12 +237,12 @@ class SettingsPanel(Card):
         settings.setValue("moreSettings", "yes" if self.more.isChecked() else "no")
 
     def show_symmetry(self, sentence: str) -> None:
-        """Tell in the tooltip how symmetric the target is; an empty sentence while that is not known."""
+        """Show in the tooltip how symmetric the target is; an empty sentence while that is unknown."""
         self._symmetry_found = sentence
         self._show_symmetry_tip()
 
     def show_grid_choice(self, grid: tuple[int, int] | None, reason: str) -> None:
-        """Show the grid that the next run will choose, and why in the tooltip; None while that is not known."""
+        """Show the grid that the next run will choose, its reason in the tooltip; None if unknown."""
         self._chosen_grid = grid
         auto = self.form.settings["auto_grid"].setting
         about = tr(auto.about)
@@ -286,7 +286,7 @@ class SettingsPanel(Card):
         self._show_preference(fitted=settings.polish > 0 or settings.search > 0)
 
     def _show_start(self, start: StartShape) -> None:
-        """Choose a start; one that was loaded has an entry with its own name as long as it is the present one."""
+        """Choose a start; one that was loaded has an entry of its own as long as it is present."""
         self._start = start
         listed = self.start.findData(start.name)
         plain = replace(start, weight=USUAL_WEIGHT)
