@@ -415,6 +415,8 @@ def claiming(shape: str) -> bytes:
         (edit("candidates", 1, "sampled", to=True), "each of 2 designs, got"),
         (edit("candidates", 0, "trim", to={"ratio": [[1, "x"]]}), "trim.ratio must be a table of numbers"),
         (edit("settings", "prefer", to=3), "must be text, got 3"),
+        (edit("settings", "symmetry", to="spiral"), "none of auto, none, mirror, turn"),
+        (edit("settings", "k", to=5000), "from 1 to 1024, got 5000"),
         (drop("sampled.npy"), "sampled.npy is missing"),
         (edit("provenance", to={"model": 3}), "table of texts"),
         (edit("runs", to=[{"k": 3}]), "table of texts"),
