@@ -90,7 +90,7 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
 
 
 def released_siou(design: npt.ArrayLike, target: npt.ArrayLike) -> float:
-    """sIoU as the paper's released evaluator takes it: the target in the design's pixels, cut off at their edge.
+    """sIoU of the paper's released evaluator: the target cut off at the edge of its pixels.
 
     The pose is searched by this very measure.  What leaves the canvas does not count, so a target that outgrows it
     fills a design that fills its canvas: the uniform sheet has about 0.93 on targets of the Sobol family.

@@ -1,4 +1,4 @@
-"""Training pairs, decoded on the fly and endless, or those of a data set: chunk k of seed s is always the same."""
+"""Training pairs, decoded on the fly or of a data set: chunk k of seed s is always the same."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class FixedDesigns:
         return self._chunk
 
 
-class Designs(Protocol):
+class TrainingDesigns(Protocol):
     """Where batches come from: a ``Corpus``, or ``FixedDesigns``."""
 
     seed: int
@@ -102,14 +102,14 @@ class ChunkBatches:
 
     Parameters
     ----------
-    corpus : Designs
+    corpus : TrainingDesigns
     batch : int
         Designs of a step.
     passes : int
         How often each chunk is visited before the next.
     """
 
-    def __init__(self, corpus: Designs, batch: int, passes: int) -> None:
+    def __init__(self, corpus: TrainingDesigns, batch: int, passes: int) -> None:
         if batch > corpus.chunk_size:
             raise UsageError("training.too_few_designs", designs=corpus.chunk_size, batch=batch)
         self.corpus, self.batch, self.passes = corpus, batch, passes

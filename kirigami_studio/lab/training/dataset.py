@@ -32,7 +32,7 @@ from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.files import opened_file, write_atomically
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
-from kirigami_studio.lab.training.corpus import Corpus, Designs, FixedDesigns, zero_outline
+from kirigami_studio.lab.training.corpus import Corpus, FixedDesigns, TrainingDesigns, zero_outline
 from kirigami_studio.lab.training.fields import SAMPLERS, sobol_fields
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -101,7 +101,7 @@ def digest_of_designs(designs: Split | None) -> str:
 
 def designs_of(
     family: str, fixed: Split | None, rows: int, columns: int, seed: int, chunk: int, device: torch.device
-) -> Designs:
+) -> TrainingDesigns:
     """The designs that a run trains on: those of a data set, over and over, or endless ones of a family.
 
     Parameters

@@ -86,7 +86,7 @@ SAMPLERS: dict[str, Callable[[int, int, int, Generator], FloatArray]] = {
 
 
 def checkerboard(rows: int, columns: int) -> FloatArray:
-    """1 and -1 in turn: (rows, columns).  Voids of both parities act oppositely on the outline."""
+    """1 and -1 in turn (rows, columns): voids of both parities act oppositely on the outline."""
     sign: FloatArray = (-1.0) ** np.add.outer(np.arange(rows), np.arange(columns))
     return sign
 

@@ -79,7 +79,7 @@ def cfm_errors(velocity: Tensor, sample: PathSample) -> Tensor:
 
 
 def pairing_cost(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) -> Tensor:
-    """Cost of pairing design ``z[b]`` (B, D), of condition ``conditions[b]``, with each row of ``noise``: (B, B).
+    """Cost (B, B) of pairing designs ``z`` (B, D) and their ``conditions`` with rows of ``noise``.
 
     Raises
     ------
@@ -96,6 +96,6 @@ def pairing_cost(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) ->
 
 
 def paired_noise(noise: Tensor, cost: Tensor) -> Tensor:
-    """``noise`` (B, D) in the order in which all designs together cost least: row b belongs to design b."""
+    """``noise`` (B, D) in the order of least cost: row b belongs to design b."""
     _, columns = linear_sum_assignment(cost.cpu().numpy())
     return noise[torch.as_tensor(columns, device=noise.device)]

@@ -150,7 +150,7 @@ class Learner(Generic[Learning]):
         self._pairs: tuple[list[Tensor], list[Tensor]] | None = None
 
     def loss(self, compute: Callable[[], Tensor]) -> Tensor:
-        """The loss of this process's share of a batch, by ``compute``; :meth:`descend` averages over all shares."""
+        """The loss of this process's share of a batch; :meth:`descend` averages over all shares."""
         if self.ranks.count == 1:
             return compute()
         if self._parallel is None:
@@ -181,7 +181,7 @@ class Learner(Generic[Learning]):
             torch._foreach_lerp_(*self._pairs, 1.0 - decay)
 
     def set_rate(self, learning_rate: float) -> None:
-        """Set the learning rate of the next step, in place where a recorded step reads it on the GPU."""
+        """Set the learning rate of the next step, in place for a recorded step on the GPU."""
         for group in self.optimiser.param_groups:
             if isinstance(group["lr"], Tensor):
                 group["lr"].fill_(learning_rate)
@@ -245,7 +245,7 @@ def adamw(
     device: torch.device,
     recorded: bool,
 ) -> torch.optim.AdamW:
-    """The optimiser of flows and baselines; of ``recorded`` steps one that leaves everything on the GPU."""
+    """The optimiser of flows and baselines; for ``recorded`` steps all of it on the GPU."""
     if not recorded:
         return torch.optim.AdamW(network.parameters(), lr=learning_rate, betas=betas, weight_decay=weight_decay)
     rate = torch.tensor(learning_rate, device=device)

@@ -1,4 +1,4 @@
-"""A step of training as one CUDA graph: small networks otherwise wait for the launches of their many small kernels.
+"""A step of training as one CUDA graph: small networks else wait for kernel launches.
 
 A U-Net of two levels on 10 x 10 pixels launches about a thousand kernels a step.  Recorded once and replayed, they
 follow each other without the processor's help; the arithmetic is the same.

@@ -316,7 +316,7 @@ class FlowRun:
         return noise, times, *costs, *(polygons for polygons, _ in seen), *(shift for _, shift in seen)
 
     def _descend(self, noise: Tensor, times: Tensor, *parts: Tensor) -> tuple[Tensor]:
-        """One step on the fields, seen silhouettes and shifts of all parts, in this order; returns the loss."""
+        """One step on fields, seen silhouettes and shifts of all parts; returns the loss."""
         count = len(parts) // 3
         fields, seen, shifts = parts[:count], parts[count : 2 * count], parts[2 * count :]
         loss = self.learner.loss(lambda: self._loss(noise, times, torch.cat(fields), seen, shifts))
