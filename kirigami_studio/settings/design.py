@@ -210,9 +210,7 @@ class DesignChoices:
                 Choice(
                     "paper",
                     mark("As in the paper"),
-                    mark(
-                        "The paper's own way: a small U-Net, trained with optimal-transport pairing. To compare with."
-                    ),
+                    mark("The paper's own way: a small U-Net, trained on 5000 designs. To compare with."),
                 ),
                 Choice(
                     "paper-accuracy",
