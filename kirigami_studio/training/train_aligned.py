@@ -26,10 +26,11 @@ from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
+from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, opened, trained
-from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
+from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, preference_terms, trail_gap
 from kirigami_studio.training.ranks import Ranks
-from kirigami_studio.training.sampled_targets import TargetSource
+from kirigami_studio.training.sampled_targets import SampledTargets, TargetSource
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
@@ -63,6 +64,12 @@ class AlignSettings:
     learning_rate, average_decay : float
     variation_weight : float
         Cost of the paper's TV(x) / (m n) at preference 1, in units of area; proportional below.
+    evenness_weight : float
+        The same of the coefficient of variation of panel areas.
+    lesson_weight : float
+        Weight of flow matching on the best of several samples of each target.
+    lesson_samples : int
+        How many the best is chosen from; each takes as long as a step without.
     anchor_weight : float
         Cost of the mean squared distance of z to the prior's sample.
     anchored_every : int
@@ -76,6 +83,8 @@ class AlignSettings:
         Standard deviation of the contour's start, in point spacings.
     other_sheets : float
         Share of the steps that draw on another sheet than the network's own.
+    free_rims : float
+        Share of the steps that draw on sheets whose rim is free.
     seed : int
     shape : NetworkShape
     """
@@ -90,14 +99,20 @@ class AlignSettings:
     learning_rate: float = 2e-4
     average_decay: float = 0.998
     variation_weight: float = 0.015
+    evenness_weight: float = 0.3
+    lesson_weight: float = 0.1
+    lesson_samples: int = 4
     anchor_weight: float = 0.5
     anchored_every: int = 2
     vertex_noise: float = 0.01
     pictured_share: float = 0.5
     shift_noise: float = 0.3
     other_sheets: float = 0.5
+    free_rims: float = 0.5
     seed: int = 0
-    shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
+    shape: NetworkShape = field(
+        default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True, rims=True)
+    )
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -210,27 +225,30 @@ class AlignRun:
         drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
         targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn)
         preference = self._preferences(self.batch)
-        cells = settings.shape.rows * settings.shape.columns
-        noise = torch.randn((self.batch, cells), generator=self.generator, device=self.device)
-        noise = noise * settings.shape.z_scale
+        noise = self._noise(self.batch)
         parts: dict[str, float] = {}
 
         def compute() -> Tensor:
             code = targets.code(self.network, grid, preference)
             designs = trail(self.network, noise, code, settings.sampling_steps)
             terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
-            z = designs[-1]
+            z = designs[-1][:, : grid.cells]
             anchored = slice(0, None, settings.anchored_every)
             with torch.no_grad():
                 code = targets.code(self.prior, grid, preference).picked(anchored)
-                reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
-                    -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
-                )
+                reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps)
+                reference = reference[:, : grid.cells].clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
             anchor = (z[anchored] - reference).square().mean()
             parts["match"] = float(terms.match.mean().detach())
             parts["variation"] = float(terms.variation.mean().detach())
+            parts["unevenness"] = float(terms.unevenness.mean().detach())
             parts["anchor"] = float(anchor.detach())
-            return self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
+            loss = self._costs(terms, preference).mean() + settings.anchor_weight * anchor + EARLY_WEIGHT * early
+            if settings.lesson_weight:
+                lesson = self._lesson(targets, grid, preference)
+                parts["lesson"] = float(lesson.detach())
+                loss = loss + settings.lesson_weight * lesson
+            return loss
 
         loss = self.learner.loss(compute)
         self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
@@ -245,20 +263,44 @@ class AlignRun:
         """Write the checkpoint."""
         self.learner.save(self.path, self.settings.to_json())
 
-    def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
+    def _costs(self, terms: PreferenceTerms, preference: Tensor) -> Tensor:
+        """What each of several designs costs where their preferences (B,) are these: (B,)."""
         settings = self.settings
-        smooth = settings.variation_weight * preference * terms.variation
-        return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
+        calm = settings.variation_weight * terms.variation + settings.evenness_weight * terms.unevenness
+        return terms.match + preference * calm + terms.excess
+
+    def _lesson(self, targets: SampledTargets, grid: DeployedGrid, preference: Tensor) -> Tensor:
+        """Flow matching on the best of several samples of each target: which way to go about it, no slope tells."""
+        settings, each = self.settings, self.settings.lesson_samples
+        with torch.no_grad():
+            code = targets.code(self.network, grid, preference).repeated(each)
+            designs = trail(self.network, self._noise(self.batch * each), code, settings.sampling_steps)[-1]
+            loop = targets.loop.repeat_interleave(each, dim=0)
+            terms = preference_terms(self._lattice(grid), grid, designs, loop)
+            costs = self._costs(terms, preference.repeat_interleave(each)).view(-1, each)
+            best = costs.argmin(dim=1) + each * torch.arange(self.batch, device=self.device)
+            chosen = code.transfer.down(code.transfer.bounded(designs[best])[:, : grid.cells])
+        t = torch.rand(self.batch, generator=self.generator, device=self.device)
+        path = ConditionalPath.sample(self._noise(self.batch), chosen, t)
+        return cfm_loss(self.network(path.x_t, t, targets.code(self.network, grid, preference)), path)
+
+    def _noise(self, rows: int) -> Tensor:
+        """Where flows start: (rows, cells)."""
+        shape = self.settings.shape
+        drawn = torch.randn((rows, shape.rows * shape.columns), generator=self.generator, device=self.device)
+        return drawn * shape.z_scale
 
     def _grid(self) -> DeployedGrid:
-        """The grid and angle of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
-        settings, own = self.settings, DeployedGrid(self.settings.shape.rows, self.settings.shape.columns)
+        """The grid, angle and rim of this step: the network's own grid, or any of 6 to 16 voids each way and any useful
+        angle.
+        """
+        settings, shape = self.settings, self.settings.shape
         rng = np.random.default_rng((settings.seed, self.step))
-        if rng.random() >= settings.other_sheets:
-            return own
-        rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
-        phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
-        return DeployedGrid(rows, columns, phi)
+        rows, columns, phi = shape.rows, shape.columns, 0.0
+        if rng.random() < settings.other_sheets:
+            rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
+            phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
+        return DeployedGrid(rows, columns, phi, free_rim=bool(rng.random() < settings.free_rims))
 
     def _lattice(self, grid: DeployedGrid) -> BatchedLattice:
         counts = grid.rows, grid.columns
