@@ -24,6 +24,7 @@ from kirigami_studio.generator.flow import integrate, trail
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
 from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss
@@ -85,6 +86,8 @@ class AlignSettings:
         Share of the steps that draw on another sheet than the network's own.
     free_rims : float
         Share of the steps that draw on sheets whose rim is free.
+    symmetric_share : float
+        Share of the steps that draw within a symmetry of the grid, where it has any.
     seed : int
     shape : NetworkShape
     """
@@ -109,6 +112,7 @@ class AlignSettings:
     shift_noise: float = 0.3
     other_sheets: float = 0.5
     free_rims: float = 0.5
+    symmetric_share: float = 0.3
     seed: int = 0
     shape: NetworkShape = field(
         default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True, rims=True)
@@ -223,7 +227,7 @@ class AlignRun:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
         grid = self._grid()
         drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
-        targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn)
+        targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn, grid.symmetry)
         preference = self._preferences(self.batch)
         noise = self._noise(self.batch)
         parts: dict[str, float] = {}
@@ -279,9 +283,9 @@ class AlignRun:
             terms = preference_terms(self._lattice(grid), grid, designs, loop)
             costs = self._costs(terms, preference.repeat_interleave(each)).view(-1, each)
             best = costs.argmin(dim=1) + each * torch.arange(self.batch, device=self.device)
-            chosen = code.transfer.down(code.transfer.bounded(designs[best])[:, : grid.cells])
+            chosen = code.transfer.state_of(code.transfer.bounded(designs[best])[:, : grid.cells])
         t = torch.rand(self.batch, generator=self.generator, device=self.device)
-        path = ConditionalPath.sample(self._noise(self.batch), chosen, t)
+        path = ConditionalPath.sample(code.transfer.state(self._noise(self.batch)), chosen, t)
         return cfm_loss(self.network(path.x_t, t, targets.code(self.network, grid, preference)), path)
 
     def _noise(self, rows: int) -> Tensor:
@@ -300,7 +304,10 @@ class AlignRun:
         if rng.random() < settings.other_sheets:
             rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
             phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
-        return DeployedGrid(rows, columns, phi, free_rim=bool(rng.random() < settings.free_rims))
+        free, kept = bool(rng.random() < settings.free_rims), bool(rng.random() < settings.symmetric_share)
+        found = [symmetry for symmetry in Symmetry if symmetry.fits(rows, columns)] if kept else []
+        symmetry = found[int(rng.integers(len(found)))] if found else None
+        return DeployedGrid(rows, columns, phi, symmetry, free)
 
     def _lattice(self, grid: DeployedGrid) -> BatchedLattice:
         counts = grid.rows, grid.columns
@@ -311,7 +318,10 @@ class AlignRun:
     def _silhouettes(self, grid: DeployedGrid, count: int) -> Tensor:
         """What random fields of a sheet show: (B, L, 2), unit area about the centroid."""
         rng = np.random.default_rng((self.seed, 1, self.step))
-        fields = torch.tensor(mixed_fields(count, grid.rows, grid.columns, rng), dtype=torch.float32)
+        drawn = mixed_fields(count, grid.rows, grid.columns, rng)
+        if grid.symmetry is not None:
+            drawn = grid.symmetry.symmetric(drawn)
+        fields = torch.tensor(drawn, dtype=torch.float32)
         with torch.no_grad():
             return normalised(deployed_outline(self._lattice(grid), grid, fields.to(self.device)))
 
