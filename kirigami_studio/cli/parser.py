@@ -596,10 +596,18 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--learning-rate", type=positive, default=2e-4, help="peak learning rate (default 0.0002)"),
         option("--variation-weight", type=amount, default=0.015,
                help="weight of the total variation when regularity is fully preferred (default 0.015)"),
+        option("--evenness-weight", type=amount, default=0.0,
+               help="weight of the variation of panel areas when regularity is fully preferred (default 0)"),
         option("--anchor-weight", type=amount, default=0.5,
                help="weight of the distance to the prior's samples from the same noise (default 0.5)"),
         option("--other-sheets", type=amount, default=0.5,
                help="share of steps on grids and angles other than the prior's (default 0.5)"),
+        option("--free-rims", type=amount, default=0.0,
+               help="share of steps on sheets whose rim is free (default 0); above 0, samples have free rims too"),
+        option("--symmetric", type=amount, default=0.0,
+               help="share of steps within a symmetry of the grid, where it has any (default 0)"),
+        option("--drawn-share", type=amount, default=0.35,
+               help="share of drawn shapes among the targets (default 0.35)"),
         option("--pictured", type=amount, default=0.5,
                help="share of targets that are traced from a picture (default 0.5)"),
         option("--go-on", default=None, metavar="WEIGHTS",
@@ -607,6 +615,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *run_of_training(500),
     ), ("kirigami-studio train align --out runs/aligned",
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
+        "kirigami-studio train align --go-on bundled --evenness-weight 0.6 --free-rims 0.6 --symmetric 0.35 "
+        "--out runs/even",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
     SubCommand("train grpo", "align a generator with a reward, by the paper's GRPO; resumes from its checkpoint",
         "learning:grpo", (
@@ -687,6 +697,17 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
         "kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --picture all.png --states",
     )),
+    SubCommand("benchmark beginnings", "fit designs from samples, random ratios and the uniform sheet",
+        "benchmarks:beginnings", (
+        option("--targets", nargs="+", required=True, help="'library', files or folders"),
+        option("--ways", nargs="+", default=["guided", "random", "balanced"], metavar="WAY",
+               help="guided, random, bundled variants, and variants of a run as FOLDER/VARIANT "
+                    "(default: guided random balanced)"),
+        samples(4),
+        option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
+        SEED, *WORKERS, *FIGURES,
+    ), ("kirigami-studio benchmark beginnings --targets tests/data/dev_shapes",
+        "kirigami-studio benchmark beginnings --targets library --ways guided balanced runs/aligned/balanced")),
     SubCommand("benchmark starts", "design targets from other sheets than rectangles", "benchmarks:starts", (
         option("--starts", nargs="+", default=["circle", "triangle", "hexagon", "ellipse", "square"], metavar="SHAPE",
                help="shapes of the flat sheet, as for 'design --start' "

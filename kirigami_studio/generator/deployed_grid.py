@@ -111,10 +111,6 @@ class GridTransfer:
         """Where a flow from fields (B, own cells) starts: its states are fields of the network's own grid."""
         return z
 
-    def state_of(self, z: Tensor) -> Tensor:
-        """The state at which a flow ends that draws fields of the sheet (B, m * n), as nearly as it can."""
-        return self.down(z)
-
     def seen(self, state: Tensor) -> Tensor:
         """A state of the flow as the network sees it: (B, own cells)."""
         return state
@@ -161,9 +157,6 @@ class SymmetricTransfer(GridTransfer):
 
     def state(self, z: Tensor) -> Tensor:
         return self.symmetric(self.up(z))
-
-    def state_of(self, z: Tensor) -> Tensor:
-        return self.symmetric(z)
 
     def seen(self, state: Tensor) -> Tensor:
         return self.down(state)

@@ -143,11 +143,6 @@ class GridSymmetry:
     source: IntArray
     sign: FloatArray
 
-    @property
-    def mouths(self) -> int:
-        """R, the number of mouths."""
-        return self.source.shape[1] - self.rows * self.columns
-
     def symmetric(self, z: FloatArray) -> FloatArray:
         """The nearest fields (..., m, n) that equal all their images."""
         return self.symmetry.symmetric(z)

@@ -27,11 +27,10 @@ from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.training.corpus import deployed_outline
 from kirigami_studio.training.fields import mixed_fields
-from kirigami_studio.training.flow_path import ConditionalPath, cfm_loss
 from kirigami_studio.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, opened, trained
-from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, preference_terms, trail_gap
+from kirigami_studio.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.training.ranks import Ranks
-from kirigami_studio.training.sampled_targets import SampledTargets, TargetSource
+from kirigami_studio.training.sampled_targets import TargetSource
 from kirigami_studio.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
@@ -67,10 +66,6 @@ class AlignSettings:
         Cost of the paper's TV(x) / (m n) at preference 1, in units of area; proportional below.
     evenness_weight : float
         The same of the coefficient of variation of panel areas.
-    lesson_weight : float
-        Weight of flow matching on the best of several samples of each target.
-    lesson_samples : int
-        How many the best is chosen from; each takes as long as a step without.
     anchor_weight : float
         Cost of the mean squared distance of z to the prior's sample.
     anchored_every : int
@@ -85,7 +80,7 @@ class AlignSettings:
     other_sheets : float
         Share of the steps that draw on another sheet than the network's own.
     free_rims : float
-        Share of the steps that draw on sheets whose rim is free.
+        Share of the steps that draw on sheets whose rim is free; a network with ``rims`` is told so.
     symmetric_share : float
         Share of the steps that draw within a symmetry of the grid, where it has any.
     seed : int
@@ -102,21 +97,17 @@ class AlignSettings:
     learning_rate: float = 2e-4
     average_decay: float = 0.998
     variation_weight: float = 0.015
-    evenness_weight: float = 0.3
-    lesson_weight: float = 0.1
-    lesson_samples: int = 4
+    evenness_weight: float = 0.0
     anchor_weight: float = 0.5
     anchored_every: int = 2
     vertex_noise: float = 0.01
     pictured_share: float = 0.5
     shift_noise: float = 0.3
     other_sheets: float = 0.5
-    free_rims: float = 0.5
-    symmetric_share: float = 0.3
+    free_rims: float = 0.0
+    symmetric_share: float = 0.0
     seed: int = 0
-    shape: NetworkShape = field(
-        default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True, rims=True)
-    )
+    shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
 
     def to_json(self) -> dict[str, object]:
         return asdict(self)
@@ -229,7 +220,9 @@ class AlignRun:
         drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
         targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn, grid.symmetry)
         preference = self._preferences(self.batch)
-        noise = self._noise(self.batch)
+        cells = settings.shape.rows * settings.shape.columns
+        noise = torch.randn((self.batch, cells), generator=self.generator, device=self.device)
+        noise = noise * settings.shape.z_scale
         parts: dict[str, float] = {}
 
         def compute() -> Tensor:
@@ -247,12 +240,7 @@ class AlignRun:
             parts["variation"] = float(terms.variation.mean().detach())
             parts["unevenness"] = float(terms.unevenness.mean().detach())
             parts["anchor"] = float(anchor.detach())
-            loss = self._costs(terms, preference).mean() + settings.anchor_weight * anchor + EARLY_WEIGHT * early
-            if settings.lesson_weight:
-                lesson = self._lesson(targets, grid, preference)
-                parts["lesson"] = float(lesson.detach())
-                loss = loss + settings.lesson_weight * lesson
-            return loss
+            return self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
 
         loss = self.learner.loss(compute)
         self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
@@ -267,32 +255,10 @@ class AlignRun:
         """Write the checkpoint."""
         self.learner.save(self.path, self.settings.to_json())
 
-    def _costs(self, terms: PreferenceTerms, preference: Tensor) -> Tensor:
-        """What each of several designs costs where their preferences (B,) are these: (B,)."""
+    def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
         settings = self.settings
         calm = settings.variation_weight * terms.variation + settings.evenness_weight * terms.unevenness
-        return terms.match + preference * calm + terms.excess
-
-    def _lesson(self, targets: SampledTargets, grid: DeployedGrid, preference: Tensor) -> Tensor:
-        """Flow matching on the best of several samples of each target: which way to go about it, no slope tells."""
-        settings, each = self.settings, self.settings.lesson_samples
-        with torch.no_grad():
-            code = targets.code(self.network, grid, preference).repeated(each)
-            designs = trail(self.network, self._noise(self.batch * each), code, settings.sampling_steps)[-1]
-            loop = targets.loop.repeat_interleave(each, dim=0)
-            terms = preference_terms(self._lattice(grid), grid, designs, loop)
-            costs = self._costs(terms, preference.repeat_interleave(each)).view(-1, each)
-            best = costs.argmin(dim=1) + each * torch.arange(self.batch, device=self.device)
-            chosen = code.transfer.state_of(code.transfer.bounded(designs[best])[:, : grid.cells])
-        t = torch.rand(self.batch, generator=self.generator, device=self.device)
-        path = ConditionalPath.sample(code.transfer.state(self._noise(self.batch)), chosen, t)
-        return cfm_loss(self.network(path.x_t, t, targets.code(self.network, grid, preference)), path)
-
-    def _noise(self, rows: int) -> Tensor:
-        """Where flows start: (rows, cells)."""
-        shape = self.settings.shape
-        drawn = torch.randn((rows, shape.rows * shape.columns), generator=self.generator, device=self.device)
-        return drawn * shape.z_scale
+        return (terms.match + preference * calm + terms.excess).mean() + settings.anchor_weight * anchor
 
     def _grid(self) -> DeployedGrid:
         """The grid, angle and rim of this step: the network's own grid, or any of 6 to 16 voids each way and any useful
