@@ -1,4 +1,4 @@
-"""How designs begin: the same few steps of the fit from samples and from random ratios, beside guided fits.
+"""How designs begin: a few steps of the fit from samples of several generators, beside guided fits.
 
 Every way gets as many beginnings of a target, on the grid that a run takes for it, and its best design counts, by the
 order of :mod:`kirigami_studio.pipeline.rank`.  Seconds are those of the processor, for all beginnings of one target.
@@ -18,17 +18,14 @@ from kirigami_studio.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.generator.weights import Model, load_model
-from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import FIRST_ROUND, fits_from_uniform, never, on_sheet, sample, with_grid
+from kirigami_studio.pipeline.run import FIRST_ROUND, fits_from_uniform, never, sample, with_grid
 from kirigami_studio.pipeline.tasks import PolishTask, scored
-from kirigami_studio.training.fields import structured_fields
 
-#: Ways to begin that are no generators: fits from the uniform sheet by their own stages, and the paper's random fields.
-GUIDED, RANDOM = "guided", "random"
+#: The way that is no generator: fits from the uniform sheet, by stages of their own.
+GUIDED = "guided"
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +68,11 @@ def measure_beginnings(
     ----------
     targets : sequence of Outline
     ways : sequence of str
-        ``guided``, ``random``, bundled variants, and variants of a run's folder as ``FOLDER/VARIANT``.
+        ``guided``, bundled variants, and variants of a run's folder as ``FOLDER/VARIANT``.
     count : int
         Beginnings of a target.
     polish : int
-        Steps of the fit that samples and random ratios get.
+        Steps of the fit that samples get.
     seed : int
 
     Returns
@@ -97,12 +94,11 @@ def measure_beginnings(
 def begun(target: Outline, ways: tuple[str, ...], count: int, polish: int, seed: int) -> list[Begun]:
     """The best design of one target by each way."""
     request = with_grid(Request(target, None, k=4 * count, seed=seed, polish=polish, guided=count))
-    for way in ways:
-        _model(way)  # loading takes no part in the figures
+    models = {way: _model(way) for way in ways if way != GUIDED}  # loading takes no part in the figures
     found = []
     for way in ways:
         began = time.process_time()
-        designs = _guided(request) if way == GUIDED else _fitted(request, way, count)
+        designs = _guided(request) if way == GUIDED else _fitted(request, models[way], count)
         seconds = time.process_time() - began
         ranking = Ranking.of(request)
         best = ranking.ranked(designs)[0]
@@ -117,13 +113,11 @@ def _guided(request: Request) -> list[Candidate]:
     return [one for one in answers if one is not None]
 
 
-def _fitted(request: Request, way: str, count: int) -> list[Candidate]:
-    """Beginnings of a way, each fitted as a run fits its samples."""
-    model = _model(way)
+def _fitted(request: Request, model: Model, count: int) -> list[Candidate]:
+    """Samples of a model, each fitted as a run does it."""
     asked = Request(request.target, request.grid, k=count, seed=request.seed, polish=request.polish, guided=0)
-    begins = _random_sheets(asked) if model is None else sample(asked, model)
     designs = []
-    for candidate in scored(asked, begins, 0):
+    for candidate in scored(asked, sample(asked, model), 0):
         first = min(FIRST_ROUND, asked.polish) if asked.polish >= 2 * FIRST_ROUND else 0
         now = candidate
         for steps, last in ((first, False), (asked.polish - first, True)):
@@ -133,16 +127,8 @@ def _fitted(request: Request, way: str, count: int) -> list[Candidate]:
     return designs
 
 
-def _random_sheets(request: Request) -> list[Sheet]:
-    rng = np.random.default_rng(request.seed)
-    fields = structured_fields(request.k, *request.chosen_grid, rng)
-    return [on_sheet(request, RatioField.from_log10(z)) for z in fields]
-
-
-def _model(way: str) -> Model | None:
-    """The generator of a way, none where it needs none."""
-    if way in (GUIDED, RANDOM):
-        return None
+def _model(way: str) -> Model:
+    """The generator of a way."""
     folder, variant = Path(way).parent, Path(way).name
     return load_model(variant) if way == variant else load_model(variant, folder)
 

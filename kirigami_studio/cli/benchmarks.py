@@ -490,7 +490,7 @@ def designs(arguments: argparse.Namespace) -> int:
 
 
 def beginnings(arguments: argparse.Namespace) -> int:
-    """Designs from samples, random ratios and the uniform sheet, best of a few each."""
+    """Designs from samples and from the uniform sheet, best of a few each."""
     from kirigami_studio.benchmark.beginnings_suite import measure_beginnings
 
     line, ways = ProgressLine(), tuple(dict.fromkeys(arguments.ways))

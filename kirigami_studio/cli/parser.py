@@ -697,12 +697,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio benchmark designs --targets library --k 8 --polish 15 --effort 1 --trim --picture all.png",
         "kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --picture all.png --states",
     )),
-    SubCommand("benchmark beginnings", "fit designs from samples, random ratios and the uniform sheet",
+    SubCommand("benchmark beginnings", "fit designs from samples and from the uniform sheet, best of a few",
         "benchmarks:beginnings", (
         option("--targets", nargs="+", required=True, help="'library', files or folders"),
-        option("--ways", nargs="+", default=["guided", "random", "balanced"], metavar="WAY",
-               help="guided, random, bundled variants, and variants of a run as FOLDER/VARIANT "
-                    "(default: guided random balanced)"),
+        option("--ways", nargs="+", default=["guided", "balanced"], metavar="WAY",
+               help="guided, bundled variants, and variants of a run as FOLDER/VARIANT (default: guided balanced)"),
         samples(4),
         option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
         SEED, *WORKERS, *FIGURES,

@@ -46,7 +46,7 @@ def test_that_more_steps_of_the_fit_and_more_beginnings_are_worth_more() -> None
 def test_that_each_way_has_its_figures_and_its_difference_to_the_guided_fits(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    ways = ["guided", "random", "prior", f"{folder}/calm"]
+    ways = ["guided", "prior", f"{folder}/calm"]
     words = ["benchmark", "beginnings", "--targets", "circle", "--ways", *ways, "--k", "1", "--polish", "2"]
     assert main([*words, "--processes", "1", "--out", str(tmp_path / "figures.json"), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
