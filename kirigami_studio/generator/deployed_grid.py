@@ -4,6 +4,9 @@ A network draws on its own grid at phi = 0; a sheet may have any grid and angle.
 the lattice's parity-wise interpolation, which is linear, and outlines are read at as many stations, side by side, as
 the network's own has vertices.  On the network's own grid at phi = 0 both are the identity.
 
+A *design* of the sheet is the fields' entries of z, followed by how far the mouths are from their even places where the
+rim is free.  The flow draws z alone; corrections move the mouths.
+
 Within a symmetry of the sheet's grid the flow goes on on that grid, as the network's own may not have the symmetry:
 the network sees its state carried over, and its velocity is carried back and made symmetric.
 """
@@ -16,11 +19,14 @@ from functools import lru_cache
 import numpy as np
 import torch
 from torch import Tensor
+from torch.nn.functional import pad
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.ratio_field import frozen
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.sheet import RIM_REACH, rim_table
 from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 
 
@@ -34,12 +40,25 @@ class DeployedGrid:
     phi : float, radians, in [0, pi)
     symmetry : Symmetry, optional
         What all fields keep.
+    free_rim : bool
+        Corrections move the mouths of the rim as well.
     """
 
     rows: int
     columns: int
     phi: float = 0.0
     symmetry: Symmetry | None = None
+    free_rim: bool = False
+
+    @property
+    def cells(self) -> int:
+        """Number of voids."""
+        return self.rows * self.columns
+
+    @property
+    def mouths(self) -> int:
+        """Number of mouths that are free."""
+        return int(rim_table(self.rows, self.columns).mouths.size) if self.free_rim else 0
 
     @property
     def zipped(self) -> bool:
@@ -67,6 +86,7 @@ class GridTransfer:
 
     def __init__(self, own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> None:
         grid = deployed.rows, deployed.columns
+        self.cells, self.mouths = deployed.cells, deployed.mouths
         self.same_grid = own == grid
         self.same_outline = self.same_grid and deployed.zipped
         self._up = self._down = self._stations = torch.empty(0, device=device)
@@ -96,16 +116,25 @@ class GridTransfer:
         return state
 
     def on_grid(self, state: Tensor) -> Tensor:
-        """A state of the flow as fields of the sheet: (B, m * n)."""
-        return self.up(state)
+        """A state of the flow as designs of the sheet, their mouths evenly spaced: (B, m * n + R)."""
+        return self.evenly(self.up(state))
+
+    def evenly(self, z: Tensor) -> Tensor:
+        """Fields (B, m * n) as designs whose mouths are evenly spaced: (B, m * n + R)."""
+        return pad(z, (0, self.mouths)) if self.mouths else z
+
+    def bounded(self, design: Tensor) -> Tensor:
+        """The nearest designs (B, m * n + R) within the limits of ratios and mouths."""
+        z = design[:, : self.cells].clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+        return torch.cat([z, design[:, self.cells :].clamp(-RIM_REACH, RIM_REACH)], dim=1) if self.mouths else z
 
     def state_change(self, velocity: Tensor) -> Tensor:
         """What a velocity (B, own cells) does to the state."""
         return velocity
 
-    def symmetric(self, z: Tensor) -> Tensor:
-        """The nearest fields of the sheet (B, m * n) that keep its symmetry."""
-        return z
+    def symmetric(self, design: Tensor) -> Tensor:
+        """The nearest designs of the sheet (B, m * n + R), or fields alone, that keep its symmetry."""
+        return design
 
     def stations(self, outline: Tensor) -> Tensor:
         """The sheet's outline (B, L, 2) read at as many places as the network's own has vertices: (B, L_own, 2)."""
@@ -119,8 +148,11 @@ class SymmetricTransfer(GridTransfer):
         self, own: tuple[int, int], deployed: DeployedGrid, symmetry: GridSymmetry, device: torch.device
     ) -> None:
         super().__init__(own, deployed, device)
-        cells = np.eye(deployed.rows * deployed.columns).reshape(-1, deployed.rows, deployed.columns)
-        projection = symmetry.symmetric(cells).reshape(len(cells), -1)
+        cells = np.eye(self.cells).reshape(-1, deployed.rows, deployed.columns)
+        projection = np.eye(self.cells + self.mouths)
+        projection[: self.cells, : self.cells] = symmetry.symmetric(cells).reshape(self.cells, -1)
+        if self.mouths:
+            projection[self.cells :, self.cells :] = symmetry.symmetric_offsets(np.eye(self.mouths))
         self._projection = torch.tensor(projection, dtype=torch.float32, device=device)
 
     def state(self, z: Tensor) -> Tensor:
@@ -130,13 +162,14 @@ class SymmetricTransfer(GridTransfer):
         return self.down(state)
 
     def on_grid(self, state: Tensor) -> Tensor:
-        return state
+        return self.evenly(state)
 
     def state_change(self, velocity: Tensor) -> Tensor:
         return self.symmetric(self.up(velocity))
 
-    def symmetric(self, z: Tensor) -> Tensor:
-        return z @ self._projection
+    def symmetric(self, design: Tensor) -> Tensor:
+        size = design.shape[1]
+        return design @ self._projection[:size, :size]
 
 
 def grid_transfer(own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> GridTransfer:

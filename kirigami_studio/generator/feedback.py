@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 import torch
 from torch import Tensor
+from torch.nn.functional import pad
 
 from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid, grid_transfer
@@ -41,8 +42,8 @@ class Observation:
     ----------
     features : (B, F) tensor
         Outline stations, displacements both ways and the direction on the network's grid, each near unit variance.
-    direction : (B, m * n) tensor
-        Gauss-Newton change of the fields on their grid; empty without it.
+    direction : (B, m * n + R) tensor
+        Gauss-Newton change of the designs; empty without it.
     """
 
     features: Tensor
@@ -66,7 +67,9 @@ class Feedback:
         self.lattice, self.slopes = _geometry(grid.rows, grid.columns, grid.zipped, device)
         self.transfer = grid_transfer(own, grid, device)
         self._basis = (
-            None if grid.symmetry is None else _symmetric_fields(grid.rows, grid.columns, grid.symmetry, device)
+            None
+            if grid.symmetry is None
+            else _symmetric_designs(grid.rows, grid.columns, grid.cells + grid.mouths, grid.symmetry, device)
         )
 
     @staticmethod
@@ -76,7 +79,7 @@ class Feedback:
         return 2 * vertices + 4 * vertices + loop_points + (rows * columns if direction else 0)
 
     def __call__(self, z: Tensor, loop: Tensor, direction: bool, variation_cost: Tensor | None = None) -> Observation:
-        """Describe fields z (B, m * n) of the grid against target loops (B, S, 2), without gradient.
+        """Describe designs (B, m * n + R) of the grid against target loops (B, S, 2), without gradient.
 
         The Gauss-Newton direction takes most of the time and is left out where nobody asks for it;
         ``variation_cost`` (B,) is the cost of TV(x) / (m n) in it.
@@ -91,8 +94,9 @@ class Feedback:
             return Observation(torch.cat([one.features for one in seen]), torch.cat([one.direction for one in seen]))
 
     def _described(self, z: Tensor, loop: Tensor, wanted: bool, variation_cost: Tensor | None) -> Observation:
-        field = z.clamp(-Z_BOUND, Z_BOUND).view(-1, self.grid.rows, self.grid.columns)
-        outline, slopes = self._outline(field, wanted)
+        cells = self.grid.cells
+        field = z[:, :cells].clamp(-Z_BOUND, Z_BOUND).view(-1, self.grid.rows, self.grid.columns)
+        outline, slopes = self._outline(field, z[:, cells:] if self.grid.free_rim else None, wanted)
         samples = _with_middles(outline)
         squared = squared_distances(samples, loop)
         out, _ = to_loop(samples, loop, squared.argmin(dim=2))
@@ -112,11 +116,14 @@ class Feedback:
         residuals = Residuals.of(outline, loop, out, back, 0.5 * place)
         direction = self._direction(residuals, slopes, variation)
         direction = direction.clamp(-DIRECTION_BOUND, DIRECTION_BOUND)
-        seen.append(self.transfer.down(direction) / DIRECTION_SCALE)
+        seen.append(self.transfer.down(direction[:, :cells]) / DIRECTION_SCALE)
         return Observation(torch.cat(seen, dim=1), direction)
 
     def _direction(self, residuals: Residuals, slopes: Tensor, variation: tuple[Tensor, Tensor] | None) -> Tensor:
-        """Gauss-Newton change of the fields, within their symmetry: (B, m * n)."""
+        """Gauss-Newton change of the designs, within their symmetry: (B, m * n + R)."""
+        if variation is not None and self.grid.free_rim:
+            room = self.grid.mouths
+            variation = pad(variation[0], (0, room)), pad(variation[1], (0, room, 0, room))
         if self._basis is None:
             return gauss_newton_direction(residuals, slopes, variation)
         basis = self._basis
@@ -124,12 +131,14 @@ class Feedback:
             variation = variation[0] @ basis, basis.mT @ variation[1] @ basis
         return gauss_newton_direction(residuals, slopes @ basis, variation) @ basis.mT
 
-    def _outline(self, field: Tensor, wanted: bool) -> tuple[Tensor, Tensor | None]:
-        """Outlines of fields (B, m, n), unit area about the centroid; if wanted their derivatives (B, L, 2, m * n)."""
+    def _outline(self, field: Tensor, offsets: Tensor | None, wanted: bool) -> tuple[Tensor, Tensor | None]:
+        """Outlines of fields (B, m, n) and mouths (B, R), unit area about the centroid; if wanted their derivatives
+        (B, L, 2, m * n + R).
+        """
         if wanted:
-            decoded, slopes = self.slopes(field, self.grid.phi)
+            decoded, slopes = self.slopes(field, self.grid.phi, offsets)
             return normalised(decoded), _normalised_slopes(decoded, slopes)
-        decoded = self.lattice.outline(torch.pow(10.0, field), self.grid.phi)
+        decoded = self.lattice.outline(torch.pow(10.0, field), self.grid.phi, offsets)
         return normalised(decoded[:, self.lattice.unzipped] if self.grid.zipped else decoded), None
 
 
@@ -141,10 +150,10 @@ def _geometry(rows: int, columns: int, zipped: bool, device: torch.device) -> tu
 
 
 @lru_cache(maxsize=256)
-def _symmetric_fields(rows: int, columns: int, symmetry: Symmetry, device: torch.device) -> Tensor:
-    """Basis of the symmetric fields of a grid: (m * n, reduced)."""
-    fields = symmetry.on(rows, columns).basis[: rows * columns].toarray()
-    return torch.tensor(fields[:, np.any(fields != 0.0, axis=0)], dtype=torch.float32, device=device)
+def _symmetric_designs(rows: int, columns: int, size: int, symmetry: Symmetry, device: torch.device) -> Tensor:
+    """Basis of the symmetric designs of a grid, of their first ``size`` numbers: (size, reduced)."""
+    designs = symmetry.on(rows, columns).basis[:size].toarray()
+    return torch.tensor(designs[:, np.any(designs != 0.0, axis=0)], dtype=torch.float32, device=device)
 
 
 def _normalised_slopes(outline: Tensor, slopes: Tensor) -> Tensor:

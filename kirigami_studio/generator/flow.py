@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from torch import Tensor, full
 
-from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.velocity import Code, Velocity
 
 
@@ -48,8 +47,8 @@ def integrate(network: Velocity, start: Tensor, code: Code, steps: int, late: La
 
     Returns
     -------
-    z : (B, m * n) tensor at t = 1
-        Fields of the sheet that the code is for.
+    design : (B, m * n + R) tensor at t = 1
+        Fields of the sheet that the code is for, then the offsets of its mouths where they are free.
     """
     return trail(network, start, code, steps, late)[-1]
 
@@ -68,7 +67,7 @@ def trail(network: Velocity, start: Tensor, code: Code, steps: int, late: LateSt
         z = code.transfer.symmetric(z + late.remainder)
     designs = [z]
     for _ in range(corrections):
-        z = z.clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
+        z = code.transfer.bounded(z)
         z = z + network.correction(z, code)
         designs.append(z)
     return designs

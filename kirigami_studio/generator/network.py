@@ -16,7 +16,7 @@ from kirigami_studio.generator.feedback import Feedback
 #: less variation for half a point of match or less (tried once on 40 structured and 40 Sobol outlines with the prior);
 #: drawn shapes with arms lose more.
 VARIATION_COST = 1.5e-4
-#: Numbers that describe a grid and its angle.
+#: Numbers that describe a grid and its angle; one more says whether the rim is free.
 GRID_FEATURES = 5
 
 
@@ -48,6 +48,8 @@ class NetworkShape:
         The network takes a preference between match (0) and regularity (1).
     sheets : bool
         The network is given the sheet's grid and angle, which it may have met in training.
+    rims : bool
+        It is also given whether the rim is free, and has met free rims in training.
     """
 
     rows: int = 10
@@ -63,6 +65,7 @@ class NetworkShape:
     direction: bool = False
     preference: bool = False
     sheets: bool = False
+    rims: bool = False
 
     @property
     def feedback_width(self) -> int:
@@ -148,7 +151,8 @@ class VelocityNetwork(nn.Module):
         self.time_per_block = nn.Linear(shape.time_features, shape.hidden * shape.blocks, bias=False)
         self.prefer = nn.Linear(1, shape.hidden * shape.blocks, bias=False) if shape.preference else None
         # What it knows of the sheet: its grid and angle.
-        self.lie = nn.Linear(GRID_FEATURES, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
+        told = GRID_FEATURES + shape.rims
+        self.lie = nn.Linear(told, shape.hidden * shape.blocks, bias=False) if shape.sheets else None
         for layer in (self.prefer, self.lie):
             if layer is not None:
                 nn.init.zeros_(layer.weight)
@@ -230,10 +234,10 @@ class VelocityNetwork(nn.Module):
         return self.shape.loop_points > 0
 
     def correction(self, z: Tensor, code: TargetCode) -> Tensor:
-        """Change of fields z (B, m * n) of the sheet that brings their outlines nearer: (B, m * n).
+        """Change of designs z (B, m * n + R) of the sheet that brings their outlines nearer: (B, m * n + R).
 
         The Gauss-Newton direction; a network that was trained to correct takes it as far in each ratio as it thinks
-        fit, and adds to it.
+        fit, and adds to it.  Mouths follow it all the way.
         """
         if code.feedback is None:
             return torch.zeros_like(z)
@@ -241,9 +245,10 @@ class VelocityNetwork(nn.Module):
         if self.follow is None or self.amend is None:
             return observed.direction
         transfer = code.transfer
-        x = self._hidden(transfer.down(z), torch.ones_like(z[:, 0]), code, observed.features)
-        change: Tensor = (1.0 + transfer.up(self.follow(x))) * observed.direction + transfer.up(self.amend(x))
-        return transfer.symmetric(change)
+        field, mouths = observed.direction.tensor_split((transfer.cells,), dim=1)
+        x = self._hidden(transfer.down(z[:, : transfer.cells]), torch.ones_like(z[:, 0]), code, observed.features)
+        change = (1.0 + transfer.up(self.follow(x))) * field + transfer.up(self.amend(x))
+        return transfer.symmetric(torch.cat([change, mouths], dim=1))
 
     def _hidden(self, z: Tensor, t: Tensor, code: TargetCode, features: Tensor) -> Tensor:
         """What the last block makes of a state: (B, width)."""
@@ -257,18 +262,15 @@ class VelocityNetwork(nn.Module):
 
 
 def _grid_features(grid: DeployedGrid, shape: NetworkShape, like: Tensor) -> Tensor:
-    """Grid and angle as numbers about zero, which are zero on the network's own grid: (1, GRID_FEATURES)."""
-    return like.new_tensor(
-        [
-            [
-                math.log(grid.rows / shape.rows),
-                math.log(grid.columns / shape.columns),
-                math.sin(grid.phi),
-                1.0 - math.cos(grid.phi),
-                float(not grid.zipped),
-            ]
-        ]
-    )
+    """What a network is given of a sheet, as numbers about zero, which are zero on its own grid with an even rim."""
+    told = [
+        math.log(grid.rows / shape.rows),
+        math.log(grid.columns / shape.columns),
+        math.sin(grid.phi),
+        1.0 - math.cos(grid.phi),
+        float(not grid.zipped),
+    ]
+    return like.new_tensor([told + [float(grid.free_rim)] * shape.rims])
 
 
 def time_features(t: Tensor, count: int) -> Tensor:

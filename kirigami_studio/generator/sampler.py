@@ -21,6 +21,7 @@ from kirigami_studio.generator.velocity import Code
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
+from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 
@@ -86,7 +87,7 @@ def sample_fields(
     symmetry: Symmetry | None = None,
     upward: float | None = None,
 ) -> tuple[RatioField, ...]:
-    """Sample ``k`` ratio fields for ``target``.
+    """Sample ``k`` ratio fields for ``target``, of sheets with an even rim.
 
     Candidate i depends on the seed and i alone, so asking for more keeps the first ones.  Candidate 0 sees the target
     upright; the others also see it in quarter turns (an exact symmetry of even grids) and, every second one, in poses
@@ -117,10 +118,45 @@ def sample_fields(
     UsageError
         The lattice of the grid does not have the symmetry.
     """
-    shape = model.network.shape
+    z = _sampled(model, target, DeployedGrid(*grid, phi, symmetry), k, seed, steps, poses, near, upward)
+    return tuple(RatioField.from_log10(field) for field in z.reshape(k, *grid))
+
+
+def sample_sheets(
+    model: Model,
+    target: Outline,
+    grid: tuple[int, int],
+    k: int,
+    seed: int,
+    steps: int,
+    phi: float = 0.0,
+    symmetry: Symmetry | None = None,
+    upward: float | None = None,
+) -> tuple[Sheet, ...]:
+    """Sample ``k`` sheets for ``target``, rim and all; the parameters are those of :func:`sample_fields`."""
+    deployed = DeployedGrid(*grid, phi, symmetry, free_rim=True)
+    designs = _sampled(model, target, deployed, k, seed, steps, pose_angle, None, upward)
+    cells = deployed.cells
+    return tuple(
+        Sheet(RatioField.from_log10(one[:cells].reshape(grid)), Rim.moved(*grid, one[cells:])) for one in designs
+    )
+
+
+def _sampled(
+    model: Model,
+    target: Outline,
+    deployed: DeployedGrid,
+    k: int,
+    seed: int,
+    steps: int,
+    poses: Callable[[int], float],
+    near: Near | None,
+    upward: float | None,
+) -> FloatArray:
+    """Designs of a grid (k, m * n + R), within their bounds and symmetry, rounded so that files repeat them."""
+    shape, symmetry, cells = model.network.shape, deployed.symmetry, deployed.cells
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale
-    deployed = DeployedGrid(*grid, phi, symmetry)
     sampled: list[Tensor] = []
     with torch.inference_mode(), one_torch_thread(), one_blas_thread():
         for start in range(0, whole, BATCH):
@@ -137,12 +173,15 @@ def sample_fields(
             if near is not None:
                 rows, late = _late_start(near, rows, (shape.rows, shape.columns), code)
             sampled.append(integrate(model.network, rows, code, steps, late))
-    z = torch.cat(sampled)[:k].double().numpy().reshape(k, *grid)
+    z, offsets = np.split(torch.cat(sampled)[:k].double().numpy(), [cells], axis=1)
     if symmetry is not None:
         # Away with what single precision has added.
-        z = symmetry.symmetric(z)
-    fields: FloatArray = np.clip(z, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
-    return tuple(RatioField.from_log10(np.round(field, 6)) for field in fields)
+        tables = symmetry.on(deployed.rows, deployed.columns)
+        z = tables.symmetric(z.reshape(k, deployed.rows, deployed.columns)).reshape(k, cells)
+        offsets = tables.symmetric_offsets(offsets) if deployed.mouths else offsets
+    z, offsets = np.clip(z, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT), np.clip(offsets, -RIM_REACH, RIM_REACH)
+    designs: FloatArray = np.round(np.concatenate([z, offsets], axis=1), 6)
+    return designs
 
 
 def _late_start(near: Near, noise: Tensor, own: tuple[int, int], code: Code) -> tuple[Tensor, LateStart]:

@@ -25,6 +25,7 @@ from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.generator.deployed_grid import DeployedGrid
+from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, backbone_of, network_of, shape_from_json
 
 MANIFEST = "manifest.json"
@@ -55,6 +56,12 @@ class Model:
     network: Network
     digest: str
     preference: float = 0.0
+
+    @property
+    def moves_mouths(self) -> bool:
+        """Whether it was trained to draw sheets with a free rim."""
+        shape = self.network.shape
+        return isinstance(shape, NetworkShape) and shape.rims
 
     def decodings(self, steps: int) -> int:
         """How often one sample of ``steps`` network evaluations decodes a layout: comparable with the paper's #F."""

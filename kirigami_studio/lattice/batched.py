@@ -179,6 +179,7 @@ class BatchedLattice:
         self._even = self._float(even_part_of_outline(self.rows, self.columns))
         self._loop = self._index(loop)
         self.unzipped = self._index(np.flatnonzero(np.isin(loop, tables.outline_at_zero)))
+        self.panel_nodes = self._index(tables.panel_nodes.reshape(-1, 4))
 
     def _index(self, values: IntArray) -> Tensor:
         return torch.tensor(values, dtype=torch.long, device=self.device)

@@ -34,6 +34,8 @@ SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
 
 #: Mouths, corners and hinges may not come nearer to each other than this (unit cells): what is exact needs room.
 LEAST_GAP = 1e-3
+#: How far (unit cells) fits and samples move a mouth from its even place: rim edges stay longer than 0.3 cells.
+RIM_REACH = 0.7
 #: Sides of a cell (unit cells): within these bounds tolerances in cells mean something.
 CELL_SIDES = (0.05, 20.0)
 

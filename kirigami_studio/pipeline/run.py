@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import zip_longest
+from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
@@ -49,6 +50,9 @@ from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
 from kirigami_studio.settings.design import USUAL_GRID, RimRule
+
+if TYPE_CHECKING:
+    from kirigami_studio.generator.weights import Model
 
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
@@ -131,9 +135,9 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Progress(0, request.k, tr("Loading the generator"))
     with closing(work.guide()) as guided:
         next(guided, None)  # workers fit the uniform sheet while the generator samples
-        fields = sample(request)
-        work.evaluations += len(fields) * decodings(request)
-        yield from work.score([on_sheet(request, field) for field in fields])
+        sheets = sample(request)
+        work.evaluations += len(sheets) * decodings(request)
+        yield from work.score(sheets)
         yield from guided
     if request.polish:
         yield from work.polish()
@@ -188,28 +192,36 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
     raise Cancelled("run.no_result")
 
 
-def sample(request: Request) -> tuple[RatioField, ...]:
-    """Sample the request's fields; torch is imported here, on the first run, and not when the program starts.
+def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
+    """Sample the request's sheets; torch is imported here, on the first run, and not when the program starts.
 
     They are all designs that are not fitted from the uniform sheet.  Where the target has symmetries that the grid can
-    keep, samples that keep them come first: half of all, or all where a symmetry is asked for.
+    keep, samples that keep them come first: half of all, or all where a symmetry is asked for.  ``model`` takes the
+    place of the bundled variant that the request names.
     """
-    from kirigami_studio.generator.sampler import Near, sample_fields
+    from kirigami_studio.generator.sampler import Near, sample_fields, sample_sheets
     from kirigami_studio.generator.weights import load_model
 
-    model = load_model(request.variant)
+    model = model or load_model(request.variant)
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     count = request.k - len(fits_from_uniform(request))
     if request.near is not None:
         near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        return sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
-    fields: list[RatioField] = []
+        fields = sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
+        return tuple(on_sheet(request, field) for field in fields)
+    # The model knows no other start than the rectangle, and where mouths of that are.
+    draw = (
+        sample_sheets
+        if model.moves_mouths and request.rim is RimRule.FREE and request.start.is_plain
+        else sample_fields
+    )
+    designs: list[Sheet | RatioField] = []
     for pose, share in symmetric_shares(request, count):
         target = fit_target(request, pose.symmetry)
-        fields += sample_fields(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
-    if len(fields) < count:
-        fields += sample_fields(model, request.target, grid, count - len(fields), seed, steps, phi)
-    return tuple(fields)
+        designs += draw(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
+    if len(designs) < count:
+        designs += draw(model, request.target, grid, count - len(designs), seed, steps, phi)
+    return tuple(on_sheet(request, design) for design in designs)
 
 
 def fits_from_uniform(request: Request) -> list[GuidedTask]:
@@ -242,13 +254,16 @@ def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, 
     return [(pose, share) for pose, share in zip(poses, each, strict=True) if share]
 
 
-def on_sheet(request: Request, field: RatioField) -> Sheet:
-    """The sheet of a sample: that of the design that samples are near, with other ratios, else the uniform sheet.
+def on_sheet(request: Request, sample: Sheet | RatioField) -> Sheet:
+    """The sheet of a sample that is not one: that of the design that samples are near, with other ratios, else the
+    uniform sheet.
 
     The model knows no hollows: where the start has some, the sheet is unfolded; one that stays folded is not feasible.
     """
+    if isinstance(sample, Sheet):
+        return sample
     flat = request.uniform if request.near is None or request.rim is RimRule.EVEN else request.near
-    sheet = flat.with_field(field)
+    sheet = flat.with_field(sample)
     try:
         return unfolded(sheet, free_rim=request.rim is RimRule.FREE)
     except SheetError:

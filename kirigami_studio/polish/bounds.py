@@ -12,13 +12,10 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet
 from kirigami_studio.lattice.symmetry import GridSymmetry
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.sensitivity import OutlineModel
-
-#: How far (unit cells) a fit may move a mouth from its even place: rim edges stay longer than 0.3 cells.
-RIM_REACH = 0.7
 
 
 @dataclass(frozen=True, slots=True, eq=False)

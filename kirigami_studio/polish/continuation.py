@@ -30,14 +30,13 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField, check_grid
-from kirigami_studio.lattice.sheet import Rim, Sheet, resized_sheet
+from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet, resized_sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.rounding import rounded
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.turning import turn_back
-from kirigami_studio.polish.bounds import RIM_REACH
 from kirigami_studio.polish.flat_sheet import can_have, first_sheet, uniform_sheet
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish

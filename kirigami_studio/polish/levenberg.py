@@ -128,7 +128,7 @@ def polish(
     least_panel : float, unit cells
         No panel edge or neck of the fitted sheet is smaller, wherever a sheet near by allows that; 0 for any size.
     free_rim : bool
-        Whether the mouths move too, by at most :data:`~kirigami_studio.polish.bounds.RIM_REACH` from their even places.
+        Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places.
     symmetry : Symmetry, optional
         The sheet keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1

@@ -20,7 +20,6 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.lab.benchmark.variants_suite import difference
-from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_image import outline_of_mask
 from kirigami_studio.pipeline.request import Request, as_in_paper
@@ -159,7 +158,7 @@ def measure_robustness(
                 asked = Request(target, grid, k=1, seed=seed, variant=variant, steps=steps, polish=polish)
                 disturbed = as_in_paper(asked)
                 wanted = replace(disturbed, target=clean, polish=0)
-                sheets = [best_of(disturbed).best.sheet] if polish else [Sheet(field) for field in sample(disturbed)]
+                sheets = [best_of(disturbed).best.sheet] if polish else sample(disturbed)
                 row.append(scored(wanted, sheets, 0)[0].score)
                 report(done := done + 1, total)
             scores[name].append(row)

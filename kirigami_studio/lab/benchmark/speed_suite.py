@@ -132,7 +132,7 @@ def polish_timings() -> dict[str, object]:
     """
     target = load("heart")
     request = as_in_paper(Request(target, k=K, polish=STEPS))
-    sheets = [Sheet(field) for field in sample(request)]
+    sheets = sample(request)
     with one_blas_thread():
         samples = scored(request, sheets, 0)
         seconds = [_fit_seconds(candidate, target) for candidate in samples[:8]]

@@ -482,6 +482,24 @@ def designs(arguments: argparse.Namespace) -> int:
     return _print_figures(arguments, line, figures)
 
 
+def beginnings(arguments: argparse.Namespace) -> int:
+    """Designs from samples and from the uniform sheet, best of a few each."""
+    from kirigami_studio.lab.benchmark.beginnings_suite import measure_beginnings
+
+    line, ways = ProgressLine(), tuple(dict.fromkeys(arguments.ways))
+    (outlines,) = _target_sets(arguments, exact=False).values()
+    figures = measure_beginnings(
+        outlines,
+        ways,
+        arguments.k,
+        arguments.polish,
+        arguments.seed,
+        _shown_on(line, "Targets"),
+        workers(arguments),
+    )
+    return _print_figures(arguments, line, figures)
+
+
 def starts(arguments: argparse.Namespace) -> int:
     """Targets designed from other sheets than rectangles, and random sheets of the same starts; 1 when one is off."""
     from kirigami_studio.lab.benchmark.start_suite import design_pairs, pair_figures, random_sheets

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -347,7 +348,14 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
     from kirigami_studio.lab.training.validation import preference_figures
 
     seconds = seconds_allowed(arguments)
-    for option, share in (("--other-sheets", arguments.other_sheets), ("--pictured", arguments.pictured)):
+    shares = {
+        "--other-sheets": arguments.other_sheets,
+        "--pictured": arguments.pictured,
+        "--free-rims": arguments.free_rims,
+        "--symmetric": arguments.symmetric,
+        "--drawn-share": arguments.drawn_share,
+    }
+    for option, share in shares.items():
         if share > 1.0:
             raise UsageError("training.share_above_one", option=option, share=share)
     prior = starting_model(arguments.start)
@@ -358,12 +366,17 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         steps=arguments.steps,
         batch=arguments.batch,
         drawn=arguments.drawn,
+        drawn_share=arguments.drawn_share,
         learning_rate=arguments.learning_rate,
         variation_weight=arguments.variation_weight,
+        evenness_weight=arguments.evenness_weight,
         anchor_weight=arguments.anchor_weight,
         other_sheets=arguments.other_sheets,
         pictured_share=arguments.pictured,
+        free_rims=arguments.free_rims,
+        symmetric_share=arguments.symmetric,
         seed=arguments.seed,
+        shape=replace(AlignSettings(prior.digest).shape, rims=arguments.free_rims > 0.0),
     )
     folder = Path(arguments.out)
 

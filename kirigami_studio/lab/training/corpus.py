@@ -15,7 +15,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.generator.conditioning import normalised, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
-from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.batched import BatchedLattice, deployed
 
 FieldSampler = Callable[[int, int, int, Generator], FloatArray]
 
@@ -170,5 +170,10 @@ def zero_outline(lattice: BatchedLattice, z: Tensor) -> Tensor:
 
 def deployed_outline(lattice: BatchedLattice, grid: DeployedGrid, z: Tensor) -> Tensor:
     """Outline of fields z (B, m, n) at the sheet's angle, zipped edge hinges left out: (B, L, 2), differentiable."""
-    outline = lattice.outline(torch.pow(10.0, z), grid.phi)
+    return outline_of_nodes(lattice, grid, lattice.compact(torch.pow(10.0, z)))
+
+
+def outline_of_nodes(lattice: BatchedLattice, grid: DeployedGrid, nodes: Tensor) -> Tensor:
+    """The same of sheets with compact nodes (B, N, 2)."""
+    outline = deployed(*lattice.outline_parts(nodes), grid.phi)
     return outline[:, lattice.unzipped] if grid.zipped else outline

@@ -398,6 +398,6 @@ def grown_state(network: Network, shape: Shape) -> dict[str, Tensor]:
 def _sees_more(old: Shape, new: NetworkShape) -> bool:
     if not isinstance(old, NetworkShape):
         return False
-    senses = {"direction": new.direction, "preference": new.preference, "sheets": new.sheets}
+    senses = {"direction": new.direction, "preference": new.preference, "sheets": new.sheets, "rims": new.rims}
     lost = any(getattr(old, name) and not value for name, value in senses.items())
     return replace(old, **senses) == new and not lost

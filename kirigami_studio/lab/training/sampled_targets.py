@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 import torch
 from torch import Tensor
 
@@ -20,7 +21,8 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.generator.conditioning import contour_points, normalised, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.velocity import Code, Network, joined
-from kirigami_studio.lab.training.drawn_shapes import drawn_shape
+from kirigami_studio.lab.training.drawn_shapes import SMALLEST_COMPACTNESS, drawn_shape
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.editing import resampled
 from kirigami_studio.outlines.trace import trace
 
@@ -34,6 +36,21 @@ def drawn_polygons(count: int, seed: int) -> Tensor:
     """Shapes that people would draw, as polygons of equally many points: (count, L, 2)."""
     shapes = [resampled(drawn_shape(seed, number), DRAWN_POINTS) for number in range(count)]
     return torch.tensor(np.stack(shapes), dtype=torch.float32)
+
+
+def symmetric_polygons(polygons: Tensor, symmetry: Symmetry) -> Tensor:
+    """Each shape (N, L, 2) united with its images, where that is one compact shape: (N', L, 2), unit area."""
+    moves = [move.matrix for move in symmetry.moves]
+    found = []
+    for points in polygons.cpu().double().numpy():
+        images = [shapely.make_valid(shapely.Polygon(points @ move)) for move in (np.eye(2), *moves)]
+        whole = shapely.union_all(images)
+        if isinstance(whole, shapely.Polygon):
+            whole = shapely.Polygon(whole.exterior)
+            if 4.0 * math.pi * whole.area >= SMALLEST_COMPACTNESS * whole.length**2:
+                ring = torch.tensor(shapely.get_coordinates(shapely.orient_polygons(whole))[:-1])
+                found.append(contour_points(ring[None], polygons.shape[1])[0])
+    return normalised(torch.stack(found)).to(polygons)
 
 
 def pictured(polygons: Tensor, count: int, generator: torch.Generator) -> Tensor:
@@ -82,6 +99,8 @@ def _redrawn(polygon: FloatArray, size: int, angle: float) -> FloatArray:
 LOSS_POINTS = 384
 #: Contour points of a target as it arrives, about a pixel apart on a mask of 128.
 SEEN_POINTS = 384
+#: Drawn shapes that are made symmetric, most of all.
+SYMMETRIC_SHAPES = 2000
 #: Shares of the rows that stand upright and in another quarter turn; the rest lie in any pose.
 UPRIGHT, QUARTERS = 0.5, 0.25
 
@@ -144,13 +163,18 @@ class TargetSource:
         self.vertex_noise, self.shift_noise, self.pictured_share = vertex_noise, shift_noise, pictured_share
         self.generator, self.device = generator, device
         self.drawn = normalised(drawn_polygons(drawn, seed)).to(device) if drawn else None
+        self._pools: dict[Symmetry, Tensor] = {}
 
-    def targets(self, silhouettes: Tensor, drawn: int) -> SampledTargets:
-        """All of ``silhouettes`` (B, L, 2), unit area about the centroid, and ``drawn`` drawn shapes, if any."""
+    def targets(self, silhouettes: Tensor, drawn: int, symmetry: Symmetry | None = None) -> SampledTargets:
+        """All of ``silhouettes`` (B, L, 2), unit area about the centroid, and ``drawn`` drawn shapes, if any.
+
+        Where a ``symmetry`` is named, the silhouettes have it as they lie, and drawn shapes are made to.
+        """
         pools = [silhouettes]
         if self.drawn is not None and drawn:
-            pools.append(self.drawn[self._indices(len(self.drawn), drawn)])
-        clean = [self._posed(pool) for pool in pools]
+            pool = self.drawn if symmetry is None else self._symmetric(symmetry)
+            pools.append(pool[self._indices(len(pool), drawn)])
+        clean = [self._posed(pool) if symmetry is None else self._turned(pool, symmetry) for pool in pools]
         return SampledTargets(
             tuple(self._disturbed(part) for part in clean),
             tuple(self.shift_noise * self._normal(part.shape[:1]) for part in clean),
@@ -174,6 +198,20 @@ class TargetSource:
         quarter = (angle / (0.5 * math.pi)).floor() * (0.5 * math.pi)
         other = torch.where(kind < UPRIGHT + QUARTERS, quarter, angle)
         return turned(upright, torch.where(kind < UPRIGHT, torch.zeros_like(angle), other))
+
+    def _symmetric(self, symmetry: Symmetry) -> Tensor:
+        """The pool of drawn shapes of a symmetry, made when it is first asked for."""
+        assert self.drawn is not None
+        if symmetry not in self._pools:
+            self._pools[symmetry] = symmetric_polygons(self.drawn[:SYMMETRIC_SHAPES], symmetry)
+        return self._pools[symmetry]
+
+    def _turned(self, polygons: Tensor, symmetry: Symmetry) -> Tensor:
+        """As candidates that keep a symmetry see a target: either way up along an axis, in any pose about a centre."""
+        if not symmetry.mirrors:
+            return self._posed(polygons)
+        other = 0.5 * math.pi if symmetry is Symmetry.TWO_MIRRORS else math.pi
+        return turned(polygons, other * (self._uniform(len(polygons)) < 0.5))
 
     def _indices(self, size: int, count: int) -> Tensor:
         return torch.randint(size, (count,), generator=self.generator, device=self.device)

@@ -31,6 +31,7 @@ from kirigami_studio.lab.training.ranks import Ranks
 from kirigami_studio.lab.training.sampled_targets import TargetSource
 from kirigami_studio.lab.training.train_flow import LARGEST_GRADIENT, schedule
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.symmetry import Symmetry
 
 #: The weights of preference and sheet begin at zero and have few inputs: they learn this much faster than the others.
 NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
@@ -63,6 +64,8 @@ class AlignSettings:
     learning_rate, average_decay : float
     variation_weight : float
         Cost of the paper's TV(x) / (m n) at preference 1, in units of area; proportional below.
+    evenness_weight : float
+        The same of the coefficient of variation of panel areas.
     anchor_weight : float
         Cost of the mean squared distance of z to the prior's sample.
     anchored_every : int
@@ -76,6 +79,10 @@ class AlignSettings:
         Standard deviation of the contour's start, in point spacings.
     other_sheets : float
         Share of the steps that draw on another sheet than the network's own.
+    free_rims : float
+        Share of the steps that draw on sheets whose rim is free; a network with ``rims`` is told so.
+    symmetric_share : float
+        Share of the steps that draw within a symmetry of the grid, where it has any.
     seed : int
     shape : NetworkShape
     """
@@ -90,12 +97,15 @@ class AlignSettings:
     learning_rate: float = 2e-4
     average_decay: float = 0.998
     variation_weight: float = 0.015
+    evenness_weight: float = 0.0
     anchor_weight: float = 0.5
     anchored_every: int = 2
     vertex_noise: float = 0.01
     pictured_share: float = 0.5
     shift_noise: float = 0.3
     other_sheets: float = 0.5
+    free_rims: float = 0.0
+    symmetric_share: float = 0.0
     seed: int = 0
     shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
 
@@ -208,7 +218,7 @@ class AlignRun:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
         grid = self._grid()
         drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
-        targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn)
+        targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn, grid.symmetry)
         preference = self._preferences(self.batch)
         cells = settings.shape.rows * settings.shape.columns
         noise = torch.randn((self.batch, cells), generator=self.generator, device=self.device)
@@ -219,16 +229,16 @@ class AlignRun:
             code = targets.code(self.network, grid, preference)
             designs = trail(self.network, noise, code, settings.sampling_steps)
             terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
-            z = designs[-1]
+            z = designs[-1][:, : grid.cells]
             anchored = slice(0, None, settings.anchored_every)
             with torch.no_grad():
                 code = targets.code(self.prior, grid, preference).picked(anchored)
-                reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps).clamp(
-                    -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT
-                )
+                reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps)
+                reference = reference[:, : grid.cells].clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
             anchor = (z[anchored] - reference).square().mean()
             parts["match"] = float(terms.match.mean().detach())
             parts["variation"] = float(terms.variation.mean().detach())
+            parts["unevenness"] = float(terms.unevenness.mean().detach())
             parts["anchor"] = float(anchor.detach())
             return self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
 
@@ -247,18 +257,23 @@ class AlignRun:
 
     def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
         settings = self.settings
-        smooth = settings.variation_weight * preference * terms.variation
-        return (terms.match + smooth + terms.excess).mean() + settings.anchor_weight * anchor
+        calm = settings.variation_weight * terms.variation + settings.evenness_weight * terms.unevenness
+        return (terms.match + preference * calm + terms.excess).mean() + settings.anchor_weight * anchor
 
     def _grid(self) -> DeployedGrid:
-        """The grid and angle of this step: the network's own, or any of 6 to 16 voids each way and any useful angle."""
-        settings, own = self.settings, DeployedGrid(self.settings.shape.rows, self.settings.shape.columns)
+        """The grid, angle and rim of this step: the network's own grid, or any of 6 to 16 voids each way and any useful
+        angle.
+        """
+        settings, shape = self.settings, self.settings.shape
         rng = np.random.default_rng((settings.seed, self.step))
-        if rng.random() >= settings.other_sheets:
-            return own
-        rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
-        phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
-        return DeployedGrid(rows, columns, phi)
+        rows, columns, phi = shape.rows, shape.columns, 0.0
+        if rng.random() < settings.other_sheets:
+            rows, columns = (int(count) for count in rng.integers(GRIDS[0], GRIDS[1] + 1, size=2))
+            phi = 0.0 if rng.random() < FLAT_SHARE else float(rng.uniform(0.0, LARGEST_PHI))
+        free, kept = bool(rng.random() < settings.free_rims), bool(rng.random() < settings.symmetric_share)
+        found = [symmetry for symmetry in Symmetry if symmetry.fits(rows, columns)] if kept else []
+        symmetry = found[int(rng.integers(len(found)))] if found else None
+        return DeployedGrid(rows, columns, phi, symmetry, free)
 
     def _lattice(self, grid: DeployedGrid) -> BatchedLattice:
         counts = grid.rows, grid.columns
@@ -269,7 +284,10 @@ class AlignRun:
     def _silhouettes(self, grid: DeployedGrid, count: int) -> Tensor:
         """What random fields of a sheet show: (B, L, 2), unit area about the centroid."""
         rng = np.random.default_rng((self.seed, 1, self.step))
-        fields = torch.tensor(mixed_fields(count, grid.rows, grid.columns, rng), dtype=torch.float32)
+        drawn = mixed_fields(count, grid.rows, grid.columns, rng)
+        if grid.symmetry is not None:
+            drawn = grid.symmetry.symmetric(drawn)
+        fields = torch.tensor(drawn, dtype=torch.float32)
         with torch.no_grad():
             return normalised(deployed_outline(self._lattice(grid), grid, fields.to(self.device)))
 

@@ -13,11 +13,13 @@ from kirigami_studio.evaluate.total_variation import total_variation
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import normalised, square_pose, turned
+from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Network, Velocity
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
-from kirigami_studio.lab.training.corpus import zero_outline
+from kirigami_studio.lab.training.corpus import outline_of_nodes, zero_outline
 from kirigami_studio.lab.training.fields import released_fields, sobol_fields, structured_fields
+from kirigami_studio.lab.training.preference_loss import area_variation
 from kirigami_studio.lab.training.preference_loss import total_variation as batched_variation
 from kirigami_studio.lab.training.sampled_targets import drawn_polygons
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -154,7 +156,8 @@ def preference_figures(
     -------
     figures : dict
         For each family and preference p ``FAMILY_iou_p``, mean IoU as the network sees the target, upright;
-        ``FAMILY_tv_p``, the paper's TV / (m n); ``FAMILY_spread_p``, standard deviation of z among the samples.
+        ``FAMILY_tv_p``, the paper's TV / (m n); ``FAMILY_cv_p``, coefficient of variation of panel areas;
+        ``FAMILY_spread_p``, standard deviation of z among the samples.
     """
     rows, columns = network.shape.rows, network.shape.columns
     device = next(network.parameters()).device
@@ -176,12 +179,15 @@ def preference_figures(
                 asked = torch.full((count,), preference, device=device)
                 code = network.code(seen, preference=asked).repeated(samples)
                 z = integrate(network, noise, code, steps).clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
-                made = normalised(zero_outline(lattice, z.view(-1, rows, columns)))
-                variation = batched_variation(torch.pow(10.0, z.view(-1, rows, columns)))
+                ratio = torch.pow(10.0, z.view(-1, rows, columns))
+                nodes = lattice.compact(ratio)
+                made = normalised(outline_of_nodes(lattice, DeployedGrid(rows, columns), nodes))
+                variation = batched_variation(ratio)
                 figures[f"{family}_iou_{preference:g}"] = float(
                     _ious(made, seen.repeat_interleave(samples, dim=0)).mean()
                 )
                 figures[f"{family}_tv_{preference:g}"] = float(variation.mean())
+                figures[f"{family}_cv_{preference:g}"] = float(area_variation(lattice, nodes).mean())
                 spread = z.view(count, samples, -1).std(dim=1).mean()
                 figures[f"{family}_spread_{preference:g}"] = float(spread)
     return figures

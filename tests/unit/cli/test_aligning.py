@@ -93,7 +93,8 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     monkeypatch.setattr("kirigami_studio.lab.training.train_aligned.AlignSettings", partial(AlignSettings, shape=shape))
     run = tmp_path / "run"
     words = ["train", "align", "--start", str(weights), "--steps", "2", "--batch", "4", "--drawn", "3",
-             "--learning-rate", "0.01", "--device", "cpu", "--out", str(run)]  # fmt: skip
+             "--learning-rate", "0.01", "--evenness-weight", "0.3", "--free-rims", "0.5", "--symmetric", "0.5",
+             "--device", "cpu", "--out", str(run)]  # fmt: skip
     # Stopped at once, which means after one step.
     assert main([*words, "--minutes", "0.00001", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["record"]["step"] == 1
@@ -102,14 +103,15 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     answered = json.loads(capsys.readouterr().out)
     assert answered["record"]["step"] == 2
     wanted = {f"{family}_{figure}_{preference}" for family in ("structured", "sobol", "drawn")
-              for figure in ("iou", "tv", "spread") for preference in ("0", "0.35", "0.9")}  # fmt: skip
-    assert wanted | {"loss", "match", "variation", "anchor"} <= answered["record"].keys()
+              for figure in ("iou", "tv", "cv", "spread") for preference in ("0", "0.35", "0.9")}  # fmt: skip
+    assert wanted | {"loss", "match", "variation", "unevenness", "anchor"} <= answered["record"].keys()
     assert answered["record"]["structured_tv_0.9"] < answered["record"]["structured_tv_0"]
     assert [Path(name).name for name in answered["files"]] == ["aligned.safetensors"]
     assert variants(run) == tuple(VARIANTS) == ("accuracy", "balanced", "regularity")
     models = [load_model(name, run) for name in VARIANTS]
     assert [model.preference for model in models] == list(VARIANTS.values()) == [0.0, 0.35, 0.9]
     assert len({model.digest for model in models}) == 1
+    assert all(model.moves_mouths for model in models)
     about = json.loads((run / "manifest.json").read_text())["variants"]["balanced"]["about"]
     assert about["settings"]["prior"] == load_model("prior", weights.parent).digest
     assert about["validation"]["step"] == 2
@@ -132,6 +134,8 @@ def test_that_a_prior_is_aligned_to_three_variants_of_one_file_and_resumed(
     [
         (1, ["--start", "nowhere/prior.safetensors"], "nowhere"),
         (2, ["--other-sheets", "2"], "--other-sheets is a share from 0 to 1, got 2"),
+        (2, ["--free-rims", "1.5"], "--free-rims is a share from 0 to 1, got 1.5"),
+        (2, ["--symmetric", "2"], "--symmetric is a share from 0 to 1, got 2"),
         (2, ["--minutes", "0"], "--minutes must be above 0, got 0"),
         (2, ["--minutes", "-3"], "--minutes must be above 0, got -3"),
         (2, ["--device", "abacus"], "abacus"),

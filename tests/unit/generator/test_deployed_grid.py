@@ -11,6 +11,7 @@ import torch
 from kirigami_studio.generator.deployed_grid import DeployedGrid, grid_transfer
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import RIM_REACH, rim_table
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
@@ -113,3 +114,16 @@ def test_that_a_carrier_made_while_sampling_serves_training_too() -> None:
     z = torch.randn(2, 16, requires_grad=True)
     transfer.down(transfer.up(z)).square().sum().backward()
     assert z.grad is not None and float(z.grad.abs().max()) > 0
+
+
+def test_that_a_free_rim_adds_evenly_spaced_mouths_which_are_bounded_like_the_ratios() -> None:
+    grid = DeployedGrid(4, 7, free_rim=True)
+    transfer = grid_transfer((6, 5), grid, CPU)
+    assert grid.cells == 28
+    assert grid.mouths == rim_table(4, 7).mouths.size > 0
+    assert DeployedGrid(4, 7).mouths == 0
+    design = transfer.on_grid(torch.randn(2, 30, generator=torch.Generator().manual_seed(0)))
+    assert design.shape == (2, 28 + grid.mouths)
+    assert not design[:, 28:].any()
+    bounded = transfer.bounded(3.0 * torch.ones_like(design))
+    assert bool((bounded[:, :28] == 1.0).all()) and bool((bounded[:, 28:] == RIM_REACH).all())

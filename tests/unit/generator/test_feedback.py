@@ -11,6 +11,7 @@ from kirigami_studio.generator.feedback import CHUNK, DIRECTION_SCALE, GAP_SCALE
 from kirigami_studio.generator.feedback import _normalised_slopes as normalised_slopes
 from kirigami_studio.lab.training.corpus import deployed_outline
 from kirigami_studio.lattice.batched import BatchedLattice, BatchedSlopes
+from kirigami_studio.lattice.symmetry import Symmetry
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
@@ -140,3 +141,39 @@ def test_that_slopes_of_unit_area_outlines_are_those_of_finite_differences() -> 
 def _area(outline: torch.Tensor) -> torch.Tensor:
     after = outline.roll(-1, dims=1)
     return 0.5 * (outline[..., 0] * after[..., 1] - outline[..., 1] * after[..., 0]).sum()
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.7])
+def test_that_free_mouths_bring_an_outline_nearer_than_ratios_alone(phi: float) -> None:
+    even, free = (DeployedGrid(5, 6, phi, free_rim=free) for free in (False, True))
+    generator = torch.Generator().manual_seed(3)
+    offsets = 0.3 * torch.randn((6, free.mouths), generator=generator)
+    lattice = BatchedLattice(5, 6)
+    z = smooth_noise(6, 30, 0.2)
+    outline = lattice.outline(torch.pow(10.0, z.view(-1, 5, 6)), phi, offsets)
+    loop = contour_points(normalised(outline[:, lattice.unzipped] if even.zipped else outline), 960)
+
+    def left(grid: DeployedGrid, design: torch.Tensor) -> float:
+        """Mean gap after one step."""
+        feedback = Feedback(OWN, grid, CPU)
+        seen = feedback(design, loop, True)
+        assert seen.features.shape[1] == Feedback.width(*OWN, 960, True)
+        after = feedback(design + seen.direction, loop, True)
+        return float(after.features[:, PLACES:-36].abs().mean())
+
+    began = Feedback(OWN, even, CPU)(z, loop, True).features[:, PLACES:-36].abs().mean()
+    with_mouths = left(free, torch.cat([z, torch.zeros_like(offsets)], dim=1))
+    assert with_mouths < 0.4 * float(began)
+    assert with_mouths < 0.85 * left(even, z)
+
+
+def test_that_the_direction_of_a_symmetric_sheet_moves_its_mouths_symmetrically() -> None:
+    symmetry = Symmetry.LEFT_RIGHT
+    grid = DeployedGrid(4, 5, 0.0, symmetry, free_rim=True)
+    z = torch.tensor(symmetry.symmetric(smooth_noise(3, 20).view(3, 4, 5).numpy())).flatten(1)
+    design = torch.cat([z, torch.zeros(3, grid.mouths)], dim=1)
+    target = own_loop(-z, 192, DeployedGrid(4, 5))
+    seen = Feedback(OWN, grid, CPU)(design, target, True, torch.tensor([0.0, 1e-3, 1e-3])).direction
+    offsets = seen[:, 20:].numpy()
+    assert abs(offsets).max() > 0.05
+    assert symmetry.on(4, 5).symmetric_offsets(offsets) == pytest.approx(offsets, abs=1e-4)

@@ -21,6 +21,7 @@ from kirigami_studio.generator.sampler import (
     pose_angle,
     posed,
     sample_fields,
+    sample_sheets,
     turned_target,
 )
 from kirigami_studio.generator.weights import Model, load_model
@@ -28,7 +29,8 @@ from kirigami_studio.lab.training.learner import grown_state
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.resize import resize_fields
-from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.lattice.sheet import RIM_REACH
+from kirigami_studio.lattice.symmetry import Symmetry, has_symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 
@@ -217,3 +219,23 @@ def test_that_a_grid_without_the_symmetry_is_refused(model: Model) -> None:
     with pytest.raises(UsageError) as caught:
         sample_fields(model, load("heart"), (10, 10), 1, 0, 4, symmetry=Symmetry.LEFT_RIGHT)
     assert caught.value.code == "symmetry.not_on_grid"
+
+
+def test_that_sheets_with_a_free_rim_match_better_and_keep_within_its_reach(corrector: Model) -> None:
+    star, grid = load("star"), (10, 10)
+    fields = sample_fields(corrector, star, grid, 8, 0, 4)
+    few, many = (sample_sheets(corrector, star, grid, k, 0, 4) for k in (3, 8))
+    assert many[:3] == few
+    assert not any(sheet.has_even_rim for sheet in many)
+    assert max(np.abs(sheet.rim.offsets(*grid)).max() for sheet in many) <= RIM_REACH + 1e-9
+    even, free = (np.mean([evaluate(deploy(one), star).iou_exact for one in drawn]) for drawn in (fields, many))
+    assert free > even + 0.01
+
+
+@pytest.mark.parametrize(("symmetry", "grid"), SYMMETRIES)
+def test_that_sheets_with_a_free_rim_keep_a_symmetry_exactly(
+    corrector: Model, symmetry: Symmetry, grid: tuple[int, int]
+) -> None:
+    for sheet in sample_sheets(corrector, load("plus"), grid, 3, 0, 4, symmetry=symmetry):
+        assert has_symmetry(sheet, symmetry)
+        assert not sheet.has_even_rim

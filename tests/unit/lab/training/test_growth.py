@@ -16,7 +16,7 @@ from kirigami_studio.lab.training.learner import grown_state
 
 pytestmark = pytest.mark.torch
 OWN = DeployedGrid(4, 4)
-ALL = {"direction": True, "preference": True, "sheets": True}
+ALL = {"direction": True, "preference": True, "sheets": True, "rims": True}
 
 
 def grown(network: VelocityNetwork, shape: NetworkShape) -> VelocityNetwork:
@@ -87,6 +87,7 @@ def test_that_the_network_it_grew_from_is_not_written_to() -> None:
         ({}, {"direction": False}), ({"preference": True}, {"preference": False}),
         ({"sheets": True}, {"sheets": False}),
         ({"direction": False, "sheets": True}, {"direction": True, "sheets": False}),
+        ({"sheets": True, "rims": True}, {"rims": False}),
     ],
 )  # fmt: skip
 def test_that_shapes_that_differ_elsewhere_or_see_less_are_refused(

@@ -8,12 +8,15 @@ import pytest
 import torch
 from small_networks import random_fields, silhouettes
 
+from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.total_variation import total_variation
-from kirigami_studio.generator.conditioning import contour_points
+from kirigami_studio.generator.conditioning import contour_points, normalised
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lab.training.preference_loss import SOFTNESS, boundary_gap, preference_terms, trail_gap
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
 
 pytestmark = pytest.mark.torch
 GRIDS = [DeployedGrid(4, 4), DeployedGrid(5, 6), DeployedGrid(6, 5, 0.7)]
@@ -115,11 +118,11 @@ def test_that_what_lies_outside_the_bounds_costs_and_is_led_back() -> None:
     assert float(inside.abs().min()) > 0
 
 
-def test_that_variation_and_match_have_gradients_that_lower_them() -> None:
+def test_that_variation_unevenness_and_match_have_gradients_that_lower_them() -> None:
     grid = GRIDS[2]
     z = random_fields(grid, 4).requires_grad_(True)
     loop = contour_points(silhouettes(random_fields(grid, 4, seed=5), grid), 384)
-    for part in ("match", "variation"):
+    for part in ("match", "variation", "unevenness"):
         before = getattr(preference_terms(decoder(grid), grid, z, loop), part)
         (slope,) = torch.autograd.grad(before.sum(), z)
         step = 0.02 * slope / slope.norm(dim=1, keepdim=True)
@@ -141,3 +144,54 @@ def test_that_the_fields_before_the_last_count_by_themselves() -> None:
     alone, nothing = trail_gap(decoder(grid), grid, [last], loop)
     torch.testing.assert_close(alone.match, terms.match)
     assert float(nothing) == 0.0
+
+
+FREE = [DeployedGrid(5, 6, free_rim=True), DeployedGrid(6, 5, 0.7, free_rim=True)]
+
+
+def designs(grid: DeployedGrid, count: int, seed: int = 0) -> torch.Tensor:
+    """Random fields and mouths of a sheet with a free rim: (count, m * n + R)."""
+    generator = torch.Generator().manual_seed(seed + 100)
+    offsets = 0.6 * (2.0 * torch.rand((count, grid.mouths), generator=generator) - 1.0)
+    return torch.cat([random_fields(grid, count, seed=seed).clamp(-0.9, 0.9), offsets], dim=1)
+
+
+def sheet_of(design: torch.Tensor, grid: DeployedGrid) -> Sheet:
+    numbers = design.double().numpy()
+    field = RatioField.from_log10(numbers[: grid.cells].reshape(grid.rows, grid.columns))
+    return Sheet(field, Rim.moved(grid.rows, grid.columns, numbers[grid.cells :]))
+
+
+@pytest.mark.parametrize("grid", FREE, ids=str)
+def test_that_a_free_rim_takes_part_in_match_and_unevenness(grid: DeployedGrid) -> None:
+    made = designs(grid, 3)
+    deployments = [deploy(sheet_of(one, grid)) for one in made]
+    outlines = [torch.tensor(one.outline(grid.phi), dtype=torch.float32)[None] for one in deployments]
+    loop = torch.cat([contour_points(normalised(outline), 4000) for outline in outlines])
+    terms = preference_terms(decoder(grid), grid, made, loop)
+    assert float(terms.match.max()) < 1e-3
+    assert terms.unevenness.tolist() == pytest.approx([evenness(one).area_cv for one in deployments], rel=1e-3)
+    moved = made.clone()
+    moved[:, grid.cells :] *= -1.0
+    assert float(preference_terms(decoder(grid), grid, moved, loop).match.min()) > 0.01
+
+
+def test_that_the_uniform_sheet_is_even_and_has_no_slope_to_nowhere() -> None:
+    z = torch.zeros(2, 20).requires_grad_(True)
+    grid = DeployedGrid(4, 5)
+    terms = preference_terms(decoder(grid), grid, z, contour_points(silhouettes(z.detach(), grid), 384))
+    assert float(terms.unevenness.detach().max()) < 2e-3
+    terms.unevenness.sum().backward()
+    assert z.grad is not None and bool(torch.isfinite(z.grad).all())
+
+
+def test_that_designs_before_the_last_have_its_mouths() -> None:
+    grid = FREE[0]
+    first, last = designs(grid, 2, seed=1), designs(grid, 2, seed=2)
+    loop = contour_points(silhouettes(random_fields(grid, 2, seed=3), grid), 384)
+    _, early = trail_gap(decoder(grid), grid, [first, last], loop)
+    there = torch.cat([first[:, : grid.cells], last[:, grid.cells :]], dim=1)
+    expected = float(preference_terms(decoder(grid), grid, there, loop).match.mean())
+    assert float(early) == pytest.approx(expected, rel=1e-5)
+    alone = float(preference_terms(decoder(grid), grid, first, loop).match.mean())
+    assert float(early) != pytest.approx(alone, rel=1e-2)

@@ -5,13 +5,21 @@ from __future__ import annotations
 import math
 
 import pytest
+import shapely
 import torch
 from small_networks import random_fields, random_network, silhouettes
 
 from kirigami_studio.generator.conditioning import contour_points, square_pose, turned
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.lab.training.preference_loss import boundary_gap
-from kirigami_studio.lab.training.sampled_targets import LOSS_POINTS, SEEN_POINTS, TargetSource
+from kirigami_studio.lab.training.sampled_targets import (
+    LOSS_POINTS,
+    SEEN_POINTS,
+    TargetSource,
+    drawn_polygons,
+    symmetric_polygons,
+)
+from kirigami_studio.lattice.symmetry import Symmetry
 
 pytestmark = pytest.mark.torch
 CPU = torch.device("cpu")
@@ -118,3 +126,26 @@ def test_that_only_a_share_of_the_targets_comes_from_a_picture() -> None:
     exact = boundary_gap(mixed.seen[0], mixed.loop) < 1e-4
     assert float(exact.float().mean()) == pytest.approx(0.7, abs=0.1)
     assert clean.seen[0].shape == mixed.seen[0].shape == (200, SEEN_POINTS, 2)
+
+
+@pytest.mark.parametrize("symmetry", list(Symmetry))
+def test_that_drawn_shapes_made_symmetric_equal_their_images(symmetry: Symmetry) -> None:
+    drawn = drawn_polygons(30, 3)
+    made = symmetric_polygons(drawn, symmetry)
+    assert 10 < len(made) <= 30
+    assert made.shape[1:] == drawn.shape[1:]
+    for points in made.double().numpy():
+        whole = shapely.Polygon(points)
+        assert whole.is_valid and whole.exterior.is_ccw
+        assert whole.area == pytest.approx(1.0, rel=1e-3)
+        for move in symmetry.moves:
+            image = shapely.Polygon(points @ move.matrix)
+            assert whole.intersection(image).area / whole.union(image).area > 0.98
+
+
+@pytest.mark.parametrize("symmetry", [Symmetry.LEFT_RIGHT, Symmetry.TWO_MIRRORS])
+def test_that_targets_of_a_mirror_lie_along_its_axis(symmetry: Symmetry) -> None:
+    targets = source(20).targets(symmetric_polygons(drawn_polygons(8, 5), symmetry), 6, symmetry)
+    for points in targets.loop.double().numpy():
+        ours, mirrored = (shapely.Polygon(loop).buffer(0.0) for loop in (points, points * [-1.0, 1.0]))
+        assert ours.intersection(mirrored).area / ours.union(mirrored).area > 0.98

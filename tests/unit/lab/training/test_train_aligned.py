@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 import torch
 from small_networks import SMALL, random_fields, random_network, silhouettes
 
@@ -20,6 +21,7 @@ from kirigami_studio.generator.weights import Model, load_model, store_model
 from kirigami_studio.lab.training.preference_loss import PreferenceTerms, trail_gap
 from kirigami_studio.lab.training.train_aligned import GRIDS, LARGEST_PHI, AlignRun, AlignSettings, train_aligned
 from kirigami_studio.lattice.batched import BatchedLattice
+from kirigami_studio.lattice.symmetry import Symmetry
 from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
@@ -39,8 +41,15 @@ def prior(tmp_path_factory: pytest.TempPathFactory) -> Model:
 def tiny(prior: Model) -> AlignSettings:
     return AlignSettings(
         prior=prior.digest, steps=6, batch=8, drawn=4, learning_rate=0.01, average_decay=0.5,
-        shape=replace(SMALL, preference=True, sheets=True),
+        evenness_weight=0.3, free_rims=0.5, symmetric_share=0.3,
+        shape=replace(SMALL, preference=True, sheets=True, rims=True),
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def plain(tiny: AlignSettings) -> AlignSettings:
+    """Even rims, no symmetry, nothing but slopes."""
+    return replace(tiny, free_rims=0.0, symmetric_share=0.0, evenness_weight=0.0)
 
 
 def align(settings: AlignSettings, folder: Path, prior: Model, **options: float) -> list[dict[str, float]]:
@@ -71,10 +80,17 @@ def measured(network: VelocityNetwork, preference: float, even: bool = True) -> 
 
 
 def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
-    tmp_path: Path, prior: Model, tiny: AlignSettings
+    tmp_path: Path, prior: Model, plain: AlignSettings
 ) -> None:
     settings = replace(
-        tiny, steps=30, batch=16, drawn=0, other_sheets=0.0, learning_rate=0.02, average_decay=0.0, variation_weight=0.0
+        plain,
+        steps=30,
+        batch=16,
+        drawn=0,
+        other_sheets=0.0,
+        learning_rate=0.02,
+        average_decay=0.0,
+        variation_weight=0.0,
     )
     run = run_of(settings, tmp_path, prior)
     before = measured(run.averaged(), 0.0)
@@ -86,7 +102,7 @@ def test_that_alignment_lowers_the_loss_on_targets_that_it_has_not_seen(
 
 
 def test_that_asking_for_regularity_gives_smoother_fields(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, tiny: AlignSettings
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, plain: AlignSettings
 ) -> None:
     # The learning rate takes 200 steps to rise by default.
     monkeypatch.setattr("kirigami_studio.lab.training.train_flow.WARM_UP_STEPS", 4)
@@ -95,7 +111,7 @@ def test_that_asking_for_regularity_gives_smoother_fields(
         return float(measured(run.averaged(), asked, even)[0].variation.mean())
 
     settings = replace(
-        tiny,
+        plain,
         steps=30,
         batch=16,
         drawn=0,
@@ -116,9 +132,9 @@ def test_that_asking_for_regularity_gives_smoother_fields(
     assert variation(1.0, even=True) < untrained
 
 
-def test_that_the_anchor_holds_samples_near_the_priors(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
+def test_that_the_anchor_holds_samples_near_the_priors(tmp_path: Path, prior: Model, plain: AlignSettings) -> None:
     def moved(weight: float) -> float:
-        settings = replace(tiny, steps=10, other_sheets=0.0, average_decay=0.0, anchor_weight=weight, anchored_every=1)
+        settings = replace(plain, steps=10, other_sheets=0.0, average_decay=0.0, anchor_weight=weight, anchored_every=1)
         run = run_of(settings, tmp_path, prior)
         last = [run.advance()["anchor"] for _ in range(10)]
         return float(np.mean(last[-4:]))
@@ -180,7 +196,7 @@ def test_that_another_prior_other_settings_or_folders_are_refused(
     assert blocked.value.code == "training.folder_not_made"
 
 
-def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, tiny: AlignSettings) -> None:
+def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, plain: AlignSettings) -> None:
     def sheets(settings: AlignSettings, steps: range) -> list[DeployedGrid]:
         run = run_of(settings, tmp_path, prior)
         drawn = []
@@ -188,15 +204,78 @@ def test_that_sheets_follow_from_seed_and_step(tmp_path: Path, prior: Model, tin
             drawn.append(run._grid())
         return drawn
 
-    many = sheets(tiny, range(400))
-    assert sheets(tiny, range(200, 210)) == many[200:210]
-    assert sheets(replace(tiny, seed=1), range(10)) != many[:10]
+    many = sheets(plain, range(400))
+    assert sheets(plain, range(200, 210)) == many[200:210]
+    assert sheets(replace(plain, seed=1), range(10)) != many[:10]
     own, other = [one for one in many if one == OWN], [one for one in many if one != OWN]
-    assert len(other) / len(many) == pytest.approx(tiny.other_sheets, abs=0.08)
+    assert len(other) / len(many) == pytest.approx(plain.other_sheets, abs=0.08)
     assert len(own) + len(other) == 400
     assert {one.rows for one in other} == {one.columns for one in other} == set(range(GRIDS[0], GRIDS[1] + 1))
     flat = [one for one in other if one.phi == 0.0]
     assert len(flat) / len(other) == pytest.approx(0.6, abs=0.1)
     assert 0.9 * LARGEST_PHI < max(one.phi for one in other) < LARGEST_PHI
-    assert set(sheets(replace(tiny, other_sheets=0.0), range(50))) == {OWN}
-    assert OWN not in sheets(replace(tiny, other_sheets=1.0), range(50))
+    assert set(sheets(replace(plain, other_sheets=0.0), range(50))) == {OWN}
+    assert OWN not in sheets(replace(plain, other_sheets=1.0), range(50))
+
+
+def test_that_free_rims_and_symmetries_of_the_grid_come_as_often_as_asked_for(
+    tmp_path: Path, prior: Model, plain: AlignSettings
+) -> None:
+    run = run_of(replace(plain, free_rims=0.3, symmetric_share=0.6, other_sheets=1.0), tmp_path, prior)
+    drawn = []
+    for run.learner.step in range(300):
+        drawn.append(run._grid())
+    assert np.mean([one.free_rim for one in drawn]) == pytest.approx(0.3, abs=0.08)
+    possible = [one for one in drawn if any(symmetry.fits(one.rows, one.columns) for symmetry in Symmetry)]
+    assert np.mean([one.symmetry is not None for one in possible]) == pytest.approx(0.6, abs=0.08)
+    assert {one.symmetry for one in drawn} == {None, *Symmetry}
+    assert all(one.symmetry is None or one.symmetry.fits(one.rows, one.columns) for one in drawn)
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.6])
+def test_that_silhouettes_of_symmetric_sheets_are_symmetric(
+    tmp_path: Path, prior: Model, plain: AlignSettings, phi: float
+) -> None:
+    grid = DeployedGrid(4, 5, phi, Symmetry.LEFT_RIGHT)
+    made = run_of(plain, tmp_path, prior)._silhouettes(grid, 3).double().numpy()
+    for one in made:
+        ours, mirrored = (shapely.Polygon(points).buffer(0.0) for points in (one, one * [-1.0, 1.0]))
+        assert ours.intersection(mirrored).area > 0.999
+
+
+def test_that_asking_for_regularity_gives_evener_panels(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, plain: AlignSettings
+) -> None:
+    monkeypatch.setattr("kirigami_studio.lab.training.train_flow.WARM_UP_STEPS", 4)
+    settings = replace(
+        plain, steps=30, batch=16, drawn=0, other_sheets=0.0, learning_rate=0.008, average_decay=0.0,
+        variation_weight=0.0, anchor_weight=0.0, evenness_weight=0.5,
+    )  # fmt: skip
+    run = run_of(settings, tmp_path, prior)
+
+    def unevenness(asked: float) -> float:
+        return float(measured(run.averaged(), asked, even=False)[0].unevenness.mean())
+
+    before = unevenness(1.0)
+    assert unevenness(0.0) == pytest.approx(before, rel=1e-4)
+    records = [run.advance() for _ in range(30)]
+    assert unevenness(1.0) < 0.9 * before
+    assert records[-1]["unevenness"] > 0.0
+
+
+def test_that_steps_on_free_rims_within_symmetries_are_finite(
+    tmp_path: Path, prior: Model, tiny: AlignSettings
+) -> None:
+    run = run_of(replace(tiny, other_sheets=1.0, symmetric_share=1.0, free_rims=1.0, batch=4), tmp_path, prior)
+    records = [run.advance() for _ in range(3)]
+    assert all(np.isfinite(list(record.values())).all() for record in records)
+
+
+def test_that_even_panels_count_as_much_as_regularity_is_preferred(
+    tmp_path: Path, prior: Model, plain: AlignSettings
+) -> None:
+    run = run_of(replace(plain, evenness_weight=0.4, variation_weight=0.0), tmp_path, prior)
+    terms, _ = measured(run.averaged(), 0.0)
+    none, full = (run._loss(terms, torch.tensor(0.0), torch.full((48,), asked)) for asked in (0.0, 1.0))
+    assert float(full - none) == pytest.approx(0.4 * float(terms.unevenness.mean()), rel=1e-4)
+    assert float(terms.unevenness.mean()) > 0.1
