@@ -39,9 +39,10 @@ THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
 
-#: Seconds after which a worker that has work and says nothing is given up: it says that it lives twice a second, and
-#: its imports take a few seconds.
+#: Seconds after which a worker that has work and says nothing is given up; it says that it lives twice a second.
 SILENCE = 60.0
+#: How many times as long one may take to be ready: its imports take seconds, on a busy machine a minute.
+STARTING = 5.0
 
 #: Code for the interpreter of a worker; the package's folder follows, for checkouts that are not installed.
 ENTRY = "import sys; sys.path.append(sys.argv[1]); from kirigami_studio.pipeline.worker import serve; sys.exit(serve())"
@@ -232,7 +233,7 @@ class Pool:
                 worker.silence = 0.0
                 continue
             worker.silence += passed
-            if worker.silence > self._silence:
+            if worker.silence > self._silence * (1.0 if worker.ready else STARTING):
                 log.warning("a polishing worker has said nothing for %.0f s and is ended", worker.silence)
                 worker.silence = 0.0
                 worker.process.kill()

@@ -109,7 +109,7 @@ def test_that_no_label_takes_a_name_for_html(hostile: MainWindow, name: str) -> 
     session.post(Message(f"{name} could not be read.", Tone.ERROR, name, ((name, lambda: None),)))
     session.set_status(f"Opened {name}.")
     hostile.dialogs.show_history()
-    hostile.connections.designs.rename_current()
+    hostile.connections.all_designs.rename_current()
     QApplication.processEvents()
     said = [one.text() for one in QApplication.allWidgets() if isinstance(one, QLabel) and name[:17] in one.text()]
     assert len(said) >= 3, said  # message, status line and title: else nothing is tested
