@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.option_types import parse_grid, workers
@@ -106,6 +106,7 @@ def train(arguments: argparse.Namespace) -> int:
 
 def _train(arguments: argparse.Namespace, process: Process) -> None:
     from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.lab.training.dataset import digest_of_designs
     from kirigami_studio.lab.training.train_flow import FlowSettings, train_flow, trained_network
     from kirigami_studio.lab.training.validation import validator
 
@@ -124,7 +125,8 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
         coupling=arguments.coupling,
         outline_weight=arguments.outline_weight,
         average_decay=arguments.average_decay,
-        **_named(arguments, sources.designs),
+        family=_family(arguments, sources.designs),
+        designs=digest_of_designs(sources.designs),
         seed=arguments.seed,
         shape=shape,
     )
@@ -213,6 +215,7 @@ def _train_baseline(
     process: Process,
 ) -> None:
     from kirigami_studio.lab.baselines.stored import store_generator
+    from kirigami_studio.lab.training.dataset import digest_of_designs
     from kirigami_studio.lab.training.train_baseline import BaselineSettings, train_baseline, trained_baseline
     from kirigami_studio.lab.training.validation import baseline_validator
 
@@ -231,7 +234,8 @@ def _train_baseline(
         learning_rate=arguments.learning_rate,
         first_moment=first_moment,
         average_decay=arguments.average_decay,
-        **_named(arguments, designs),
+        family=_family(arguments, designs),
+        designs=digest_of_designs(designs),
         seed=arguments.seed,
     )
     folder = Path(arguments.out)
@@ -274,16 +278,15 @@ def _designs(arguments: argparse.Namespace) -> Split | None:
     return None if arguments.designs is None else Split.load(Path(arguments.designs))
 
 
-def _named(arguments: argparse.Namespace, designs: Split | None) -> dict[str, Any]:
-    """Training designs as settings name them."""
-    if designs is None:
-        return {"family": arguments.family}
-    return {"family": str(designs.about["family"]), "designs": str(designs.about["sha256"])}
+def _family(arguments: argparse.Namespace, designs: Split | None) -> str:
+    """Family of the training designs: that of the data set where there is one."""
+    return str(arguments.family) if designs is None else str(designs.about["family"])
 
 
 def grpo(arguments: argparse.Namespace) -> int:
     """Align a generator, or go on aligning it, and write its weights into the run folder."""
     from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.lab.training.dataset import digest_of_designs
     from kirigami_studio.lab.training.grpo import GrpoSettings, aligned_network, train_grpo
     from kirigami_studio.lab.training.learner import training_device
     from kirigami_studio.lab.training.ranks import check_alone
@@ -307,7 +310,8 @@ def grpo(arguments: argparse.Namespace) -> int:
         reference=arguments.reference,
         least_spread=arguments.least_spread,
         average_decay=arguments.average_decay,
-        **_named(arguments, designs),
+        family=_family(arguments, designs),
+        designs=digest_of_designs(designs),
         seed=arguments.seed,
     )
     watched = validator(VALIDATION_COUNT, device, settings.rollout_steps)
