@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kirigami_studio.project.settings import DesignSettings, FabricationSettings
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -21,6 +20,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
 from kirigami_studio.studio.making import CutRequest, Exported, Output, exporting, planned
 
