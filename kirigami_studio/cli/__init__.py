@@ -1,12 +1,14 @@
 """The command line: the engine that the window drives, for scripts, batches and checks.
 
 ``kirigami-studio`` without a sub-command opens the window.  Exit codes: 0 done, 1 the work failed (one sentence on
-standard error), 2 wrong usage.  Sub-commands read inputs, call one stage or the pipeline, and print.
+standard error), 2 wrong usage, 130 stopped by Ctrl+C.  Sub-commands read inputs, call one stage or the pipeline, and
+print.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,6 +19,8 @@ from kirigami_studio.foundation.log import quiet_libraries
 
 #: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
 WORKER_FLAG = "--worker"
+#: Exit code of programs that Ctrl+C ends, as shells count it: 128 and the number of the signal.
+INTERRUPTED = 128 + signal.SIGINT
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -42,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KirigamiError as error:
         return _fail(error, 1)
     except KeyboardInterrupt:
-        return _fail(KirigamiError("cli.interrupted"), 1)
+        return _fail(KirigamiError("cli.interrupted"), INTERRUPTED)
     except MemoryError:
         return _fail(KirigamiError("cli.out_of_memory"), 1)
     except BrokenPipeError:

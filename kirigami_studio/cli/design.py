@@ -94,8 +94,13 @@ def design(arguments: argparse.Namespace) -> int:
 
     inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
     if arguments.scheduler:
-        return for_each(_from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)), batch, one_from_cluster)
-    return for_each(inputs, batch, one)
+        return for_each(
+            _from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)),
+            batch,
+            one_from_cluster,
+            as_json=arguments.json,
+        )
+    return for_each(inputs, batch, one, as_json=arguments.json)
 
 
 @dataclass(frozen=True, slots=True)

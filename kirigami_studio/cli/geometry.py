@@ -60,7 +60,7 @@ def decode(arguments: argparse.Namespace) -> int:
                 )
             )
 
-    return for_each(read_sheets(arguments.sheets), batch, one)
+    return for_each(read_sheets(arguments.sheets), batch, one, as_json=arguments.json)
 
 
 def decoded(sheet: Sheet, phi: float) -> dict[str, object]:
@@ -97,7 +97,7 @@ def porosity(arguments: argparse.Namespace) -> int:
         if not arguments.json and not batch:
             _say_areas(answer)
 
-    return for_each(read_sheets(arguments.sheets), batch, one)
+    return for_each(read_sheets(arguments.sheets), batch, one, as_json=arguments.json)
 
 
 def areas(sheet: Sheet, degrees: list[float], width_mm: float | None, wanted: float | None) -> dict[str, object]:
@@ -200,7 +200,7 @@ def score(arguments: argparse.Namespace) -> int:
             )
             say(f"{figures} {tr('Feasible.') if result.feasible else tr('Not feasible.')}")
 
-    return for_each((_paired(*pair) for pair in zip(sheets, targets, strict=True)), batch, one)
+    return for_each((_paired(*pair) for pair in zip(sheets, targets, strict=True)), batch, one, as_json=arguments.json)
 
 
 def _paired(sheet: Named[Sheet], target: Named[Outline]) -> Named[tuple[Sheet, Named[Outline]]]:

@@ -75,15 +75,20 @@ def _is_folder(source: str) -> bool:
     return bool(source) and os.path.isdir(source)  # noqa: PTH112
 
 
-def for_each(inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, Value], None]) -> int:
+def for_each(
+    inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, Value], None], *, as_json: bool = False
+) -> int:
     """Read and work through the inputs; returns the exit code 0.
+
+    What fails has a line ``{"source", "error"}`` on standard output where answers are JSON: those of a batch always
+    are, that of a single input ``as_json``.
 
     Raises
     ------
     UsageError
         At once: the request itself is wrong, whatever the input.
     KirigamiError
-        A single input failed; or, after the whole batch, some did, each with a line ``{"source", "error"}``.
+        A single input failed; or, after the whole batch, some did.
     """
     total = failed = 0
     for named in inputs:
@@ -93,10 +98,11 @@ def for_each(inputs: Iterable[Named[Value]], batch: bool, work: Callable[[str, V
         except UsageError:
             raise
         except KirigamiError as error:
+            if batch or as_json:
+                print_json({"source": named.name, "error": str(error)})
             if not batch:
                 raise
             failed += 1
-            print_json({"source": named.name, "error": str(error)})
     if failed:
         raise KirigamiError("batch.some_inputs_failed", failed=failed, total=total)
     return 0

@@ -156,6 +156,8 @@ def parse_angle(text: str) -> float:
         raise UsageError("option.angle", text=text)
     number, unit, factor, divisor = match.groups()
     if number is not None:
+        if unit is None and float(number) > math.tau:
+            raise UsageError("option.angle_in_degrees", text=text.strip())
         return math.radians(float(number)) if unit else float(number)
     if divisor is not None and float(divisor) == 0:
         raise UsageError("option.angle_divided_by_zero", text=text)

@@ -6,6 +6,9 @@ from kirigami_studio.foundation.words import mark
 
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # cli
+    "option.angle_in_degrees": mark(
+        "An angle of '{text:.40}' radians is more than a whole turn. For degrees write {text:.40}deg."
+    ),
     "cli.interrupted": mark("Stopped. No file was left half written."),
     "cli.out_of_memory": mark("Not enough memory. Ask for fewer or smaller inputs."),
     "cli.file_not_usable": mark("Cannot read or write {path}: {reason}."),

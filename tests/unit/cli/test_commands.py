@@ -425,3 +425,34 @@ def test_that_a_file_without_a_command_is_one_to_open_in_the_window(tmp_path: Pa
         command = [sys.executable, "-m", "kirigami_studio", *words]
         done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=60, check=False)
         assert said in done.stderr and done.returncode == (1 if "display" in said else 2)
+
+
+@pytest.mark.parametrize("names", [["no-such.svg"], ["no-such.svg", "nor-this.svg"]])
+@pytest.mark.parametrize("command", ["design", "decode"])
+def test_that_every_input_that_fails_has_a_line_of_json_where_json_is_asked_for(
+    names: list[str], command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, *names, "--json"]) == 1
+    said = capsys.readouterr()
+    told = [json.loads(line) for line in said.out.splitlines()]
+    assert [one["source"] for one in told] == names and all(one["error"].endswith(".") for one in told)
+    assert len(said.err.splitlines()) == 1
+
+
+def test_that_a_single_input_that_fails_says_so_on_standard_error_alone_without_json(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["decode", "no-such.json"]) == 1
+    said = capsys.readouterr()
+    assert said.out == "" and len(said.err.splitlines()) == 1
+
+
+def test_that_ctrl_c_is_the_exit_code_that_shells_expect(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("kirigami_studio.cli.library.targets", stopped)
+    assert main(["targets"]) == 130
+    assert len(capsys.readouterr().err.splitlines()) == 1

@@ -39,6 +39,13 @@ def test_that_angles_are_read_in_radians_and_degrees(text: str, value: float) ->
     assert parse_angle(text) == pytest.approx(value)
 
 
+@pytest.mark.parametrize("text", ["90", "180", "7"])
+def test_that_degrees_without_a_unit_are_told_how_to_be_written(text: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        parse_angle(text)
+    assert refused.value.code == "option.angle_in_degrees" and f"{text}deg" in str(refused.value)
+
+
 @pytest.mark.parametrize("text", ["", "nan", "inf", "thirty", "pi/0", "1/2", "-1", "30 degrees"])
 def test_that_other_angles_are_refused(text: str) -> None:
     with pytest.raises(UsageError):

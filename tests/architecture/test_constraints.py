@@ -1,0 +1,38 @@
+"""What the README tells pip to install can be found by plain pip, on every version of Python."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).parents[2]
+
+
+def constraints() -> dict[str, Requirement]:
+    lines = (ROOT / "packaging" / "constraints-cpu.txt").read_text(encoding="utf-8").splitlines()
+    found = [Requirement(line) for line in lines if line and not line.startswith("#")]
+    return {one.name: one for one in found}
+
+
+def test_that_constraints_name_versions_that_an_index_can_have() -> None:
+    assert "torch" in constraints()
+    for name, one in constraints().items():
+        assert one.marker is None and [each.operator for each in one.specifier] == ["=="], name
+        # PyPI has no local versions, such as that of the CPU build.
+        assert "+" not in str(one.specifier), name
+
+
+def test_that_torch_is_pinned_as_the_project_pins_it_and_the_cpu_build_is_such_a_version() -> None:
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    (pinned,) = (one for one in map(Requirement, needed) if one.name == "torch")
+    assert constraints()["torch"].specifier == pinned.specifier
+    assert pinned.specifier.contains("2.13.0+cpu") and pinned.specifier.contains("2.13.0")
+
+
+def test_that_the_readme_names_the_index_that_make_uses() -> None:
+    index = re.search(r"^TORCH_INDEX := (\S+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
+    (line,) = re.findall(r"`.*constraints-cpu\.txt.*`", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert index is not None and f"--extra-index-url {index[1]} " in line
