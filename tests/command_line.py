@@ -21,7 +21,10 @@ def answer(capsys: pytest.CaptureFixture[str], *argv: object) -> dict:
 def refusal(capsys: pytest.CaptureFixture[str], *argv: object) -> tuple[int, str]:
     code = main([str(word) for word in argv])
     captured = capsys.readouterr()
-    assert captured.out == ""
+    if "--json" in argv and captured.out:
+        assert json.loads(captured.out).keys() == {"source", "error"}
+    else:
+        assert captured.out == ""
     assert "Traceback" not in captured.err
     assert len(captured.err.splitlines()) == 1
     return code, captured.err
