@@ -116,7 +116,7 @@ class GridTransfer:
         return state
 
     def on_grid(self, state: Tensor) -> Tensor:
-        """A state of the flow as designs of the sheet, their mouths evenly spaced: (B, m * n + R)."""
+        """Designs (B, m * n + R) of a state of the flow, their mouths evenly spaced."""
         return self.evenly(self.up(state))
 
     def evenly(self, z: Tensor) -> Tensor:
@@ -133,7 +133,7 @@ class GridTransfer:
         return velocity
 
     def symmetric(self, design: Tensor) -> Tensor:
-        """The nearest designs of the sheet (B, m * n + R), or fields alone, that keep its symmetry."""
+        """Nearest designs (B, m * n + R), or fields alone, that keep the sheet's symmetry."""
         return design
 
     def stations(self, outline: Tensor) -> Tensor:

@@ -132,8 +132,9 @@ class Feedback:
         return gauss_newton_direction(residuals, slopes @ basis, variation) @ basis.mT
 
     def _outline(self, field: Tensor, offsets: Tensor | None, wanted: bool) -> tuple[Tensor, Tensor | None]:
-        """Outlines of fields (B, m, n) and mouths (B, R), unit area about the centroid; if wanted their derivatives
-        (B, L, 2, m * n + R).
+        """Outlines (B, L, 2) of unit area about the centroid, with derivatives if wanted.
+
+        Fields are (B, m, n), mouths (B, R), derivatives (B, L, 2, m * n + R).
         """
         if wanted:
             decoded, slopes = self.slopes(field, self.grid.phi, offsets)
@@ -151,7 +152,7 @@ def _geometry(rows: int, columns: int, zipped: bool, device: torch.device) -> tu
 
 @lru_cache(maxsize=256)
 def _symmetric_designs(rows: int, columns: int, size: int, symmetry: Symmetry, device: torch.device) -> Tensor:
-    """Basis of the symmetric designs of a grid, of their first ``size`` numbers: (size, reduced)."""
+    """Basis (size, reduced) of the symmetric designs of a grid, of their first numbers."""
     designs = symmetry.on(rows, columns).basis[:size].toarray()
     return torch.tensor(designs[:, np.any(designs != 0.0, axis=0)], dtype=torch.float32, device=device)
 

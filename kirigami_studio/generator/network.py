@@ -234,7 +234,7 @@ class VelocityNetwork(nn.Module):
         return self.shape.loop_points > 0
 
     def correction(self, z: Tensor, code: TargetCode) -> Tensor:
-        """Change of designs z (B, m * n + R) of the sheet that brings their outlines nearer: (B, m * n + R).
+        """Change (B, m * n + R) of designs that brings their outlines nearer.
 
         The Gauss-Newton direction; a network that was trained to correct takes it as far in each ratio as it thinks
         fit, and adds to it.  Mouths follow it all the way.
@@ -262,7 +262,7 @@ class VelocityNetwork(nn.Module):
 
 
 def _grid_features(grid: DeployedGrid, shape: NetworkShape, like: Tensor) -> Tensor:
-    """What a network is given of a sheet, as numbers about zero, which are zero on its own grid with an even rim."""
+    """Input of a network that describes the sheet: zero on its own grid with an even rim."""
     told = [
         math.log(grid.rows / shape.rows),
         math.log(grid.columns / shape.columns),

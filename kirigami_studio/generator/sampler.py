@@ -133,7 +133,7 @@ def sample_sheets(
     symmetry: Symmetry | None = None,
     upward: float | None = None,
 ) -> tuple[Sheet, ...]:
-    """Sample ``k`` sheets for ``target``, rim and all; the parameters are those of :func:`sample_fields`."""
+    """Sample ``k`` sheets with their rims; parameters as for :func:`sample_fields`."""
     deployed = DeployedGrid(*grid, phi, symmetry, free_rim=True)
     designs = _sampled(model, target, deployed, k, seed, steps, pose_angle, None, upward)
     cells = deployed.cells
@@ -153,7 +153,7 @@ def _sampled(
     near: Near | None,
     upward: float | None,
 ) -> FloatArray:
-    """Designs of a grid (k, m * n + R), within their bounds and symmetry, rounded so that files repeat them."""
+    """Designs (k, m * n + R) within their bounds and symmetry, rounded as in files."""
     shape, symmetry, cells = model.network.shape, deployed.symmetry, deployed.cells
     whole = -(-k // BATCH) * BATCH
     noise = np.random.default_rng(seed).standard_normal((whole, shape.rows * shape.columns)) * shape.z_scale

@@ -94,7 +94,7 @@ class Velocity(Protocol):
         ...
 
     def correction(self, z: Tensor, code: Any) -> Tensor:
-        """Change of designs z (B, m * n + R) of the sheet that brings their outlines nearer: (B, m * n + R)."""
+        """Change (B, m * n + R) of designs that brings their outlines nearer."""
         ...
 
     def __call__(self, z: Tensor, t: Tensor, code: Any) -> Tensor:

@@ -1,4 +1,4 @@
-"""Research beside the product: the paper's experiments, training, other people's judges, pictures of the program.
+"""Research beside the product: experiments, training, judges, pictures of the program.
 
 ``problem`` gives targets, a simulator and a score to other generators; ``baselines`` are the solvers and generators
 that the paper compares with; ``training`` makes weights; ``benchmark`` makes figures and tables; ``demonstrations``

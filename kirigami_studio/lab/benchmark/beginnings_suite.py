@@ -1,4 +1,4 @@
-"""How designs begin: a few steps of the fit from samples of several generators, beside guided fits.
+"""Beginnings of designs: short fits from samples of generators, beside guided fits.
 
 Every way gets as many beginnings of a target, on the grid that a run takes for it, and its best design counts, by the
 order of :mod:`kirigami_studio.pipeline.rank`.  Seconds are those of the processor, for all beginnings of one target.

@@ -1,4 +1,4 @@
-"""The numbers of the paper's tables and figures, each once (Yazdani, Shalileh, Shahriari, arXiv:2605.08098)."""
+"""Numbers of the paper's tables and figures, each once (arXiv:2605.08098)."""
 
 from __future__ import annotations
 

@@ -260,5 +260,5 @@ def _fastest(work: Callable[[], object]) -> float:
 
 
 def all_timings() -> dict[str, object]:
-    """Time whole runs, scores and fits: ``runs`` of :func:`run_timings` beside all of :func:`polish_timings`."""
+    """Time whole runs (``runs``), scores and fits (all of :func:`polish_timings`)."""
     return {"runs": run_timings(), **polish_timings()}

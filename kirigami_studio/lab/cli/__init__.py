@@ -1,1 +1,1 @@
-"""Commands of the lab: ``train``, ``dataset`` and ``benchmark``, found by name when they are called."""
+"""Commands of the lab: ``train``, ``dataset`` and ``benchmark``, found by name."""

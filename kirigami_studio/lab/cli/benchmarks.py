@@ -70,7 +70,7 @@ def on_targets(suite: str, **renamed: str) -> Command:
 
 
 def alone(suite: str, title: str, **renamed: str) -> Command:
-    """Return the command of a suite with targets of its own; its exit code is 1 where the figures are not ``ok``.
+    """Return the command of a suite with targets of its own; exit code 1 where they fail.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _suite(place: str) -> Callable[..., Any]:
 def _options_of(
     measure: Callable[..., Any], arguments: argparse.Namespace, renamed: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Return the options of a command that a function has parameters for, as the function takes them."""
+    """Return the options that a function has parameters for, as it takes them."""
     options: dict[str, Any] = {}
     for name in signature(measure).parameters:
         option = renamed.get(name, name)

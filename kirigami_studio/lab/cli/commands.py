@@ -100,7 +100,7 @@ RESIDUALS = option("--residuals", type=count, default=2, help="residual blocks o
 
 
 def run_of_training(validate_every: int) -> tuple[Option, ...]:
-    """Options of every training run; ``validate_every`` is the default number of steps between validations."""
+    """Options of every training run, with the default steps between validations."""
     return (
         option("--minutes", type=number, default=None, help="stop after this time and keep a checkpoint"),
         option(
@@ -139,7 +139,7 @@ RECORDED = option(
 
 
 def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -> tuple[Option, ...]:
-    """Options of the generators that the paper compares with its own; its settings are the defaults."""
+    """Options of the paper's other generators; its settings are the defaults."""
     return (
         RUN_FOLDER,
         option("--steps", type=count, default=31_250, help="total optimiser steps (default 31250: 400 x 5000 designs)"),

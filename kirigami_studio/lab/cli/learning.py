@@ -173,7 +173,7 @@ def _shape(arguments: argparse.Namespace) -> Shape:
 
 
 def _mask_pixels(latent: int) -> int:
-    """Pixels of a target's mask: the paper's 128, or as many below as are averaged to whole ones."""
+    """Pixels of a mask: the paper's 128, or fewer that average to whole ones."""
     from kirigami_studio.foundation.paper import MASK_SIZE
 
     return max(1, MASK_SIZE // latent) * latent

@@ -102,7 +102,7 @@ def digest_of_designs(designs: Split | None) -> str:
 def designs_of(
     family: str, fixed: Split | None, rows: int, columns: int, seed: int, chunk: int, device: torch.device
 ) -> TrainingDesigns:
-    """The designs that a run trains on: those of a data set, over and over, or endless ones of a family.
+    """Training designs: a data set over and over, or endless ones of a family.
 
     Parameters
     ----------

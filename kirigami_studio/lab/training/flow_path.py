@@ -79,7 +79,7 @@ def cfm_errors(velocity: Tensor, sample: PathSample) -> Tensor:
 
 
 def pairing_cost(coupling: str, noise: Tensor, z: Tensor, conditions: Tensor) -> Tensor:
-    """Cost (B, B) of pairing designs ``z`` (B, D) and their ``conditions`` with rows of ``noise``.
+    """Cost (B, B) of pairing designs and their conditions with rows of noise.
 
     Raises
     ------

@@ -123,7 +123,7 @@ def total_variation(x: Tensor) -> Tensor:
 
 
 def area_variation(lattice: BatchedLattice, nodes: Tensor) -> Tensor:
-    """Coefficient of variation of the panel areas of sheets with compact nodes (B, N, 2): (B,), differentiable.
+    """Coefficient of variation (B,) of panel areas of compact nodes, differentiable.
 
     The same as ``evaluate.evenness`` has of one sheet.
     """
