@@ -24,7 +24,7 @@ from pathlib import Path
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 DESIGN_FILES = ("design.kiri", "cut.dxf", "layout.svg", "preview.png", "candidates.json")
-SESSION = CHECKOUT / "kirigami_studio" / "lab" / "demonstrations" / "offscreen_session.py"
+SESSION = "kirigami_studio.lab.demonstrations.offscreen_session"
 #: What the program says when its polishing workers do not start; it then does their work itself.
 NO_WORKERS = ("polishing goes on in one process", "a polishing worker died")
 
@@ -48,7 +48,7 @@ class Program:
 
     def __init__(self, words: list[str], root: Path, folder: Path) -> None:
         self.words = words or [sys.executable, "-m", "kirigami_studio"]
-        self.interpreter = [*words, "-m"] if words else [sys.executable]
+        self.frozen = bool(words)
         self.root = root
         self.folder = folder
 
@@ -60,10 +60,14 @@ class Program:
         """Run a command and return what it printed; any other exit code than 0 is a failure."""
         return self._run([*self.words, *arguments])
 
-    def play(self, script: Path, *arguments: str) -> str:
-        """Run a copy of a script without a display."""
-        copy = Path(shutil.copy(script, self.folder))
-        return self._run([*self.interpreter, self.seen(copy), *arguments], QT_QPA_PLATFORM="offscreen")
+    def play(self, module: str, *arguments: str) -> str:
+        """Run a module of the lab without a display; a frozen program has no lab and runs the checkout's script."""
+        if self.frozen:
+            copy = Path(shutil.copy(CHECKOUT / (module.replace(".", "/") + ".py"), self.folder))
+            command = [*self.words, "-m", self.seen(copy)]
+        else:
+            command = [sys.executable, "-m", module]
+        return self._run([*command, *arguments], QT_QPA_PLATFORM="offscreen")
 
     def _run(self, command: list[str], **environment: str) -> str:
         inside = {} if self.root == Path("/") else {"HOME": self.seen(self.folder)}
