@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -347,13 +347,14 @@ LAB = "kirigami_studio.lab"
 LAB_GROUPS = ("benchmark", "dataset", "train")
 
 
-@cache
+def has_lab() -> bool:
+    """Return whether the lab is installed; a frozen program has none."""
+    return not getattr(sys, "frozen", False) and find_spec(LAB) is not None
+
+
 def all_commands() -> tuple[SubCommand, ...]:
     """Return the product's commands, then the lab's where it is installed."""
-    if find_spec(LAB) is None:
-        return SUB_COMMANDS
-    lab: tuple[SubCommand, ...] = import_module(f"{LAB}.cli.commands").SUB_COMMANDS
-    return SUB_COMMANDS + lab
+    return SUB_COMMANDS + import_module(f"{LAB}.cli.commands").SUB_COMMANDS if has_lab() else SUB_COMMANDS
 
 
 def about_group(name: str) -> str:
@@ -390,7 +391,7 @@ def build_parser() -> argparse.ArgumentParser:
         # A suite that has --variants must not take another suite's --variant for it.
         child.allow_abbrev = first != "benchmark"
         child.set_defaults(run=_late(command.run))
-    if find_spec(LAB) is None:
+    if not has_lab():
         for name in LAB_GROUPS:
             commands.add_parser(name, add_help=False, prefix_chars="\0").add_argument("words", nargs="*")
             commands.choices[name].set_defaults(run=_refuse_research)

@@ -19,7 +19,7 @@ from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.svg import ACI_COLOUR, NAMESPACE, SEPARATOR
 from kirigami_studio.foundation.errors import ExportError
-from kirigami_studio.foundation.files import read_at_most
+from kirigami_studio.foundation.files import opened_file, read_at_most
 from kirigami_studio.outlines.svg_safety import refuse_long_numbers
 
 MM_PER_PX = 25.4 / 96.0
@@ -112,7 +112,7 @@ def read_with_xml(path: Path) -> FileContent:
 def is_svg(path: Path) -> bool:
     """Whether a file begins as an SVG does, whatever its name; False where it cannot be read."""
     try:
-        with path.open("rb") as stream:
+        with opened_file(path, LARGEST_FILE) as stream:
             start = stream.read(HEAD_BYTES)
     except (OSError, ValueError):
         return False

@@ -19,7 +19,7 @@ import platformdirs
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.files import read_toml
-from kirigami_studio.foundation.plain_text import plain_line
+from kirigami_studio.foundation.plain_text import plain_line, plain_lines
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.foundation.words import mark
@@ -272,6 +272,9 @@ class Material:
 
     def __post_init__(self) -> None:
         check(self, key=self.key)
+        for name in ("name", "machine", "measured_on", "measured_by"):  # the key names a file, which its writer checks
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
+        object.__setattr__(self, "note", plain_lines(self.note))
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.power_percent > LARGEST_POWER:

@@ -63,7 +63,8 @@ def test_that_the_page_tells_every_name_that_the_program_writes(page: str) -> No
 
 def test_that_the_program_knows_every_name_that_the_page_tells(page: str, repository: Path) -> None:
     package = repository / "kirigami_studio"
-    files = [*(package / "project").glob("*.py"), package / "lattice" / "sheet_files.py"]
+    files = [*(package / "project").glob("*.py"), *(package / "settings").glob("*.py")]
+    files += [package / "fabricate" / "options.py", package / "lattice" / "sheet_files.py"]
     classes = ("evaluate/score.py", "evaluate/evenness.py", "evaluate/similarity.py", "evaluate/feasibility.py")
     text = "\n".join(path.read_text(encoding="utf-8") for path in (*files, *(package / name for name in classes)))
     unknown = [name for name in told_names(page) if not re.search(rf'"{name}"|^    {name}: ', text, re.MULTILINE)]

@@ -95,9 +95,9 @@ def test_that_names_layers_and_facts_of_a_drawing_are_plain(hostile: str, tmp_pa
 @pytest.mark.parametrize("hostile", HOSTILE)
 def test_that_settings_and_materials_have_plain_names(hostile: str, tmp_path: Path) -> None:
     path = tmp_path / "entries.toml"
-    path.write_text(tomli_w.dumps({"profile": hostile, "material": hostile, "paper": hostile}), encoding="utf-8")
+    path.write_text(tomli_w.dumps({"profile": hostile, "material": hostile}), encoding="utf-8")
     read = preferences.load(path)
-    assert are_plain(read.profile, read.material, read.paper)
+    assert are_plain(read.profile, read.material)
     path.write_text(tomli_w.dumps({"projects": [hostile, "/home/fox.kiri"], "targets": [hostile]}), encoding="utf-8")
     known = recent.load(path)
     assert known.projects[-1] == "/home/fox.kiri" and are_plain(*known.projects, *known.targets, longest=4096)

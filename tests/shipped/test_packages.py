@@ -249,10 +249,10 @@ def test_that_every_package_that_is_shipped_has_its_licence_in_the_bundle(bundle
         assert files, name
 
 
-def test_that_the_bundle_is_made_of_the_resources_and_of_all_modules(packaging: Path) -> None:
+def test_that_the_bundle_is_made_of_the_resources_and_of_all_modules_but_the_lab(packaging: Path) -> None:
     spec = (packaging / "kirigami-studio.spec").read_text(encoding="utf-8")
     assert 'collect_data_files("kirigami_studio", includes=["resources/**"])' in spec
-    assert 'collect_submodules("kirigami_studio")' in spec
+    assert 'collect_submodules("kirigami_studio", filter=' in spec and '"kirigami_studio.lab"]' in spec
     assert "licence_files(" in spec
 
 
