@@ -41,7 +41,7 @@ class SubCommand:
     name, about : str
         A name of two words belongs to a group.
     run : str
-        ``module:function`` of ``kirigami_studio``, imported when the command is called.
+        ``module:function`` of ``cli``, or of ``lab`` with its folder, imported when the command is called.
     options : tuple
         ``add_argument`` calls.
     examples : tuple of str
@@ -133,7 +133,7 @@ SCHEDULER = option(
     help="address of a Dask scheduler, such as tcp://10.0.0.5:8786, whose workers do the work (extra 'cluster')",
 )
 SUB_COMMANDS: tuple[SubCommand, ...] = (
-    SubCommand("design", "design sheets for a target, rank them and write a cut file", "cli.design:design", (
+    SubCommand("design", "design sheets for a target, rank them and write a cut file", "design:design", (
         option("targets", nargs="+", metavar="TARGET",
                help="image, SVG, DXF or JSON file, library name, folder, or .npz of masks"),
         option("--out", default=None, help="folder for design.kiri, cut.dxf, layout.svg, preview.png, candidates.json"),
@@ -168,7 +168,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design masks.npz --k 1 --json",
         "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
     )),
-    SubCommand("decode", "print the exact layouts of sheets", "cli.geometry:decode", (
+    SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (
         option("sheets", nargs="+", metavar="SHEET",
                help=".json or .npy, .kiri (its chosen design), folder, or .npz with 'ratios'"),
         PHI,
@@ -176,7 +176,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--out", default=None, help="also write the JSON to this file (a folder for many inputs)"),
         JSON,
     ), ("kirigami-studio decode ratios.json --phi pi/2 --json",)),
-    SubCommand("porosity", "print area and porosity of sheets against the angle", "cli.geometry:porosity", (
+    SubCommand("porosity", "print area and porosity of sheets against the angle", "geometry:porosity", (
         option("sheets", nargs="+", metavar="SHEET", help="sheets as for decode"),
         option("--angles", type=count, default=19,
                help="number of angles, evenly from 180 degrees (flat) to 0 (default 19)"),
@@ -189,21 +189,21 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio porosity sheet.json --find 0.3",
         "kirigami-studio porosity heart.kiri --angles 181 --width-mm 100 --out heart.csv")),
-    SubCommand("score", "score how well sheets match a target", "cli.geometry:score", (
+    SubCommand("score", "score how well sheets match a target", "geometry:score", (
         option("inputs", nargs="+", metavar="SHEET... TARGET",
                help="sheets as for decode, then one target, or one for each sheet"),
         PHI,
         *PARTS,
         JSON,
     ), ("kirigami-studio score ratios.json heart --json", "kirigami-studio score fields.npz masks.npz")),
-    SubCommand("siou", "print the similarity-aligned IoU (sIoU) of two mask images", "cli.geometry:siou", (
+    SubCommand("siou", "print the similarity-aligned IoU (sIoU) of two mask images", "geometry:siou", (
         option("mask_a", help="mask image, bright inside"),
         option("mask_b", help="mask image, bright inside"),
         option("--crop", action="store_true",
                help="ignore what leaves the image, as the paper's released evaluator does"),
         JSON,
     ), ("kirigami-studio siou result.png target.png",)),
-    SubCommand("export", "write a project as a cut file or picture", "cli.fabrication:export", (
+    SubCommand("export", "write a project as a cut file or picture", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write (.dxf .svg .pdf .lbrn2 .png .gif); with --all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
@@ -222,7 +222,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave --name 'For Ada'",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
-        "cli.mechanics:mechanics", (
+        "mechanics:mechanics", (
         option("source", nargs="?", metavar="PROJECT|SHEET", help="a .kiri project (its chosen design), or a sheet"),
         *WIDTHS,
         *CUTS,
@@ -254,13 +254,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics sheet.json --width-mm 150 --connector-mm 0.5 --hold 0 10 --move 110 120 --json",
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
-    SubCommand("check", "read a cut file and list its problems", "cli.fabrication:check", (
+    SubCommand("check", "read a cut file and list its problems", "fabrication:check", (
         option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
     ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri")),
-    SubCommand("animate", "write an animation of the sheet opening to its target angle", "cli.fabrication:animate", (
+    SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help=".gif file to write"),
         option("--as-cut", action="store_true",
@@ -271,7 +271,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio animate heart.kiri --out heart.gif",
         "kirigami-studio animate heart.kiri --out heart-as-cut.gif --as-cut --material card-co2")),
-    SubCommand("artwork", "print a picture on the sheet, in register with its cuts", "cli.artwork:artwork", (
+    SubCommand("artwork", "print a picture on the sheet, in register with its cuts", "artwork:artwork", (
         option("project", help="a .kiri project"),
         option("--picture", default=None, help="PNG, JPG, BMP, TIFF, WebP or SVG (default: the project's artwork)"),
         option("--out", required=True,
@@ -305,16 +305,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio artwork heart.kiri --out out/print --dpi 600   # the artwork that the project has",
         "kirigami-studio artwork heart.kiri --picture logo.svg --on flat --place fit --scale 0.8 --out out/print",
         "kirigami-studio artwork heart.kiri --picture photo.jpg --dpi 600 --bleed-mm 2 --copies 4 --out out/print")),
-    SubCommand("targets", "list the library silhouettes", "cli.library:targets", (JSON,), ("kirigami-studio targets",)),
-    SubCommand("licences", "list what comes with the program, and its licences", "cli.library:licences", (
+    SubCommand("targets", "list the library silhouettes", "library:targets", (JSON,), ("kirigami-studio targets",)),
+    SubCommand("licences", "list what comes with the program, and its licences", "library:licences", (
         option("part", nargs="?", default=None, help="print the licence of this part, such as numpy"),
         JSON,
     ), ("kirigami-studio licences", "kirigami-studio licences PySide6-Essentials")),
-    SubCommand("parts", "list the parts of a drawing, for --parts", "cli.library:parts", (
+    SubCommand("parts", "list the parts of a drawing, for --parts", "library:parts", (
         option("file", help="an SVG or DXF file, or a picture"),
         JSON,
     ), ("kirigami-studio parts logo.svg", "kirigami-studio parts plate.dxf --json")),
-    SubCommand("materials", "list the materials, or copy, change and calibrate one", "cli.library:materials", (
+    SubCommand("materials", "list the materials, or copy, change and calibrate one", "library:materials", (
         option("--copy", default=None, metavar="KEY", help="copy this material to your own"),
         option("--as", dest="key", default=None, metavar="NEW",
                help="key of the copy (default: the same KEY, which then hides the preset)"),
@@ -329,7 +329,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio materials",
         "kirigami-studio materials --copy film-uv --as my-film --set kerf_mm=0.028 --calibrated --by Ada",
         "kirigami-studio materials --delete my-film")),
-    SubCommand("coupon", "write a calibration coupon, or calculate the kerf from measured gaps", "cli.library:coupon", (
+    SubCommand("coupon", "write a calibration coupon, or calculate the kerf from measured gaps", "library:coupon", (
         option("--out", default=None, help="file to write (.dxf .svg .pdf)"),
         option("--gap-mm", type=amount, nargs="+", default=None,
                help="gaps measured beside the comb with its fingers pushed to one side"),
@@ -338,7 +338,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         *setting_options(FabricationSettings, "dxf_version"),
         JSON,
     ), ("kirigami-studio coupon --material film-uv --out coupon.dxf", "kirigami-studio coupon --gap-mm 0.29 0.31")),
-    SubCommand("variants", "list the bundled generator variants", "cli.library:variants", (JSON,),
+    SubCommand("variants", "list the bundled generator variants", "library:variants", (JSON,),
             ("kirigami-studio variants",)),
 )  # fmt: skip
 
@@ -425,8 +425,14 @@ def _late(place: str) -> Callable[[argparse.Namespace], int]:
     """Import a command's function only when it is called: ``--help`` and the window stay quick."""
 
     def call(arguments: argparse.Namespace) -> int:
-        module, function = place.split(":")
-        code: int = getattr(import_module(f"kirigami_studio.{module}"), function)(arguments)
-        return code
+        return found(place)(arguments)
 
     return call
+
+
+def found(place: str) -> Callable[[argparse.Namespace], int]:
+    """Import the function of a command, see :class:`SubCommand`."""
+    module, function = place.split(":")
+    home = module if module.startswith("lab.") else f"cli.{module}"
+    command: Callable[[argparse.Namespace], int] = getattr(import_module(f"kirigami_studio.{home}"), function)
+    return command

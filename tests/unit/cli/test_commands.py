@@ -7,7 +7,6 @@ import math
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import ezdxf
@@ -17,8 +16,8 @@ from command_line import answer, refusal
 from PIL import Image
 from uneven_sheets import uneven_sheet
 
-from kirigami_studio.cli import main
-from kirigami_studio.cli.parser import SubCommand, all_commands
+from kirigami_studio.cli import library, main
+from kirigami_studio.cli.parser import SubCommand, all_commands, found
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
@@ -41,8 +40,7 @@ def ratios(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("command", all_commands(), ids=lambda command: command.name)
 def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
-    module, function = command.run.split(":")
-    assert callable(vars(import_module(f"kirigami_studio.{module}"))[function])
+    assert callable(found(command.run))
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
@@ -453,6 +451,6 @@ def test_that_ctrl_c_is_the_exit_code_that_shells_expect(
     def stopped(_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("kirigami_studio.cli.library.targets", stopped)
+    monkeypatch.setattr(library, "targets", stopped)
     assert main(["targets"]) == 130
     assert len(capsys.readouterr().err.splitlines()) == 1
