@@ -1,7 +1,7 @@
 """Everything that the program writes, hindered: killed, out of room, without permission.  A line of JSON for each.
 
-``kills --count 200`` kills a process that writes again and again, at random moments; ``full`` lets no file grow beyond
-a few bytes, as on a full disk; ``readonly`` takes away the right to write, as another user.
+``kills --count 200`` kills a process that writes again and again, at random moments and in the midst of files;
+``full`` lets no file grow beyond a few bytes, as on a full disk; ``readonly`` takes away the right to write, as another user.
 """
 
 from __future__ import annotations
@@ -111,7 +111,8 @@ def killed(count: int, seed: int, folder: Path) -> None:
         for writer in writers:
             writer(folder, number)
         whole.append({path.name: content_of(path) for path in folder.iterdir()})
-    for _ in range(count):
+    for number in range(count):
+        before = set(folder.iterdir())  # with what killed writers have left
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
@@ -119,7 +120,11 @@ def killed(count: int, seed: int, folder: Path) -> None:
             _write_for_ever(writers, folder, writing)
         os.close(writing)
         os.read(reading, 1)  # it has begun
-        time.sleep(draw.uniform(0.0, LONGEST_LIFE))
+        if number % 2:  # in the midst of a file, however seldom the writer is in one
+            while set(folder.iterdir()) <= before:
+                pass
+        else:
+            time.sleep(draw.uniform(0.0, LONGEST_LIFE))
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         os.close(reading)
