@@ -1,7 +1,8 @@
 """Everything that the program writes, hindered: killed, out of room, without permission.  A line of JSON for each.
 
 ``kills --count 200`` kills a process that writes again and again, at random moments and in the midst of files;
-``full`` lets no file grow beyond a few bytes, as on a full disk; ``readonly`` takes away the right to write, as another user.
+``full`` lets no file grow beyond a few bytes, as on a full disk; ``readonly`` takes away the right to write, as another
+user.
 """
 
 from __future__ import annotations

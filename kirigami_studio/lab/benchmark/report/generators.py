@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from kirigami_studio.generator.weights import digest_of, variants
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.lab.benchmark.report.cells import Figures, beside, interval, points, share, spread
 
@@ -20,6 +21,12 @@ def generator_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
         "`ot-cfm`, `diffusion`, `cgan` and `cvae` were trained here (below); the others are bundled. "
         "`kirigami-studio benchmark generators`"
     )
+    if older := rows_of_older_weights(figures["weights"]):
+        yield ""
+        yield (
+            f"Measured before the bundled weights were trained anew: {', '.join(older)}. "
+            "The model card has the figures of those that are bundled now."
+        )
     for family, table in figures["families"].items():
         yield ""
         yield f"{family.capitalize()}, {table['targets']} targets"
@@ -47,6 +54,12 @@ def generator_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
             yield ""
             yield f"![sIoU against network evaluations of a sample, {family}]({name})"
     yield ""
+
+
+def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:
+    """Return the bundled variants whose weights are no longer those that were measured, by SHA-256."""
+    bundled = {name: digest_of(name) for name in variants()}
+    return [name for name, digest in measured.items() if bundled.get(name, digest) != digest]
 
 
 def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:

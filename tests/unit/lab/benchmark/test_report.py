@@ -11,7 +11,9 @@ from command_line import answer
 from PIL import Image
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
+from kirigami_studio.lab.benchmark.report.generators import rows_of_older_weights
 from kirigami_studio.lab.benchmark.report.whole import made_from
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -78,6 +80,11 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     (sheet,) = json.loads((runs / "as-cut.json").read_text())["sheets"]
     assert sheet["passed"] and sheet["pieces"] == 1 and sheet["jam_deg"] == 0.0 and sheet["iou_as_cut"] > 0.97
     assert made_from(runs) == made_from(runs)
+
+
+def test_that_rows_of_weights_that_are_no_longer_bundled_are_named() -> None:
+    measured = {"paper": "0" * 64, "prior": digest_of("prior"), "ot-cfm": "1" * 64}  # that one was never bundled
+    assert rows_of_older_weights(measured) == ["paper"]
 
 
 def test_that_a_chart_shows_every_curve_with_its_name() -> None:
