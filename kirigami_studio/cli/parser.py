@@ -425,12 +425,12 @@ def _late(place: str) -> Callable[[argparse.Namespace], int]:
     """Import a command's function only when it is called: ``--help`` and the window stay quick."""
 
     def call(arguments: argparse.Namespace) -> int:
-        return found(place)(arguments)
+        return command_function(place)(arguments)
 
     return call
 
 
-def found(place: str) -> Callable[[argparse.Namespace], int]:
+def command_function(place: str) -> Callable[[argparse.Namespace], int]:
     """Import the function of a command, see :class:`SubCommand`."""
     module, function = place.split(":")
     home = module if module.startswith("lab.") else f"cli.{module}"

@@ -103,7 +103,7 @@ def picture_of(members: Mapping[str, bytes]) -> TracedPicture | None:
             raise ProjectError("project.member_missing", name=member)
         width, height = record.pair("size")
         return TracedPicture(
-            name=plain_line(name),
+            name=name if "\0" in name else plain_line(name),  # no file has such a name: it is refused
             content=members[member],
             automatic=record.number("automatic"),
             threshold=record.number("threshold"),

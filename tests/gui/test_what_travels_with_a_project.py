@@ -166,7 +166,7 @@ def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
         elif fault == "Nothing to paste":
             members["picture.json"] = members["picture.json"].replace(b"two greys.png", b"../../evil.png")
         elif fault == "no name":
-            members["picture.json"] = members["picture.json"].replace(b"two greys.png", rb"\u0000")
+            members["picture.json"] = members["picture.json"].replace(b"two greys.png", rb"two\u0000greys.png")
         elif fault == "too large":
             members["picture.png"] += bytes(picture_record.LARGEST_PICTURE)
         else:

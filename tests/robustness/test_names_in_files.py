@@ -12,6 +12,7 @@ import pytest
 import tomli_w
 
 from kirigami_studio.fabricate.material import presets, read_preset
+from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.foundation.files import read_toml
 from kirigami_studio.foundation.plain_text import LONGEST_NAME, LONGEST_NOTE
 from kirigami_studio.foundation.resources import resource
@@ -98,6 +99,10 @@ def test_that_settings_and_materials_have_plain_names(hostile: str, tmp_path: Pa
     path.write_text(tomli_w.dumps({"profile": hostile, "material": hostile}), encoding="utf-8")
     read = preferences.load(path)
     assert are_plain(read.profile, read.material)
+    path.write_text(tomli_w.dumps({"paper": hostile}), encoding="utf-8")
+    with pytest.raises(ProjectError) as unknown:
+        preferences.load(path)
+    assert unknown.value.code == "preferences.unknown_choice" and are_plain(str(unknown.value), longest=LONGEST_NOTE)
     path.write_text(tomli_w.dumps({"projects": [hostile, "/home/fox.kiri"], "targets": [hostile]}), encoding="utf-8")
     known = recent.load(path)
     assert known.projects[-1] == "/home/fox.kiri" and are_plain(*known.projects, *known.targets, longest=4096)

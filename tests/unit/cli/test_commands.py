@@ -17,7 +17,7 @@ from PIL import Image
 from uneven_sheets import uneven_sheet
 
 from kirigami_studio.cli import library, main
-from kirigami_studio.cli.parser import SubCommand, all_commands, found
+from kirigami_studio.cli.parser import SubCommand, all_commands, command_function
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import deploy
@@ -40,7 +40,7 @@ def ratios(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("command", all_commands(), ids=lambda command: command.name)
 def test_that_every_sub_command_finds_its_function(command: SubCommand) -> None:
-    assert callable(found(command.run))
+    assert callable(command_function(command.run))
 
 
 def test_that_decode_answers_with_the_exact_layout(capsys: pytest.CaptureFixture[str], ratios: Path) -> None:
