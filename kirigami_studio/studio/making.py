@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.foundation.errors import Cancelled, ExportError, KirigamiError, ProjectError, UsageError
+from kirigami_studio.foundation.errors import (
+    Cancelled,
+    ExportError,
+    FabricationError,
+    KirigamiError,
+    ProjectError,
+    UsageError,
+)
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
@@ -73,6 +80,23 @@ class Planned:
     verdict: Verdict
     removed_share: float = 0.0
     work: Work | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TimedDesign:
+    """How long cutting a design takes.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    settings : FabricationSettings
+        How it is cut.
+    seconds : float
+    """
+
+    candidate: Candidate
+    settings: FabricationSettings
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -580,6 +604,18 @@ def gripping(
     end = max(sheet.as_cut.reached, CLOSED)
     steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
     yield from in_turns(steps, cancel)
+
+
+def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDesign]:
+    """Work out how long cutting takes, design by design; those whose cuts cannot be planned are left out."""
+    importing.import_as_cut()
+    for request in requests:
+        try:
+            made = planned(request, cancel)
+        except FabricationError:
+            continue  # which planning explains once it is chosen
+        times = made.plan.times if made.work is None else made.work.times
+        yield TimedDesign(request.candidate, request.settings, times.total)
 
 
 def estimating(

@@ -147,6 +147,7 @@ class MainWindow(QMainWindow):
         self.columns.setStretchFactor(1, 1)
         self.columns.splitterMoved.connect(self._keep_columns)
         self.target.editing_changed.connect(self._make_room)
+        self.stage.whole_width_wanted.connect(self._give_whole_width)
         body = QWidget()
         body.setObjectName("body")
         whole = QVBoxLayout(body)
@@ -274,6 +275,9 @@ class MainWindow(QMainWindow):
     def _make_room(self, editing: bool) -> None:
         """The target's editor takes the place of the stage and the settings while it is open."""
         sizes = self.columns.sizes()
+        if editing and self.stage.wants_whole_width:
+            self.stage.set_comparing(False)
+            sizes = self._sizes_before
         if editing:
             self._sizes_before = sizes
             self.columns.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
@@ -285,6 +289,19 @@ class MainWindow(QMainWindow):
             self._share_width()
             if self.target.view.hasFocus() or self.focusWidget() is None:
                 self.stage.view.setFocus()
+
+    def _give_whole_width(self, whole: bool) -> None:
+        """Three designs and more beside each other take the place of the outer columns."""
+        outer = self.columns.widget(0), self.columns.widget(2)
+        if whole == outer[0].isHidden():
+            return
+        if whole:
+            self._sizes_before = self.columns.sizes()
+        for column in outer:
+            column.setVisible(not whole)
+        if not whole:
+            self.columns.setSizes(self._sizes_before)
+            self._share_width()
 
     def _keep_columns(self) -> None:
         self._laid_out = True
@@ -333,6 +350,7 @@ class MainWindow(QMainWindow):
             event.ignore()
             return
         self.stage.player.play.setChecked(False)
+        self.stage.set_comparing(False)  # whose columns would be remembered
         self.tour.end()
         self.dialogs.close()
         self.hide()  # the worker may be deep in an import: let it end out of sight

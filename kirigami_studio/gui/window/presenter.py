@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, QPoint, QRect
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.all_designs_presenter import AllDesignsPresenter
+from kirigami_studio.gui.gallery.comparing import Comparison
 from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
-from kirigami_studio.gui.gallery.side_by_side import SideBySide
 from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
 from kirigami_studio.gui.run.run_presenter import RunPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
@@ -53,8 +53,8 @@ class Connections(QObject):
             choose=controller.choose,
             change=controller.change_settings,
         )
-        self.side_by_side = SideBySide(
-            gallery, stage.compare, session, choose=controller.choose, turn=stage.set_comparing
+        self.comparison = Comparison(
+            gallery, stage.compare, session, controller.as_cut, choose=controller.choose, turn=stage.set_comparing
         )
         self.all_designs = AllDesignsPresenter(
             window.center,
@@ -64,7 +64,7 @@ class Connections(QObject):
             generation=controller.generation,
             marks=controller.marks,
             choose=controller.choose,
-            phi=lambda: stage.view.phi,
+            compare=self.comparison.compare,
         )
         self.target = TargetPresenter(
             window.target,
@@ -177,8 +177,8 @@ class Connections(QObject):
     def _connect_pages(self) -> None:
         """A view in the place of another."""
         window, stage = self._window, self._window.stage
-        self.designs.compare_wanted.connect(self.side_by_side.compare_with)
-        stage.comparing_changed.connect(self.side_by_side.follow)
+        self.designs.compare_wanted.connect(self.comparison.compare_with)
+        stage.comparing_changed.connect(self.comparison.follow)
         for hidden_by_table in (window.target.editing_changed, stage.comparing_changed):
             hidden_by_table.connect(self.all_designs.leave_to)
         self.all_designs.shown_changed.connect(self._make_way)
@@ -241,7 +241,7 @@ class Connections(QObject):
     def _show_document(self, document: Document) -> None:
         """The document has changed."""
         self.designs.show_document(document)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
         self.all_designs.show_document()
         self.target.show_document(document)
         self.stage.show_document()
@@ -255,7 +255,7 @@ class Connections(QObject):
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is on the stage, or none."""
         self.designs.show_design(entry)
-        self.side_by_side.show_design(entry)
+        self.comparison.show_design(entry)
         self.all_designs.show_design(entry)
         self.stage.show_design(entry)
         self.making.show_design(entry)
@@ -265,13 +265,13 @@ class Connections(QObject):
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         """Other designs are in the gallery."""
         self.designs.show_gallery(entries)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
         self.all_designs.show_document()
 
     def _show_found(self, entry: Entry) -> None:
         """A run has found a design, or improved one."""
         self.designs.add(entry)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
 
     def _show_reading(self, reading: TargetReading | None) -> None:
         """Show what the target's shape says of symmetry and grid."""
@@ -295,7 +295,7 @@ class Connections(QObject):
         """The table of all designs comes, or is gone."""
         window = self._window
         if not shown:
-            window.stage.view.setFocus()
+            window.stage.take_focus()
             return
         if window.target.editing:
             window.target.set_editing(False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
@@ -59,7 +59,8 @@ class StagePanel(Card):
     before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
     status = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
-    comparing_changed = Signal(bool)  #: whether two designs are shown side by side
+    comparing_changed = Signal(bool)  #: whether several designs are shown side by side
+    whole_width_wanted = Signal(bool)  #: more of them than have room beside the other columns
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Layout"), parent)
@@ -80,7 +81,7 @@ class StagePanel(Card):
         self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
         self.compare = ComparePage()
-        self.compare.pair_changed.connect(self.show_title)
+        self.compare.shown_changed.connect(self._show_comparison)
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
@@ -140,7 +141,7 @@ class StagePanel(Card):
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
         for button in (self.whole, *self.toggles.values()):
-            button.hide()  # until it is known that there is room: they must not make the stage wider than its share
+            button.hide()  # until it is known that there is room
 
     def _add_pages(self) -> None:
         self._layout_page = layout = QWidget()
@@ -212,13 +213,17 @@ class StagePanel(Card):
 
     @property
     def comparing(self) -> bool:
-        """Whether two designs are shown side by side."""
+        """Whether several designs are shown side by side."""
         return self.pages.currentWidget() is self.compare
 
     @property
     def player(self) -> DeploymentBar | CutBar:
         """What Space plays now."""
         return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
+
+    def take_focus(self) -> None:
+        """Give the keyboard to what is in sight."""
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
@@ -229,10 +234,19 @@ class StagePanel(Card):
         (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
 
     def set_comparing(self, on: bool) -> None:
-        """Show two designs side by side, or one alone."""
+        """Show several designs side by side, or one alone."""
         if on != self.comparing:
             self.cuts_switch.switch.setChecked(False)
             self._turn_to(self.compare if on else self._layout_page)
+
+    @property
+    def wants_whole_width(self) -> bool:
+        """Whether more designs are compared than have room beside the other columns."""
+        return self.comparing and len(self.compare.designs) > 2
+
+    def _show_comparison(self) -> None:
+        self.show_title()
+        self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _toggle_cuts(self, on: bool) -> None:
         self._turn_to(self.cuts if on else self._layout_page)
@@ -249,11 +263,12 @@ class StagePanel(Card):
             button.setVisible(not cuts)
         for button in self.cuts.toggles.values():
             button.setVisible(cuts)
-        (self.cuts.view if cuts else self.compare.left.view if self.comparing else self.view).setFocus()
+        self.take_focus()
         self.show_title()
         self.switches_changed.emit()
         if compared != self.comparing:
             self.comparing_changed.emit(self.comparing)
+            self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _toggle_hand(self, on: bool) -> None:
         self.voids.setVisible(on)
@@ -379,7 +394,8 @@ class StagePanel(Card):
     def show_title(self) -> None:
         """Show what the header says of the design or of its cuts."""
         entry, name = self._entry, self._name
-        self.title.setText(tr("Layout") if entry is None or not name else tr("Design {name}", name=name))
+        alone = tr("Layout") if entry is None or not name else tr("Design {name}", name=name)
+        self.title.setText(tr("Comparison") if self.comparing else alone)
         self.numbers.set_texts(*self._texts())
         self.numbers.setToolTip("" if entry is None else described(entry.candidate, name))
         self._fit_numbers()
@@ -448,6 +464,13 @@ class StagePanel(Card):
         self.deployment.remember(settings)
         settings.setValue("plots", "yes" if self.plots_switch.isChecked() else "no")
         settings.setValue("plotsSplit", self.split.saveState())
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """Leave out the buttons that go where there is no room."""
+        whole, spacing = super().minimumSizeHint(), self.header.spacing()
+        shown = [button for button in (self.whole, *self.toggles.values()) if not button.isHidden()]
+        header = whole.width() - sum(button.minimumSizeHint().width() + spacing for button in shown)
+        return QSize(max(header, self.pages.minimumSizeHint().width() + 2 * INSET), whole.height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         self._fit_numbers()

@@ -221,7 +221,7 @@ def _faults(window: MainWindow) -> tuple[Command, ...]:
 
 
 def _pages(window: MainWindow) -> tuple[Command, ...]:
-    stage, comparison, menu = window.stage, window.connections.side_by_side, tr("&View")
+    stage, comparison, menu = window.stage, window.connections.comparison, tr("&View")
     return (
         Command(
             "before",
@@ -258,7 +258,7 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             "compare",
             menu,
             tr("Si&de by side"),
-            tr("Compare two designs side by side"),
+            tr("Compare designs side by side"),
             window.gallery.bar.compare.switch.trigger,
             shortcuts=("K",),
             icon="compare",
