@@ -41,6 +41,8 @@ class Motion(StrEnum):
     STILL = "still"
 
 
+#: Entries of earlier versions that mean nothing now.
+RETIRED = ("tour_seen",)
 _NAME = Setting(code="preferences.not_a_name", error=ProjectError).metadata
 _CHOICE = Setting(code="preferences.unknown_choice", error=ProjectError).metadata
 _FLAG = Setting(code="preferences.not_true_or_false", error=ProjectError).metadata
@@ -59,8 +61,6 @@ class Preferences:
     theme : Theme
     language : str
         Code of the window's language, or "system" for the desktop's.
-    tour_seen : bool
-        Whether the guided tour was taken before.
     material : str
         Key of the material that was chosen last.
     paper : Paper
@@ -77,7 +77,6 @@ class Preferences:
     dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)
     theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
     language: str = field(default="system", metadata=_NAME)
-    tour_seen: bool = field(default=False, metadata=_FLAG)
     material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
     paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
     size: TypedSize = field(default=TypedSize.OPENED, metadata=_CHOICE)
@@ -136,6 +135,8 @@ def load(path: Path) -> Preferences:
         return Preferences()
     except (OSError, ValueError) as error:
         raise ProjectError("preferences.not_readable", path=path, reason=str(error)) from error
+    for name in RETIRED:
+        entries.pop(name, None)
     if unknown := entries.keys() - asdict(Preferences()).keys():
         raise ProjectError("preferences.unknown_entries", path=path, names=", ".join(sorted(unknown)))
     return Preferences(**entries)

@@ -84,7 +84,7 @@ class Planned:
 
 @dataclass(frozen=True, slots=True)
 class TimedDesign:
-    """How long cutting a design takes.
+    """Time of cutting a design.
 
     Attributes
     ----------
@@ -607,7 +607,7 @@ def gripping(
 
 
 def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDesign]:
-    """Work out how long cutting takes, design by design; those whose cuts cannot be planned are left out."""
+    """Yield the cutting times of designs, but for those whose cuts cannot be planned."""
     importing.import_as_cut()
     for request in requests:
         try:

@@ -54,7 +54,6 @@ SHARED = frozenset(
         "Session",
         "Sheet",
         "Simulation",
-        "Step",
         "TargetReader",
     }
 )

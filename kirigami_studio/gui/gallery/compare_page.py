@@ -19,9 +19,9 @@ from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.stage.layout_view import LayoutView
-from kirigami_studio.gui.widgets.card import ElidedLabel, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
 from kirigami_studio.gui.widgets.legends import Chip
-from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_time
+from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_feature, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette, themed
 from kirigami_studio.gui.widgets.view_transform import Bounds
 from kirigami_studio.outlines.outline import Outline
@@ -86,12 +86,10 @@ TIPS = {
 
 
 BEHIND = mark("Behind it the difference from design 1.")
-#: Rows of words, which need no room for a difference.
-WORDS = frozenset({"as_cut"})
 
 
-class Figure(NamedTuple):
-    """One row under a design: its caption and text, and the number where two of one kind may be subtracted."""
+class ComparedFigure(NamedTuple):
+    """One row under a design; its value is None where two of them are not subtracted."""
 
     caption: str
     text: str
@@ -99,7 +97,7 @@ class Figure(NamedTuple):
     form: str = "+.0f"
     kind: str = ""
 
-    def apart(self, first: Figure) -> str:
+    def apart(self, first: ComparedFigure) -> str:
         """How far the number is above or below that of another design."""
         if self.value is None or first.value is None or self.kind != first.kind:
             return ""
@@ -107,25 +105,25 @@ class Figure(NamedTuple):
         return "=" if gap in (number(0.0, self.form), number(-0.0, self.form)) else gap
 
 
-def figures_of(one: ComparedDesign) -> dict[str, Figure]:
-    """The rows under a design: how well it matches, how it does as cut, how long that takes, how regular it is."""
+def figures_of(one: ComparedDesign) -> dict[str, ComparedFigure]:
+    """Return the rows under a design by their names, in their order."""
     candidate, found = one.entry.candidate, one.as_cut
     score, even = candidate.score, candidate.final_sheet.has_even_rim
     match, variation, gain = 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, 100.0 * score.siou_gain
     smallest = one.width_mm * least_panel_share(one.entry.design.deployment)
     time = UNKNOWN if one.seconds is None else readable_time(one.seconds)
     rows = {
-        "match": Figure(tr("Match"), tr("{match:.1f} %", match=match), match, "+.1f"),
-        "as_cut": Figure(tr("As cut"), UNKNOWN),
-        "strain": Figure(tr("Strain"), UNKNOWN),
-        "time": Figure(tr("Cut time"), time, one.seconds),
-        "smallest": Figure(tr("Smallest"), tr("{size:.3g} mm", size=smallest), smallest, "+.2f"),
-        "panels": Figure(tr("Panels"), tr("±{variation:.0f} %", variation=variation), variation),
-        "gain": Figure(tr("Gain"), tr("{gain:+.1f}", gain=gain), gain, "+.1f"),
-        "roughness": Figure(tr("Roughness"), tr("{tv:.2f}", tv=score.tv), score.tv, "+.2f"),
-        "symmetric": Figure(tr("Symmetric"), tr("no") if candidate.symmetry is None else tr("yes")),
-        "rim": Figure(tr("Rim"), tr("even") if even else tr("free")),
-        "feasible": Figure(tr("Feasible"), tr("yes") if score.feasible else tr("no")),
+        "match": ComparedFigure(tr("Match"), tr("{match:.1f} %", match=match), match, "+.1f"),
+        "as_cut": ComparedFigure(tr("As cut"), UNKNOWN),
+        "strain": ComparedFigure(tr("Strain"), UNKNOWN),
+        "time": ComparedFigure(tr("Cut time"), time, one.seconds),
+        "smallest": ComparedFigure(tr("Smallest"), readable_feature(smallest), smallest, "+.2f"),
+        "panels": ComparedFigure(tr("Panels"), tr("±{variation:.0f} %", variation=variation), variation),
+        "gain": ComparedFigure(tr("Gain"), tr("{gain:+.1f}", gain=gain), gain, "+.1f"),
+        "roughness": ComparedFigure(tr("Roughness"), tr("{tv:.2f}", tv=score.tv), score.tv, "+.2f"),
+        "symmetric": ComparedFigure(tr("Symmetric"), tr("no") if candidate.symmetry is None else tr("yes")),
+        "rim": ComparedFigure(tr("Rim"), tr("even") if even else tr("free")),
+        "feasible": ComparedFigure(tr("Feasible"), tr("yes") if score.feasible else tr("no")),
     }
     if found is not None:
         about, strain = "" if one.simulated else "\N{ALMOST EQUAL TO} ", 100.0 * found.strain
@@ -139,7 +137,7 @@ def _outcome(found: AsCut) -> str:
     """Whether a sheet comes to its angle, in few words."""
     if found.closes:
         return tr("closes") if math.degrees(found.phi) < 0.5 else tr("opens")
-    return tr("jams at {jam:.0f}°", jam=math.degrees(found.jam_phi))
+    return tr("jams {jam:.0f}°", jam=math.degrees(found.jam_phi))
 
 
 class ComparedView(LayoutView):
@@ -185,7 +183,7 @@ class FigureRows(QWidget):
         self.gaps: dict[str, QLabel] = {}
         self._columns = 0
 
-    def show_figures(self, figures: Mapping[str, Figure], first: Mapping[str, Figure] | None) -> None:
+    def show_figures(self, figures: Mapping[str, ComparedFigure], first: Mapping[str, ComparedFigure] | None) -> None:
         """Show the rows of a design, and how far its numbers are from those of the first one."""
         for name, figure in figures.items():
             if name not in self.values:
@@ -207,7 +205,7 @@ class FigureRows(QWidget):
     def column_width(self) -> int:
         """Pixels that one column of rows takes."""
         widths = [
-            max(label.sizeHint().width() for name, label in labels.items() if name not in WORDS)
+            max(label.sizeHint().width() for label in labels.values())
             for labels in (self.captions, self.values, self.gaps)
         ]
         return sum(widths) + 2 * self._grid.horizontalSpacing()
@@ -222,9 +220,8 @@ class FigureRows(QWidget):
         for place, name in enumerate(self.values):
             side, row = divmod(place, rows)
             self.captions[name].setMaximumWidth(widest)
-            self._grid.addWidget(self.captions[name], row, 4 * side)
-            self._grid.addWidget(self.values[name], row, 4 * side + 1, 1, 2 if name in WORDS else 1)
-            self._grid.addWidget(self.gaps[name], row, 4 * side + 2)
+            for part, label in enumerate((self.captions[name], self.values[name], self.gaps[name])):
+                self._grid.addWidget(label, row, 4 * side + part)
         self._grid.setColumnMinimumWidth(3, BETWEEN if columns == 2 else 0)
         for column, stretch in ((0, 100), (3, 1), (4, 100 if columns == 2 else 0), (7, 1)):
             self._grid.setColumnStretch(column, stretch)
@@ -235,7 +232,7 @@ class Pane(QWidget):
 
     def __init__(self, place: int) -> None:
         super().__init__()
-        self.title = FittingLabel()
+        self.title = ElidedLabel(Qt.TextElideMode.ElideRight)
         self.title.setObjectName("number")
         self.use = ToolButton(f"take{place + 1}", "check", tr("Use this design ({key}).", key=place + 1))
         self.view = ComparedView()
@@ -243,8 +240,7 @@ class Pane(QWidget):
         self.view.setAccessibleName(tr("Layout of design {number}", number=place + 1))
         self.figures = FigureRows()
         head = QHBoxLayout()
-        head.addWidget(self.title)
-        head.addStretch(1)
+        head.addWidget(self.title, 1)
         head.addWidget(self.use)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -252,18 +248,6 @@ class Pane(QWidget):
         column.addLayout(head)
         column.addWidget(self.view, 1)
         column.addWidget(self.figures)
-
-    def name(self, *titles: str) -> None:
-        """Show the longest of these titles that there is room for."""
-        self.title.set_texts(*titles)
-        self._fit()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        super().resizeEvent(event)
-        self._fit()
-
-    def _fit(self) -> None:
-        self.title.fit(self.width() - self.use.sizeHint().width() - 12)
 
     def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
         """Show the layout of a design over the target."""
@@ -276,7 +260,7 @@ class Pane(QWidget):
 
 
 class ComparePage(QWidget):
-    """Shows designs at one angle, zoom and place; figures are compared with those of the first one.
+    """Designs at one angle, zoom and place, their figures compared with those of the first.
 
     Panes are made when they are first wanted: their drawings take longer than all the rest.
     """
@@ -361,7 +345,7 @@ class ComparePage(QWidget):
                 pane.hide()
                 pane.view.show_design(None, None, None)
                 continue
-            pane.name(*_titles(place + 1, one))
+            pane.title.setText(*_titles(place + 1, one))
             if not (same_target and place < len(before) and before[place].entry is one.entry):
                 pane.show_design(one, target)
             pane.view.set_sheet_width(one.width_mm)
@@ -408,7 +392,7 @@ class ComparePage(QWidget):
             self.bar.set_marks(first.design.phi_target, touches, None if second is None else second.target.phi)
 
     def _arrange(self) -> None:
-        """As many panes beside each other as fit, in rows of equal length; figures alike in all of them."""
+        """Lay out panes in rows of equal length, and figures alike in all of them."""
         count = len(self._designs)
         if not count:
             return
@@ -486,7 +470,7 @@ class ComparePage(QWidget):
 
 def _titles(place: int, one: ComparedDesign) -> tuple[str, ...]:
     """How a pane is called, longest first."""
-    plain = (tr("{place}   Design {name}", place=place, name=one.name), f"{place}   {one.name}", one.name)
+    plain = (tr("{place}   Design {name}", place=place, name=one.name), f"{place}   {one.name}")
     if not one.chosen:
         return plain
     return (

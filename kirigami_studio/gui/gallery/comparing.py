@@ -1,4 +1,4 @@
-"""Which designs are compared, when the stage shows them, and what is found out about them meanwhile."""
+"""The choice of compared designs, and the search for unknown figures of theirs."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Comparison(QObject):
         self._return = back if self._comparing else None
 
     def show(self, on: bool) -> None:
-        """Show the designs that were compared last, else the chosen one and the next card; or the chosen one alone."""
+        """Show the pair compared last, else the chosen design and the next card; or one alone."""
         stage = self._session.stage
         if not on:
             self.leave()
@@ -142,7 +142,7 @@ class Comparison(QObject):
         self._choose(candidate)
 
     def show_design(self, entry: Entry | None) -> None:
-        """Another design is chosen: it takes the place of the one before, unless it is compared already."""
+        """Let a newly chosen design take the place of the one before, unless it is compared."""
         candidate = None if entry is None else entry.candidate
         if candidate is not None and candidate not in self._compared and self._chosen in self._compared:
             self._compared = tuple(candidate if one == self._chosen else one for one in self._compared)

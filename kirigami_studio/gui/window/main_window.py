@@ -48,7 +48,6 @@ from kirigami_studio.gui.window.open_dialogs import Dialogs
 from kirigami_studio.gui.window.presenter import Connections
 from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
-from kirigami_studio.gui.window.tour import Tour
 from kirigami_studio.gui.window.unsaved_work import UnsavedWork
 from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS, Appearance
 
@@ -75,7 +74,7 @@ def all_commands(window: MainWindow) -> tuple[Command, ...]:
         *draw_commands.commands(window.target, window.messages.add),
         *design_commands.commands(window),
         *view_commands.commands(window),
-        *help_commands.commands(window.dialogs, lambda: window.tour.start(), window.files.open_sample),
+        *help_commands.commands(window.dialogs, window.files.open_sample),
     )
 
 
@@ -120,7 +119,6 @@ class MainWindow(QMainWindow):
         self._build_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
-        self.tour = Tour(self, controller)
         self.set_theme(palette)
 
     def _build_columns(self) -> None:
@@ -179,6 +177,7 @@ class MainWindow(QMainWindow):
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
         offer_context_menus(self.target, self.stage, self.commands)
+        self.stage.welcome.offer(self.commands.actions)
         controller, refresh = self.controller, self.commands.refresh
         for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
             document_signal.connect(refresh)
@@ -240,7 +239,7 @@ class MainWindow(QMainWindow):
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
         self._share_width()
-        self.stage.view.setFocus()
+        self.stage.take_focus()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
@@ -288,7 +287,7 @@ class MainWindow(QMainWindow):
             self.columns.setSizes(self._sizes_before)
             self._share_width()
             if self.target.view.hasFocus() or self.focusWidget() is None:
-                self.stage.view.setFocus()
+                self.stage.take_focus()
 
     def _give_whole_width(self, whole: bool) -> None:
         """Three designs and more beside each other take the place of the outer columns."""
@@ -351,7 +350,6 @@ class MainWindow(QMainWindow):
             return
         self.stage.player.play.setChecked(False)
         self.stage.set_comparing(False)  # whose columns would be remembered
-        self.tour.end()
         self.dialogs.close()
         self.hide()  # the worker may be deep in an import: let it end out of sight
         self.controller.close()

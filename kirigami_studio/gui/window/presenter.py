@@ -20,8 +20,8 @@ from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.void_presenter import VoidPresenter
 from kirigami_studio.gui.target.target_presenter import SecondPresenter, StartPresenter, TargetPresenter
 from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.gui.window.first_start import FirstStart
 from kirigami_studio.gui.window.stage_presenter import StagePresenter
+from kirigami_studio.gui.window.welcome_page import WelcomePresenter
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of
 from kirigami_studio.studio.making import Motion
@@ -138,7 +138,7 @@ class Connections(QObject):
         self._connect_target()
         self._connect_files()
         self._connect_messages()
-        self.first_start = FirstStart(stage, session, controller.preferences, lambda: window.tour.start())
+        self.welcome = WelcomePresenter(stage.welcome, session, controller.preferences)
         self._show_idle()
         self._show_document(controller.document)
         window.status_text.setText(tr("Choose or draw a target to begin."))

@@ -17,12 +17,12 @@ from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutState
 from kirigami_studio.gui.stage.as_cut_line import AsCutLine
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
-from kirigami_studio.gui.stage.empty_stage import EmptyStage
 from kirigami_studio.gui.stage.ends_line import EndsLine
 from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, LayoutView
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
 from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.two_states import TwoStates
 
@@ -155,9 +155,8 @@ class StagePanel(Card):
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
-        self.empty = EmptyStage()
-        self.empty.hide()
-        column.addWidget(self.empty, 1)
+        self.welcome = WelcomePage()
+        column.addWidget(self.welcome, 1)
         column.addWidget(self.split, 1)
         self.voids = VoidBar()
         self.voids.hide()
@@ -176,7 +175,7 @@ class StagePanel(Card):
     def set_hint(self, icon: str, headline: str, hint: str) -> None:
         """Say what to do while there is no design."""
         self.view.set_hint(icon, headline, hint)
-        self.empty.say(headline, hint)
+        self.welcome.say(headline, hint)
 
     def show_run(self, target: Outline | None) -> None:
         """Show the target until the first design of a run comes; the sample must not hide that."""
@@ -190,21 +189,23 @@ class StagePanel(Card):
         self._show_waiting()
 
     def _show_waiting(self) -> None:
-        self.place_sample()
+        self._place_welcome()
         if self._entry is None:
             self._show()
 
-    def place_sample(self) -> None:
-        """Show the sample while there is no design, if it is there and allowed."""
-        shown = self._sample_allowed and self._entry is None and self.empty.ready
-        pages: tuple[QWidget, QWidget] = (self.split, self.empty)
+    def _place_welcome(self) -> None:
+        """Show the welcome page while there is no design, and none on its way."""
+        shown = self._sample_allowed and self._entry is None
+        pages: tuple[QWidget, QWidget] = (self.split, self.welcome)
         leaving, coming = pages if shown else pages[::-1]
         focused = self.window().focusWidget()
         held = focused is not None and (leaving is focused or leaving.isAncestorOf(focused))
         coming.show()
         if held:  # else Qt would hand it to the next button
-            (self.empty if shown else self.view).setFocus()
+            (self.welcome if shown else self.view).setFocus()
         leaving.hide()
+        for part in (self.deployment, self.as_cut):
+            part.setVisible(not shown)
 
     @property
     def showing_cuts(self) -> bool:
@@ -223,7 +224,8 @@ class StagePanel(Card):
 
     def take_focus(self) -> None:
         """Give the keyboard to what is in sight."""
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).setFocus()
+        view = self.welcome if self.split.isHidden() else self.view
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else view).setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
@@ -289,7 +291,7 @@ class StagePanel(Card):
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.design is None and target != self._posed_for
         self._entry, self._target, self._name, self._sample = entry, target, name, None
-        self.place_sample()
+        self._place_welcome()
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()

@@ -353,7 +353,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
             tr("&View"),
             tr("Reduce motion"),
             tr("Nothing moves by itself, such as the sample on the empty stage"),
-            window.connections.first_start.switch_motion,
+            window.connections.welcome.switch_motion,
             checked_when=lambda now: now.still,
         ),
     )

@@ -101,7 +101,7 @@ class StateSheet(BoardStates):
         window = self.window
         window.show()
         self.all_sizes("empty")
-        self.first_start()
+        self.welcome()
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
@@ -151,15 +151,15 @@ class StateSheet(BoardStates):
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
 
-    def first_start(self) -> None:
-        """The sample on the empty stage with the question for machine and material, and without it."""
-        first, empty = self.window.connections.first_start, self.window.stage.empty
-        first.begin()
-        self.until(lambda: empty.ready, "the sample was not read")
-        empty.stop()
-        empty.view.set_phi(math.radians(100.0))
+    def welcome(self) -> None:
+        """The welcome page with the question for machine and material, and without it."""
+        presenter, page = self.window.connections.welcome, self.window.stage.welcome
+        presenter.begin()
+        self.until(lambda: page.ready, "the sample was not read")
+        page.stop()
+        page.view.set_phi(math.radians(100.0))
         self.all_sizes("first-start")
-        first.decline()
+        presenter.decline()
         self.all_sizes("sample")
 
     def german(self) -> None:
@@ -182,15 +182,8 @@ class StateSheet(BoardStates):
         speak(SYSTEM)
 
     def first_steps(self) -> None:
-        """The tour at a control on every side, the sheet of keys, and the licences."""
-        tour, dialogs = self.window.tour, self.window.dialogs
-        tour.start()
-        for step in range(len(tour.steps)):
-            if step == 2:
-                self.all_sizes("tour")
-            else:
-                self.picture(f"tour-{step + 1}")
-            click(tour.callout.next)
+        """The sheet of keys, and the licences."""
+        dialogs = self.window.dialogs
         dialogs.show_shortcuts()
         dialogs.show_about()
         for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):

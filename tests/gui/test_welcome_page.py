@@ -1,4 +1,4 @@
-"""What a new user meets: a sample that moves by itself, and one question, for machine and material."""
+"""The page of an empty stage: a sheet that moves, ways to begin, first steps, and one question."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication, QProxyStyle, QStyle, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QProxyStyle, QStyle, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.stage.empty_stage import moves
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.welcome_page import OFFERS, STEPS, moves
 from kirigami_studio.project import preferences
 from kirigami_studio.project.preferences import Preferences
 
@@ -31,13 +31,13 @@ def begun(window: MainWindow, until: Until, tmp_path: Path) -> MainWindow:
     """The first start, with the heart and its sample."""
     window.controller.use_preferences(tmp_path / "preferences.toml")
     window.controller.start_with("heart")
-    window.connections.first_start.begin()
-    until(lambda: window.stage.empty.ready and window.controller.document.target is not None)
+    window.connections.welcome.begin()
+    until(lambda: window.stage.welcome.ready and window.controller.document.target is not None)
     return window
 
 
 def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtBot, until: Until) -> None:
-    empty = begun.stage.empty
+    empty = begun.stage.welcome
     assert empty.isVisible() and empty.moving and not begun.stage.split.isVisible()
     before = empty.view.phi
     until(lambda: empty.view.phi != before)
@@ -51,10 +51,10 @@ def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtB
 
 def test_that_the_sample_stands_still_where_motion_is_reduced(begun: MainWindow, tmp_path: Path) -> None:
     begun.commands["still"].trigger()
-    assert not begun.stage.empty.moving and begun.commands["still"].isChecked()
+    assert not begun.stage.welcome.moving and begun.commands["still"].isChecked()
     assert preferences.load(tmp_path / "preferences.toml").motion == "still"
     begun.commands["still"].trigger()
-    assert begun.stage.empty.moving and not begun.commands["still"].isChecked()
+    assert begun.stage.welcome.moving and not begun.commands["still"].isChecked()
     style = Motionless()
     assert not moves("system", style) and moves("system", begun.style()) and not moves("still", begun.style())
 
@@ -65,18 +65,18 @@ def test_that_the_sample_gives_way_to_a_design_and_comes_back_without_one(
     stage = begun.stage
     begun.controller.open_project(project_file)
     until(lambda: begun.controller.stage is not None)
-    assert stage.split.isVisible() and not stage.empty.isVisible() and not stage.empty.moving
+    assert stage.split.isVisible() and not stage.welcome.isVisible() and not stage.welcome.moving
     until(lambda: begun.fabrication.export.isEnabled())
     begun.controller.new_project()
     until(lambda: begun.controller.stage is None)
-    assert stage.empty.isVisible() and "target" in stage.empty.hint.text().lower() + stage.empty.headline.text()
+    assert stage.welcome.isVisible() and "target" in stage.welcome.hint.text().lower() + stage.welcome.headline.text()
 
 
 @pytest.mark.parametrize("key", ["paper-hand", "card-co2"])
 def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     key: str, begun: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
-    question = begun.stage.empty.question
+    question = begun.stage.welcome.question
     assert question.isVisible() and len(question.buttons) == 4
     if key == "paper-hand":
         qtbot.mouseClick(question.buttons["by hand"], LEFT)
@@ -94,12 +94,12 @@ def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     assert begun.fabrication.export.text() == ("Export PDF" if by_hand else "Export DXF")
     begun.controller.new_project()
     assert begun.controller.document.fabrication.material == key
-    begun.connections.first_start.begin()
+    begun.connections.welcome.begin()
     assert not question.isVisible()
 
 
 def test_that_declining_is_an_answer_too(begun: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
-    qtbot.mouseClick(begun.stage.empty.question.later, LEFT)
+    qtbot.mouseClick(begun.stage.welcome.question.later, LEFT)
     assert preferences.load(tmp_path / "preferences.toml") == Preferences(machine_asked=True)
     assert begun.controller.document.fabrication.material == Preferences().material
 
@@ -110,7 +110,7 @@ def test_that_an_answer_after_work_has_begun_is_one_step_back(
     begun.controller.open_project(project_file)
     until(lambda: begun.controller.stage is not None)
     before = begun.controller.document.fabrication.material
-    begun.connections.first_start.choose("drag-knife")
+    begun.connections.welcome.choose("drag-knife")
     assert begun.controller.document.fabrication.material == "drag-knife" and begun.controller.document.candidates
     begun.commands["undo"].trigger()
     assert begun.controller.document.fabrication.material == before
@@ -121,19 +121,72 @@ def test_that_every_part_of_the_empty_stage_fits(begun: MainWindow, width: int, 
     begun.resize(width, height)
     for _ in range(3):
         QApplication.processEvents()
-    empty = begun.stage.empty
-    parts: list[QWidget] = [*empty.question.buttons.values(), empty.question.later, empty.tour, begun.target.opened]
+    empty = begun.stage.welcome
+    parts: list[QWidget] = [*empty.question.buttons.values(), empty.question.later, empty.guide, begun.target.opened]
+    parts += empty.offers.values()
     for part in parts:
         assert part.isVisible() and part.width() >= part.minimumSizeHint().width(), part.objectName()
         corner = part.mapTo(begun, part.rect().bottomRight())
         assert begun.rect().contains(corner)
     for button in empty.question.buttons.values():
         assert button.fontMetrics().horizontalAdvance(button.text()) < button.width() - 8
+    for offer in empty.offers.values():
+        assert offer.fontMetrics().horizontalAdvance(offer.text()) + offer.iconSize().width() < offer.width() - 8
     assert empty.view.height() >= 140
+    if empty.steps.isVisible():
+        rows = [label for label in empty.steps.findChildren(QLabel) if label.wordWrap()]
+        assert len(rows) == len(STEPS) and all(row.height() >= row.heightForWidth(row.width()) for row in rows)
+    else:
+        assert height < 900, "there is room for the steps"
 
 
 def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot) -> None:
-    button = begun.stage.empty.question.buttons["by hand"]
+    button = begun.stage.welcome.question.buttons["by hand"]
     button.setFocus(Qt.FocusReason.TabFocusReason)
     qtbot.keyClick(button, Qt.Key.Key_Space)
     assert begun.controller.document.fabrication.material == "paper-hand"
+
+
+def test_that_the_page_is_there_before_its_sample(window: MainWindow) -> None:
+    page = window.stage.welcome
+    assert page.isVisible() and not page.ready and not page.view.isVisible() and not window.stage.split.isVisible()
+    assert not window.stage.deployment.isVisible(), "there is nothing to open yet"
+    assert page.isAncestorOf(window.focusWidget() or window) or page.hasFocus()
+
+
+def test_that_every_offer_does_what_its_command_does(window: MainWindow, qtbot: QtBot) -> None:
+    done = []
+    assert list(window.stage.welcome.offers) == [name for name, _, _ in OFFERS]
+    window.target.set_editing(False)
+    for name, offer in [*window.stage.welcome.offers.items(), ("guide", window.stage.welcome.guide)]:
+        action = window.commands[name]
+        action.triggered.disconnect()
+        action.triggered.connect(lambda _=False, name=name: done.append(name))
+        qtbot.mouseClick(offer, LEFT)
+        assert done[-1] == name and offer.toolTip() == action.toolTip()
+    assert len(done) == 7
+
+
+def test_that_the_offers_lead_to_a_design(window: MainWindow, qtbot: QtBot, until: Until) -> None:
+    qtbot.mouseClick(window.stage.welcome.offers["edit_target"], LEFT)
+    assert window.target.editing and not window.stage.isVisible()
+    window.target.set_editing(False)
+    assert window.stage.welcome.isVisible()
+    qtbot.mouseClick(window.stage.welcome.offers["sample"], LEFT)
+    until(lambda: window.controller.stage is not None)
+    assert not window.stage.welcome.isVisible() and window.stage.deployment.isVisible()
+
+
+def test_that_a_run_takes_the_place_of_the_page_until_it_is_cancelled(heart: MainWindow, until: Until) -> None:
+    heart.controller.generation.generate()
+    assert not heart.stage.welcome.isVisible() and heart.stage.view.isVisible()
+    heart.commands["cancel"].trigger()
+    until(lambda: not heart.controller.running)
+    assert heart.stage.welcome.isVisible() is (heart.controller.stage is None)
+
+
+def test_that_the_page_of_a_german_window_fits(german: None, begun: MainWindow) -> None:
+    begun.resize(1000, 640)
+    QApplication.processEvents()
+    for offer in begun.stage.welcome.offers.values():
+        assert offer.fontMetrics().horizontalAdvance(offer.text()) + offer.iconSize().width() < offer.width() - 8
