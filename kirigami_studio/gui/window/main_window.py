@@ -139,6 +139,7 @@ class MainWindow(QMainWindow):
         results.addWidget(self.gallery, 1)
         results.addWidget(self.fabrication)
         self.columns = QSplitter(Qt.Orientation.Horizontal)
+        self.outer = design, right
         for part in (design, self.stage, right):
             self.columns.addWidget(part)
         self.columns.setChildrenCollapsible(False)
@@ -291,12 +292,11 @@ class MainWindow(QMainWindow):
 
     def _give_whole_width(self, whole: bool) -> None:
         """Three designs and more beside each other take the place of the outer columns."""
-        outer = self.columns.widget(0), self.columns.widget(2)
-        if whole == outer[0].isHidden():
+        if whole == self.outer[0].isHidden():
             return
         if whole:
             self._sizes_before = self.columns.sizes()
-        for column in outer:
+        for column in self.outer:
             column.setVisible(not whole)
         if not whole:
             self.columns.setSizes(self._sizes_before)
