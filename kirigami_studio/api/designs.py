@@ -15,7 +15,7 @@ import numpy as np
 
 from kirigami_studio.api.choices import checked_choices, cut_choices, design_choices, explicit_signature, number
 from kirigami_studio.api.design import Design, save_project
-from kirigami_studio.api.pictures import Card, contact_sheet
+from kirigami_studio.api.pictures import Thumbnail, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.fabricate.material import default_material, library
@@ -144,7 +144,7 @@ class Designs(Sequence[Design]):
 
     def _repr_svg_(self) -> str:
         heading = repr(self).strip("<>") if not len(self) else f"{len(self)} designs for {self.target.name}"
-        cards = [Card(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
+        cards = [Thumbnail(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
         return contact_sheet(cards, heading)
 
 

@@ -61,16 +61,16 @@ def design(arguments: argparse.Namespace) -> int:
         second=second_target(arguments),
     )
 
-    def job_for(target: Outline) -> Job:
+    def job_for(target: Outline) -> DesignJob:
         least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
         request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
         as_cut, files = arguments.material is not None, arguments.out is not None
-        return Job(request, fabrication, least, as_cut, files, arguments.name or "")
+        return DesignJob(request, fabrication, least, as_cut, files, arguments.name or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
 
-    def tell(name: str, design: Design, files: dict[str, str]) -> None:
+    def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
         warnings = warn(name, design.result.request.target)
         answer = summary(design.result) | {"files": files, "warnings": warnings}
         if design.verdict is not None:
@@ -89,7 +89,7 @@ def design(arguments: argparse.Namespace) -> int:
             files = write_files(design, folder_for(name))
         tell(name, design, files)
 
-    def one_from_cluster(name: str, design: Design) -> None:
+    def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
     inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
@@ -104,7 +104,7 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class DesignJob:
     """One target to design.
 
     Attributes
@@ -130,7 +130,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Design:
+class DesignOutcome:
     """What came of a job.
 
     Attributes
@@ -155,7 +155,7 @@ class Design:
         return {role: str(folder / name) for role, (name, _) in self.files.items()}
 
 
-def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
+def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> DesignOutcome:
     """Do a job, its fits in ``pool``, by default the program's own.
 
     Raises
@@ -171,23 +171,23 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
         document = set_label(document, 0, job.name, "").document
     request = CutRequest.of(document)
     if not job.as_cut:
-        return Design(result, request, None)
+        return DesignOutcome(result, request, None)
     try:
         made = planned(request)
     except FabricationError as error:
-        return Design(result, request, refused(error))
+        return DesignOutcome(result, request, refused(error))
     request = replace(request, as_cut=closed(request, made))
-    return Design(result, request, judged(request, made, request.as_cut))
+    return DesignOutcome(result, request, judged(request, made, request.as_cut))
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
     """A worker's answer: a design, or the error of this one target."""
 
-    design: Design | None
+    design: DesignOutcome | None
     error: KirigamiError | None
 
-    def get(self) -> Design:
+    def get(self) -> DesignOutcome:
         """The design; raises the error."""
         if self.design is None:
             raise self.error or Cancelled("run.no_result")
@@ -199,7 +199,7 @@ class Asked:
     """What a worker is asked for: a job, or the error with which its target could not even be read."""
 
     name: str
-    job: Job | None
+    job: DesignJob | None
     error: KirigamiError | None
 
 
@@ -223,14 +223,14 @@ def designed_there(asked: Asked) -> Answer:
 
 
 def _from_cluster(
-    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job], workers: Workers
-) -> Iterator[Named[Design]]:
+    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob], workers: Workers
+) -> Iterator[Named[DesignOutcome]]:
     """Designs of all inputs, in order, as if they were read from somewhere."""
     for asked, answer in ordered_results_of(designed_there, _asked(inputs, job_for), workers):
         yield Named(asked.name, answer.get)
 
 
-def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job]) -> Iterator[Asked]:
+def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob]) -> Iterator[Asked]:
     """The jobs of all inputs.  Targets are read here: workers may not have their files."""
     for named in inputs:
         try:
@@ -331,7 +331,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
     return entry
 
 
-def write_files(design: Design, folder: Path) -> dict[str, str]:
+def write_files(design: DesignOutcome, folder: Path) -> dict[str, str]:
     """Write the project, the cut file, the layout, a preview and the candidates; returns their paths by role.
 
     The bytes depend on what is given alone: wall time is not written.

@@ -129,7 +129,7 @@ class ReadReason(Enum):
     AGAIN = "again"
 
 
-class TargetReader(QObject):
+class SourceReader(QObject):
     """Reads one target at a time and registers the picture or drawing that it came from.
 
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
@@ -330,7 +330,7 @@ class Targeting(QObject):
         super().__init__(parent)
         self._session = session
         self.tracer = PictureTracer(session, self)
-        self.reader = TargetReader(session, self.tracer, self)
+        self.reader = SourceReader(session, self.tracer, self)
         self.reader.read.connect(self._on_read)
         self.reader.failed.connect(session.report_failure)
         self.tracer.traced.connect(self._on_traced)
