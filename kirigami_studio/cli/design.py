@@ -15,7 +15,7 @@ from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
@@ -251,13 +251,12 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     TargetError
         The target cannot be read.
     """
+    given = {name: value for name, value in setting_values(arguments, SecondTarget).items() if value is not None}
     if arguments.also is None:
-        if arguments.at_deg is not None or arguments.weight is not None:
+        if given:
             raise UsageError("second_target.not_named")
         return None
-    phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
-    weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
-    return SecondTarget(read_target(arguments.also), phi, weight)
+    return SecondTarget(read_target(arguments.also), **given)
 
 
 def summary(result: Result) -> dict[str, object]:

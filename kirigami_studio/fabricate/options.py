@@ -51,7 +51,9 @@ class CutOptions:
     Attributes
     ----------
     style : ConnectorStyle
+        How slits end at their connectors.
     order : CutOrder
+        Order of the slits.
     tabs : int
         Uncut places of the outline that hold the sheet until it is taken out; 0 for none.
     tab_mm : float

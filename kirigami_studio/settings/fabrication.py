@@ -39,7 +39,7 @@ class FabricationSettings:
     dxf_version : DxfVersion
         DXF dialect of cut files.
     paper : Paper
-        That PDFs are spread over.
+        Pages that PDFs are spread over.
     markers : bool
         Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
     engrave : bool

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_PHI, SecondTarget
 from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.target_reader import next_run
@@ -314,7 +314,7 @@ def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
     if settings.second is not None:
         return replace(settings.second, outline=outline)
     phi = USUAL_PHI if settings.phi < USUAL_PHI else 0.5 * (settings.phi + math.pi)
-    return SecondTarget(outline, phi, USUAL_WEIGHT)
+    return SecondTarget(outline, phi)
 
 
 class Targeting(QObject):
