@@ -74,7 +74,7 @@ class CutOptions:
     """
 
     style: ConnectorStyle = field(
-        default=ConnectorStyle.STRAIGHT,
+        default=ConnectorStyle.CENTRED,
         metadata=Setting(
             help="how slits end at their connectors",
             code="settings.no_such_choice",
@@ -224,3 +224,7 @@ class CutOptions:
 
 def _ascending(numbers: Sequence[int]) -> bool:
     return all(number >= 0 for number in numbers) and all(a < b for a, b in pairwise(numbers))
+
+
+#: Plain slits between connectors of one width.
+STRAIGHT = CutOptions(ConnectorStyle.STRAIGHT)

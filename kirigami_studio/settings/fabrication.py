@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
@@ -33,7 +32,6 @@ class FabricationSettings:
     kerf_mm : float or None
         Width of the cut; None takes the material's own.
     options : CutOptions
-        Centred connectors unless chosen otherwise.
     profile : str
         Key of the machine profile that cut files are written for.
     dxf_version : DxfVersion
@@ -131,7 +129,7 @@ class FabricationSettings:
         ).metadata,
     )
     options: CutOptions = field(
-        default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED),
+        default_factory=CutOptions,
         metadata=Setting(undo=mark("Change the cut options")).metadata,
     )
     profile: str = field(

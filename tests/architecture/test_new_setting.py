@@ -148,7 +148,9 @@ def test_that_a_new_choice_costs_its_setting_its_use_and_a_test(
     found = found_in(tmp_path, planted.command)
     usual = "default 0" if planted.command == "design" else "default: the project's, or 0"
     assert f"--rings RINGS rings around the sheet (0 to 9; {usual})" in found["option"]
-    assert found["keyword"] and found["told"] and found["file"] == 3 and not found["file without"] and found["read back"]
+    assert (
+        found["keyword"] and found["told"] and found["file"] == 3 and not found["file without"] and found["read back"]
+    )
     assert found["undo"] == "Change a setting"
     assert found["refusal"].startswith("rings cannot be 10")
     assert found["field"] == [3, 9, "Rings around the sheet (0 to 9).", "Rings", {"rings": 5}]
