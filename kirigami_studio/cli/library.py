@@ -1,4 +1,4 @@
-"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``coupon``: what there is, and own materials."""
+"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``coupon``."""
 
 from __future__ import annotations
 
