@@ -268,7 +268,7 @@ def design(
     line = _Line()
     tell: Tell = progress if callable(progress) else line.show if progress else _quietly
     try:
-        run = run_design(request, fabrication, as_cut=material is not None, least_panel_mm=least)
+        run = run_design(request, fabrication, least_panel_mm=least)
         result = completed(run, tell)
     finally:
         line.end()

@@ -15,6 +15,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -38,7 +39,7 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     Returns
     -------
     phi : float or None, radians
-        0 where it closes; None where the connectors of the file are not those of the plan.
+        0 where it closes; None where the connectors of the file are not those of the plan, or hold no sheet together.
     """
     there = np.flatnonzero(~plan.hinges.removed)
     matched = matched_connectors(found, plan.hinges.position[there])
@@ -59,7 +60,11 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     connectors = cut_connectors(places, np.maximum(widths, 0.0), plan.kerf_mm, centres)
     elastic = ElasticSheet(MPA_PER_GPA * plan.material.young_gpa, plan.material.thickness_mm)
     rows = polygons_as_rows([part + shift for part in plan.panels])
-    return estimate_stretch(deployment, sheet_network(rows, connectors, elastic), width).jam_phi()
+    try:
+        network = sheet_network(rows, connectors, elastic)
+    except MechanicsError:  # parts neither close nor jam; that they are parts is another finding
+        return None
+    return estimate_stretch(deployment, network, width).jam_phi()
 
 
 def matched_connectors(found: FoundVoids, position: FloatArray) -> IntArray | None:

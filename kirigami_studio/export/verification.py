@@ -37,7 +37,6 @@ from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import CLOSED
 
 Reader = Callable[[Path], FileContent]
 
@@ -203,7 +202,6 @@ def _judged(
         *_physics_findings(physics, plan),
         *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
-        *_jam_findings(jam),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     return Verification(
@@ -484,14 +482,6 @@ def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     x, y = hinges.position[there[worst]]
     widths = {"width_mm": float(width[worst]), "planned_mm": float(least[there[worst]])}
     return [Finding.judged(False, "verify.connectors_narrower", count=int(short.sum()), x=x, y=y, **widths)]
-
-
-def _jam_findings(jam: float | None) -> list[Finding]:
-    if jam is None:
-        return []
-    jams = jam > CLOSED
-    code = "verify.sheet_jams" if jams else "verify.sheet_closes"
-    return [Finding(code, {"jam_deg": math.degrees(jam)}, warning=jams)]
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:

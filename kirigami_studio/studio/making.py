@@ -451,7 +451,7 @@ def exporting_coupon(
     from kirigami_studio.export.verification import verify_export
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.fabricate.coupon import plan_coupon
-    from kirigami_studio.studio.verdict import Verdict
+    from kirigami_studio.studio.verdict import SIGNS_OF_A_JAM, Verdict
 
     if path.suffix.lower() != ".dxf":
         raise UsageError("coupon.not_dxf", name=path.name)
@@ -459,7 +459,10 @@ def exporting_coupon(
     with TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
         draft = Path(folder) / path.name
         write_dxf(plan, draft, settings.dxf_version, find_profile(settings.profile))
-        found = replace(verify_export(plan, draft, settings.profile, settings.dxf_version), path=path)
+        found = verify_export(plan, draft, settings.profile, settings.dxf_version)
+        # Flaps have no voids, and a coupon neither closes nor jams.
+        findings = tuple(finding for finding in found.findings if finding.code not in SIGNS_OF_A_JAM)
+        found = replace(found, path=path, findings=findings, void_miss_um=None)
         write_atomically(path, draft.read_bytes())
     yield Exported(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
@@ -479,13 +482,13 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and at which strain connectors break.
+    """What is expected of some designs as cut, and the material that they were estimated in.
 
     Designs that cannot be cut at all are left out.
     """
 
     found: tuple[tuple[Candidate, AsCut], ...]
-    strain_limit: float
+    material: Material
 
 
 def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
@@ -598,4 +601,4 @@ def estimating(
                     found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
-        yield Estimated(tuple(found), material.strain_limit)
+        yield Estimated(tuple(found), material)
