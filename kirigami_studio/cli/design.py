@@ -64,7 +64,7 @@ def design(arguments: argparse.Namespace) -> int:
     def job_for(target: Outline) -> Job:
         least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
         request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
-        as_cut, files = arguments.material is not None, arguments.out is not None
+        as_cut, files = (arguments.material or arguments.machine) is not None, arguments.out is not None
         return Job(request, fabrication, least, as_cut, files, arguments.name or "")
 
     def folder_for(name: str) -> Path:
