@@ -394,6 +394,8 @@ class Design:
         ----------
         material : str
             One of :func:`material_names`.
+        machine : str
+            One of :func:`machine_names`; brings the profile that its program wants.
         width_mm : float
             Width of the flat sheet (100 in new projects).
         connector_mm, kerf_mm : float
@@ -413,7 +415,8 @@ class Design:
         engrave : bool
             Whether the design's name is engraved.
         profile : str
-            What machine files are for: ``any``, ``lightburn``, ``k40``, ``single``, ``layers``, ``slots``.
+            What machine files are for: ``any``, ``lightburn``, ``k40``, ``single``, ``layers``, ``slots``,
+            ``cricut``, ``silhouette``, ``glowforge``, ``xtool``.
         dxf_version : str
             ``R2010`` or ``R12``.
         paper : str

@@ -18,7 +18,8 @@ from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Card, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
-from kirigami_studio.fabricate.material import default_material, library
+from kirigami_studio.fabricate.machine import machines
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
@@ -27,7 +28,7 @@ from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChange, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
@@ -171,6 +172,18 @@ def material_names() -> tuple[str, ...]:
     return tuple(library().materials)
 
 
+def machine_names() -> tuple[str, ...]:
+    """Keys of all machines, bundled and your own, as the command line's ``machines`` lists them.
+
+    Examples
+    --------
+    >>> import kirigami_studio as ks
+    >>> "glowforge" in ks.machine_names()
+    True
+    """
+    return tuple(machines().items)
+
+
 def design(
     target: TargetLike,
     *,
@@ -183,6 +196,7 @@ def design(
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
+    machine: str | None = None,
     width_mm: float = 100.0,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
@@ -234,6 +248,8 @@ def design(
         Time after which the best so far are returned.
     material : str, optional
         One of :func:`material_names`: designs that can be cut in it come first.
+    machine : str, optional
+        One of :func:`machine_names`; without a material, one that it cuts is taken.
     width_mm, connector_mm, kerf_mm, style : optional
         Size and cuts, as in :meth:`Design.plan_cuts`.
     least_panel_mm : float
@@ -249,13 +265,14 @@ def design(
     outline = load_target(target).outline
     cuts = {
         "material": material,
+        "machine": machine,
         "width_mm": width_mm,
         "connector_mm": connector_mm,
         "kerf_mm": kerf_mm,
         "style": style,
     }
     given = {name: value for name, value in checked_choices(cuts, cut_choices(), "design").items() if value is not None}
-    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
+    fabrication = new_settings(given)
     least = number("least_panel_mm", least_panel_mm)
     wanted = chosen_settings(
         _grid(grid),

@@ -195,7 +195,7 @@ def _judged(
     physics = file_physics(sheets[0], plan, profile)
     voids = file_voids(sheets[0], plan, profile)
     jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
-    times = work_of(strokes, plan.material).times
+    times = work_of(strokes, plan).times
     findings = [
         *_agreed(contents, [_reader_findings(content, strokes, version, kind) for content in contents]),
         *_agreed(contents, _name_findings(written, plan, profile, kind)),

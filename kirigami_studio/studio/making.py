@@ -19,7 +19,7 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.file_kinds import kind_of
 
@@ -246,7 +246,7 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
-    key = (request.candidate, request.target, settings, material_for(settings), name)
+    key = (request.candidate, request.target, settings, material_for(settings), machine_for(settings), name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -278,7 +278,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
     if not found.slots and len(plan.copies) == 1:
         return None
     try:
-        return work_of(strokes_of(plan, found), plan.material)
+        return work_of(strokes_of(plan, found), plan)
     except ExportError:
         return None
 

@@ -85,6 +85,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "materials.calibrated_by_nobody": mark("--calibrated needs --by NAME: who measured the coupon."),
     "materials.not_name_and_value": mark("--set takes NAME=VALUE, for example kerf_mm=0.03; got '{entry:.60}'."),
+    "machines.copy_and_delete": mark("Either copy a machine or delete one, not both."),
+    "machines.options_without_copy": mark("--as and --set need --copy KEY, which names the machine to copy."),
     "coupon.nothing_to_do": mark("Give --out FILE to write a coupon, or --gap-mm with the gaps measured on one."),
     "coupon.unknown_extension": mark("A coupon is written as .dxf, .svg or .pdf, got {name}."),
     # gui
