@@ -352,7 +352,7 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion), output.path
+    job, path = replace(export_job(request, made), motion=motion, simulated_jam=_jam_of(as_cut)), output.path
     if output.name is not None:
         found = export_all(
             job,
@@ -470,8 +470,14 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
     request = CutRequest.of(document)
     made, cut = planned(request), request.settings
-    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment)
-    return found, judged(request, made, closed(request, made), [found])
+    as_cut = closed(request, made)
+    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment, _jam_of(as_cut))
+    return found, judged(request, made, as_cut, [found])
+
+
+def _jam_of(as_cut: AsCut | str | None) -> float | None:
+    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+    return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
 # the sheet as cut -----------------------------------------------------------------------------------------------------
