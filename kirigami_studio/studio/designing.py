@@ -204,8 +204,6 @@ def run_design(
     ------
     Cancelled
         ``cancel`` returned true.
-    FabricationError
-        Designs were to be trimmed and none could be.
     """
     from kirigami_studio.pipeline.run import grid_choice, run, with_grid
 
@@ -224,9 +222,14 @@ def run_design(
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
         if as_cut:
             result = yield from _ranked_as_cut(result, cut, beside, cancel)
-        if request.trim and all(one.trim is None for one in result.candidates):
-            raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
         yield Finished(result)
+
+
+def why_untrimmed(result: Result) -> Note | None:
+    """Why no design of a run was trimmed, though that was asked for; None where one is, or nobody asked."""
+    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+        return None
+    return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:
