@@ -18,6 +18,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
@@ -40,8 +41,17 @@ from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.cutting import refuse_errors
-from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
-from kirigami_studio.studio.making import CutRequest, Output, closed, export_job, judged, planned, written
+from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
+from kirigami_studio.studio.making import (
+    CutRequest,
+    Output,
+    closed,
+    export_job,
+    judged,
+    planned,
+    with_cuttable_chosen,
+    written,
+)
 from kirigami_studio.studio.verdict import Verdict, refused
 
 
@@ -71,7 +81,7 @@ def design(arguments: argparse.Namespace) -> int:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
 
     def tell(name: str, design: Design, files: dict[str, str]) -> None:
-        warnings = warn(name, design.result.request.target)
+        warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
         answer = summary(design.result) | {"files": files, "warnings": warnings}
         answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
         if batch:
@@ -80,6 +90,8 @@ def design(arguments: argparse.Namespace) -> int:
             print_json(answer)
         else:
             _say_result(design.result.request.target, design.result, files, design.verdict)
+            for note in design.notes:
+                say("  " + tr("note: {text}", text=note.text))
 
     def one(name: str, target: Outline) -> None:
         design = designed(job_for(target), line)
@@ -133,16 +145,19 @@ class Design:
     ----------
     result : Result
     request : CutRequest
-        The best design in its project, and how it is cut.
+        The best design that can be cut in its project, and how it is cut.
     verdict : Verdict
     files : mapping of str to (str, bytes)
         Name and content by role, of a design from elsewhere that was asked for with its files.
+    notes : tuple of Note
+        What is not as it was asked for: no design is trimmed, or another one than the best is cut.
     """
 
     result: Result
     request: CutRequest
     verdict: Verdict
     files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
+    notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:
         """Write the files; returns their paths by role."""
@@ -152,26 +167,26 @@ class Design:
 
 
 def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
-    """Do a job, its fits in ``pool``, by default the program's own.
-
-    Raises
-    ------
-    FabricationError
-        Designs were to be trimmed and none could be.
-    """
+    """Do a job, its fits in ``pool``, by default the program's own."""
     run = run_design(job.request, job.fabrication, least_panel_mm=job.least_panel_mm, pool=pool)
     result = completed(run, lambda progress: line.show(progress.message))
     line.clear()
     document = document_of(result, job.fabrication)
+    untrimmed = why_untrimmed(result)
+    notes = () if untrimmed is None else (untrimmed,)
+    if job.files:
+        document, refusal = with_cuttable_chosen(document)
+        if refusal is not None and document.chosen and document.label is not None:
+            notes += (Note.of("design.other_is_cut", name=document.label.code, reason=str(refusal)),)
     if job.name:
-        document = set_label(document, 0, job.name, "").document
+        document = set_label(document, document.chosen or 0, job.name, "").document
     request = CutRequest.of(document)
     try:
         made = planned(request)
     except FabricationError as error:
-        return Design(result, request, refused(error))
+        return Design(result, request, refused(error), notes=notes)
     request = replace(request, as_cut=closed(request, made))
-    return Design(result, request, judged(request, made, request.as_cut))
+    return Design(result, request, judged(request, made, request.as_cut), notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,11 +354,9 @@ def write_files(design: Design, folder: Path) -> tuple[Design, dict[str, str]]:
     Raises
     ------
     FabricationError
-        The sheet would not survive its cuts.
+        No design can be cut; everything but the cut file is there.
     """
     request, document = design.request, design.request.document
-    made = planned(request)
-    refuse_errors(made.report)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",
@@ -353,13 +366,21 @@ def write_files(design: Design, folder: Path) -> tuple[Design, dict[str, str]]:
     }
     assert document is not None  # a design that was just made has a project
     save(document, paths["project"])
-    verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
-    assert verdict is not None  # planned sheets are judged
-    job = export_job(request, made)
-    write_layout_svg(job, paths["layout"])
-    write_png(job, paths["preview"])
     listing = {"candidates": candidates_json(design.result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
+    made, refusal = None, None
+    try:
+        made = planned(request)
+        refuse_errors(made.report)
+    except FabricationError as error:
+        refusal = error
+    job = export_job(request, None if refusal else made)
+    write_layout_svg(job, paths["layout"])
+    write_png(job, paths["preview"])
+    if made is None or refusal is not None:
+        raise FabricationError("design.not_cut", project=paths["project"], reason=str(refusal))
+    verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
+    assert verdict is not None  # planned sheets are judged
     return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
 
 

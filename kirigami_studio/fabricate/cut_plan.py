@@ -278,7 +278,10 @@ def plan_cuts(
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
     go_on()
-    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
+    finished = cuts.widths(table, left.removed, boundary, kerf)
+    if parts or deployment.sheet.start is not None:
+        planned = _left_by_outline(planned, finished)
+    hinges = _hinges(cuts, table, widths, planned, finished, lost)
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -358,6 +361,13 @@ def _plain_cuts(
     lines = [*shortened[: table.slit_count], *edge_cut_paths(shortened, table, size, kerf, overcut)]
     pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate(lines)]
     return Polygon(outline_path(size, kerf)), pieces
+
+
+def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
+    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    left = (finished > 0.0) & (finished < planned - WIDER_MM)
+    widths: FloatArray = np.where(left, finished, planned)
+    return widths
 
 
 def _hinges(

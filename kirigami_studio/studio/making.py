@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.foundation.errors import Cancelled, ExportError, KirigamiError, ProjectError, UsageError
+from kirigami_studio.foundation.errors import (
+    Cancelled,
+    ExportError,
+    FabricationError,
+    KirigamiError,
+    ProjectError,
+    UsageError,
+)
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
@@ -21,6 +28,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
 from kirigami_studio.studio import importing
+from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.file_kinds import kind_of
 
 if TYPE_CHECKING:
@@ -221,6 +229,28 @@ def chosen_candidate(document: Document) -> Candidate:
     return candidate
 
 
+def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
+    """Choose the first design of a project, from the chosen one on, whose cuts the sheet survives.
+
+    Returns
+    -------
+    document : Document
+        With that design chosen; as it was where there is none.
+    refusal : KirigamiError or None
+        Why the design that was chosen before cannot be cut; None where it can.
+    """
+    first: KirigamiError | None = None
+    for number in range(document.chosen or 0, len(document.candidates)):
+        chosen = replace(document, chosen=number)
+        try:
+            refuse_errors(planned(CutRequest.of(chosen)).report)
+        except FabricationError as error:
+            first = first or error
+            continue
+        return chosen, first
+    return document, first
+
+
 # from a design to its files -------------------------------------------------------------------------------------------
 
 
@@ -352,7 +382,7 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion), output.path
+    job, path = replace(export_job(request, made), motion=motion, simulated_jam=_jam_of(as_cut)), output.path
     if output.name is not None:
         found = export_all(
             job,
@@ -473,8 +503,14 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
     request = CutRequest.of(document)
     made, cut = planned(request), request.settings
-    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment)
-    return found, judged(request, made, closed(request, made), [found])
+    as_cut = closed(request, made)
+    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment, _jam_of(as_cut))
+    return found, judged(request, made, as_cut, [found])
+
+
+def _jam_of(as_cut: AsCut | str | None) -> float | None:
+    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+    return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
 # the sheet as cut -----------------------------------------------------------------------------------------------------
