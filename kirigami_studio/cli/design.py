@@ -15,7 +15,7 @@ from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
@@ -72,15 +72,15 @@ def design(arguments: argparse.Namespace) -> int:
         second=second_target(arguments),
     )
 
-    def job_for(target: Outline) -> Job:
+    def job_for(target: Outline) -> DesignJob:
         least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
         request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
-        return Job(request, fabrication, least, arguments.out is not None, arguments.name or "")
+        return DesignJob(request, fabrication, least, arguments.out is not None, arguments.name or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
 
-    def tell(name: str, design: Design, files: dict[str, str]) -> None:
+    def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
         warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
         answer = summary(design.result) | {"files": files, "warnings": warnings}
         answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
@@ -100,7 +100,7 @@ def design(arguments: argparse.Namespace) -> int:
             design, files = write_files(design, folder_for(name))
         tell(name, design, files)
 
-    def one_from_cluster(name: str, design: Design) -> None:
+    def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
     inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
@@ -115,7 +115,7 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class DesignJob:
     """One target to design.
 
     Attributes
@@ -138,7 +138,7 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Design:
+class DesignOutcome:
     """What came of a job.
 
     Attributes
@@ -166,7 +166,7 @@ class Design:
         return {role: str(folder / name) for role, (name, _) in self.files.items()}
 
 
-def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
+def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> DesignOutcome:
     """Do a job, its fits in ``pool``, by default the program's own."""
     run = run_design(job.request, job.fabrication, least_panel_mm=job.least_panel_mm, pool=pool)
     result = completed(run, lambda progress: line.show(progress.message))
@@ -184,19 +184,19 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
     try:
         made = planned(request)
     except FabricationError as error:
-        return Design(result, request, refused(error), notes=notes)
+        return DesignOutcome(result, request, refused(error), notes=notes)
     request = replace(request, as_cut=closed(request, made))
-    return Design(result, request, judged(request, made, request.as_cut), notes=notes)
+    return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
     """A worker's answer: a design, or the error of this one target."""
 
-    design: Design | None
+    design: DesignOutcome | None
     error: KirigamiError | None
 
-    def get(self) -> Design:
+    def get(self) -> DesignOutcome:
         """The design; raises the error."""
         if self.design is None:
             raise self.error or Cancelled("run.no_result")
@@ -208,7 +208,7 @@ class Asked:
     """What a worker is asked for: a job, or the error with which its target could not even be read."""
 
     name: str
-    job: Job | None
+    job: DesignJob | None
     error: KirigamiError | None
 
 
@@ -232,14 +232,14 @@ def designed_there(asked: Asked) -> Answer:
 
 
 def _from_cluster(
-    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job], workers: Workers
-) -> Iterator[Named[Design]]:
+    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob], workers: Workers
+) -> Iterator[Named[DesignOutcome]]:
     """Designs of all inputs, in order, as if they were read from somewhere."""
     for asked, answer in ordered_results_of(designed_there, _asked(inputs, job_for), workers):
         yield Named(asked.name, answer.get)
 
 
-def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job]) -> Iterator[Asked]:
+def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob]) -> Iterator[Asked]:
     """The jobs of all inputs.  Targets are read here: workers may not have their files."""
     for named in inputs:
         try:
@@ -260,13 +260,12 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     TargetError
         The target cannot be read.
     """
+    given = {name: value for name, value in setting_values(arguments, SecondTarget).items() if value is not None}
     if arguments.also is None:
-        if arguments.at_deg is not None or arguments.weight is not None:
+        if given:
             raise UsageError("second_target.not_named")
         return None
-    phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
-    weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
-    return SecondTarget(read_target(arguments.also), phi, weight)
+    return SecondTarget(read_target(arguments.also), **given)
 
 
 def summary(result: Result) -> dict[str, object]:
@@ -344,7 +343,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
     return entry
 
 
-def write_files(design: Design, folder: Path) -> tuple[Design, dict[str, str]]:
+def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
     """Write the project, the cut file, the layout, a preview and the candidates.
 
     Returns the design, judged with what was read back from its cut file, and the paths of all files by role.

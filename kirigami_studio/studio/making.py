@@ -108,7 +108,7 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exported:
+class ExportedFiles:
     """A file, or a folder of files, that is on disk.
 
     Attributes
@@ -357,7 +357,7 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
-) -> Exported:
+) -> ExportedFiles:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
     Parameters
@@ -395,7 +395,7 @@ def written(
         left, gone = (tuple(one.name for one in paths) for paths in (found.older, found.removed))
         verdict = judged(request, made, as_cut, found.verifications)
         files, verified = found.files, found.verifications
-        return Exported(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
+        return ExportedFiles(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
     if path.suffix.lower() in FORMATS:
         with drafted(job, path) as draft:
             verified = (draft.verification,)
@@ -407,10 +407,12 @@ def written(
     files = (place,)
     if output.record:
         files = (place, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
-    return Exported(place, made, verified, motion=motion, verdict=verdict, files=files)
+    return ExportedFiles(place, made, verified, motion=motion, verdict=verdict, files=files)
 
 
-def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
+def exporting(
+    request: CutRequest, output: Output, many_pages: bool, cancel: Cancel
+) -> Iterator[ExportedFiles | ManyPages]:
     """Write one file or a whole set; cut files are planned, checked, read back and judged.
 
     A PDF of many pages is written only where ``many_pages`` are wanted.
@@ -423,7 +425,7 @@ def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Can
     if output.name is None:
         find_exporter(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
-            yield Exported(export(export_job(request, None), path), None)
+            yield ExportedFiles(export(export_job(request, None), path), None)
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
@@ -453,7 +455,7 @@ def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
 
 def exporting_artwork(
     request: CutRequest, folder: Path, many_pages: bool, cancel: Cancel
-) -> Iterator[Exported | ManyPages]:
+) -> Iterator[ExportedFiles | ManyPages]:
     """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened.
 
     Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
@@ -469,12 +471,12 @@ def exporting_artwork(
         return
     with importing.collecting_between():
         write_artwork(work, folder)
-    yield Exported(folder, None)
+    yield ExportedFiles(folder, None)
 
 
 def exporting_coupon(
     material: Material, path: Path, settings: FabricationSettings, cancel: Cancel
-) -> Iterator[Exported]:
+) -> Iterator[ExportedFiles]:
     """Write the calibration coupon of a material as a cut file, and read it back."""
     from kirigami_studio.export.dxf import write_dxf
     from kirigami_studio.export.profile import find_profile
@@ -494,7 +496,7 @@ def exporting_coupon(
         findings = tuple(finding for finding in found.findings if finding.code not in SIGNS_OF_A_JAM)
         found = replace(found, path=path, findings=findings, void_miss_um=None)
         write_atomically(path, draft.read_bytes())
-    yield Exported(path, Planned(plan, check_plan(plan), Verdict()), (found,))
+    yield ExportedFiles(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
 
 def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
@@ -541,7 +543,7 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
 
 def animating(
     request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None, cancel: Cancel
-) -> Iterator[Exported | None]:
+) -> Iterator[ExportedFiles | None]:
     """Write an animation; None after every step of the simulation that it may need.
 
     Parameters
@@ -569,7 +571,7 @@ def animating(
             why = str(error)
     shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
     written = export(replace(export_job(request, None), motion=shown), path)
-    yield Exported(written, None, motion=shown, not_as_cut=why)
+    yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
 
 def judging(
