@@ -329,6 +329,7 @@ class Targeting(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
+        self.on_board: Callable[[Outline], Outline] = lambda outline: outline  #: gives a contour its size on the board
         self.tracer = PictureTracer(session, self)
         self.reader = SourceReader(session, self.tracer, self)
         self.reader.read.connect(self._on_read)
@@ -381,14 +382,15 @@ class Targeting(QObject):
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
     def _on_traced(self, outline: Outline) -> None:
-        self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
+        target = self.on_board(outline)
+        self.adjusted.emit(edits.edit_target(self._session.document, target, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
     def _on_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
         if reason is ReadReason.START and untouched:
-            self.begun.emit(replace(document, target=outline))
+            self.begun.emit(replace(edits.as_drawn(document, outline), target=outline))
             self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
             self._session.set_status(said)
