@@ -171,6 +171,7 @@ def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
     except FabricationError as error:
         return Design(result, request, refused(error))
     request = replace(request, as_cut=closed(request, made))
+    result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
     return Design(result, request, judged(request, made, request.as_cut))
 
 

@@ -148,7 +148,7 @@ class Advice:
         return tuple(fix.line for fix in self.fixes)
 
     def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """A verdict with what was tried: each fix below the worst problem that it solves, what solves none at the end."""
+        """A verdict with what was tried: each fix below the worst problem that it solves, others at the end."""
         told: list[str] = [verdict.words]
         left = list(self.fixes)
         for problem in verdict.problems:
