@@ -186,6 +186,7 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     except FabricationError as error:
         return DesignOutcome(result, request, refused(error), notes=notes)
     request = replace(request, as_cut=closed(request, made))
+    result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
     return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
 
 
