@@ -28,8 +28,8 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
-from kirigami_studio.studio.as_cut import simulated
-from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.as_cut import Source, jam_json, simulated
+from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
 from kirigami_studio.studio.making import (
@@ -65,7 +65,6 @@ def export(arguments: argparse.Namespace) -> int:
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
-        refuse_errors(made.report)
     except FabricationError as error:
         if not arguments.fixes:
             raise
@@ -107,7 +106,7 @@ def export(arguments: argparse.Namespace) -> int:
                 **({} if plan.engraving is None else {"engraved": engraved_json(plan.engraving)}),
                 **({} if not plan.hinges.narrowed.size else {"narrowed_connectors": narrowed_json(plan)}),
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
-                "jam_deg": None if not verified else verified[0]["jam_deg"],
+                **jam_json(verdict.as_cut),
                 "warnings": warnings,
                 "verified": verified,
                 "ok": verdict.ok,
@@ -162,7 +161,8 @@ def _advice(request: CutRequest, verdict: Verdict) -> Advice:
 
 def say_verdict(verdict: Verdict) -> None:
     """Say what is to be expected of a sheet, and why, one line each."""
-    say("  " + tr("verdict: {level}", level=verdict.level.words))
+    say("  " + tr("verdict: {level}", level=verdict.words))
+    say("  " + tr("answers: {answers}", answers=verdict.summary))
     for problem in verdict.problems:
         error = problem.severity is Severity.ERROR
         text = problem.text
@@ -189,7 +189,6 @@ def _summary(found: Verification) -> dict[str, object]:
         "cut_length_mm": found.cut_length_mm,
         "seconds": [found.seconds_low, found.seconds_high],
         "void_miss_um": found.void_miss_um,
-        "jam_deg": None if found.jam_phi is None else math.degrees(found.jam_phi),
         "findings": [finding.text for finding in found.findings],
     }
 
@@ -214,8 +213,7 @@ def check(arguments: argparse.Namespace) -> int:
             "min_ligament_mm": report.min_ligament_mm,
         }
         if judged is not None:
-            summary = _summary(judged[0])
-            answer |= {name: summary[name] for name in ("void_miss_um", "jam_deg")}
+            answer |= {"void_miss_um": judged[0].void_miss_um, **jam_json(judged[1].as_cut)}
             answer["verdict"] = judged[1].to_json()
         print_json(answer)
     else:
@@ -241,7 +239,8 @@ def animate(arguments: argparse.Namespace) -> int:
     if arguments.json:
         answer: dict[str, object] = {"frames": frames, "files": [str(path)]}
         if motion is not None:
-            answer |= {"jam_deg": math.degrees(motion.jam_phi), "reached_deg": math.degrees(motion.reached)}
+            jam = {"jam_deg": math.degrees(motion.jam_phi), "jam_from": Source.SIMULATION.value}
+            answer |= {**jam, "reached_deg": math.degrees(motion.reached)}
         print_json(answer)
     elif motion is None:
         say(tr("{path}: {frames} frames", path=path, frames=frames))

@@ -23,10 +23,11 @@ from kirigami_studio.cli.option_types import (
     share,
     whole,
 )
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.merging import Join
-from kirigami_studio.outlines.starts import USUAL_WEIGHT
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignChoices
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -116,14 +117,7 @@ START = option(
     "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
 )
 #: How firmly they keep that.
-START_WEIGHT = option(
-    "--start-weight",
-    type=positive,
-    default=USUAL_WEIGHT,
-    metavar="WEIGHT",
-    help="how firmly round parts and hollows of the start are held: at 0.01, say, the flat sheet may be a little off "
-    "for a better match (default 1)",
-)
+(START_WEIGHT,) = setting_options(StartShape)
 
 #: A cluster in the place of this machine.
 SCHEDULER = option(
@@ -147,10 +141,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         START_WEIGHT,
         option("--also", default=None, metavar="TARGET",
                help="second target, a file or library name, that the sheet should show on its way from flat"),
-        option("--at-deg", type=positive, default=None, metavar="DEGREES",
-               help="angle at which it should show the second target, above --phi (default 45)"),
-        option("--weight", type=positive, default=None,
-               help="weight of the second target, that of the first being 1 (default 0.3)"),
+        *setting_options(SecondTarget),
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
         *WIDTHS,

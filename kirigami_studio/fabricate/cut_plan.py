@@ -28,7 +28,7 @@ from kirigami_studio.fabricate.lettering import Engraving
 from kirigami_studio.fabricate.machine import Machine, machine_of
 from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
@@ -104,7 +104,7 @@ class CutPlan:
     hinges: Hinges
     material: Material
     design_hash: str
-    options: CutOptions = field(default_factory=CutOptions)
+    options: CutOptions = STRAIGHT
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
@@ -182,7 +182,7 @@ def plan_cuts(
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     material: Material | None = None,
-    options: CutOptions | None = None,
+    options: CutOptions = STRAIGHT,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
     cancel: Callable[[], bool] = lambda: False,
@@ -199,8 +199,8 @@ def plan_cuts(
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
         The default preset unless given.
-    options : CutOptions, optional
-        Straight connectors of one width, in the shortest order, without tabs, unless given.
+    options : CutOptions
+        Not those of new projects: plain slits unless given.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
     kept : sequence of (P, 2) float or None, unit cells, optional
@@ -224,7 +224,7 @@ def plan_cuts(
         if cancel():
             raise Cancelled("plan.stopped")
 
-    material, options = material or default_material(), options or CutOptions()
+    material = material or default_material()
     width = check_length("sheet.width_not_positive", width_mm)
     asked = material.connector_mm if connector_mm is None else connector_mm
     connector = check_length("connector.width_not_positive", asked)
@@ -278,7 +278,10 @@ def plan_cuts(
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
     go_on()
-    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
+    finished = cuts.widths(table, left.removed, boundary, kerf)
+    if parts or deployment.sheet.start is not None:
+        planned = _left_by_outline(planned, finished)
+    hinges = _hinges(cuts, table, widths, planned, finished, lost)
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -358,6 +361,13 @@ def _plain_cuts(
     lines = [*shortened[: table.slit_count], *edge_cut_paths(shortened, table, size, kerf, overcut)]
     pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate(lines)]
     return Polygon(outline_path(size, kerf)), pieces
+
+
+def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
+    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    left = (finished > 0.0) & (finished < planned - WIDER_MM)
+    widths: FloatArray = np.where(left, finished, planned)
+    return widths
 
 
 def _hinges(

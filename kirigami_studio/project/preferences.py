@@ -35,7 +35,7 @@ class TypedSize(StrEnum):
     FLAT = "flat"  #: width of the flat sheet
 
 
-class Motion(StrEnum):
+class MotionPreference(StrEnum):
     """Whether moving parts follow the desktop's setting for animations, or stand still."""
 
     SYSTEM = "system"
@@ -74,7 +74,7 @@ class Preferences:
         Longer side of the opened shape, and width of the flat sheet.
     machine_asked : bool
         Whether the question for machine and material was answered, or declined.
-    motion : Motion
+    motion : MotionPreference
     """
 
     profile: str = field(default="any", metadata=_NAME)
@@ -89,7 +89,7 @@ class Preferences:
     opened_mm: float = 100.0
     width_mm: float = 100.0
     machine_asked: bool = field(default=False, metadata=_FLAG)
-    motion: Motion = field(default=Motion.SYSTEM, metadata=_CHOICE)
+    motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
 
     def __post_init__(self) -> None:
         check(self)

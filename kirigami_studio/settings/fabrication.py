@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
@@ -44,13 +43,12 @@ class FabricationSettings:
     kerf_mm : float or None
         Width of the cut; None takes the material's own.
     options : CutOptions
-        Centred connectors unless chosen otherwise.
     profile : str
         Key of the machine profile that cut files are written for.
     dxf_version : DxfVersion
         DXF dialect of cut files.
     paper : Paper
-        That PDFs are spread over.
+        Pages that PDFs are spread over.
     markers : bool
         Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
     engrave : bool
@@ -154,7 +152,7 @@ class FabricationSettings:
         ).metadata,
     )
     options: CutOptions = field(
-        default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED),
+        default_factory=CutOptions,
         metadata=Setting(undo=mark("Change the cut options")).metadata,
     )
     profile: str = field(

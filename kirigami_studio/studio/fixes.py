@@ -77,6 +77,8 @@ class Fix:
     as_cut : AsCut
     instead : tuple of Candidate
         Designs on another grid, best first, that take the place of all there are; empty where those stay.
+    solves : tuple of str
+        Codes of the problems that are then gone.
     """
 
     change: Note
@@ -85,6 +87,12 @@ class Fix:
     verdict: Verdict
     as_cut: AsCut
     instead: tuple[Candidate, ...] = ()
+    solves: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """What to do, and what is then to be expected."""
+        return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
         """Make the change, as one step that can be undone; a design that is gone leaves the choice as it is."""
@@ -113,6 +121,7 @@ class Fix:
             "material": settings.material,
             "grid": list(self.candidate.sheet.grid),
             "max_strain": self.as_cut.strain,
+            "solves": list(self.solves),
         }
 
 
@@ -136,9 +145,18 @@ class Advice:
         """As it is shown: every fix with what is then to be expected, or that nothing works."""
         if not self.fixes:
             return (self.tried.text,)
-        return tuple(
-            Note.of("fix.then", change=fix.change.text, level=fix.verdict.level.words).text for fix in self.fixes
-        )
+        return tuple(fix.line for fix in self.fixes)
+
+    def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
+        """A verdict with each fix below the worst problem that it solves; fixes that solve none come last."""
+        told: list[str] = [verdict.words]
+        left = list(self.fixes)
+        for problem in verdict.problems:
+            told.append(problem.text)
+            told += [fix.line for fix in left if problem.code in fix.solves]
+            left = [fix for fix in left if problem.code not in fix.solves]
+        rest = [fix.line for fix in left] if self.fixes else [self.tried.text]
+        return (*told, *rest, verdict.summary, *(note.text for note in verdict.notes))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -183,6 +201,10 @@ def find_fixes(
         # However it is cut, its panels overlap.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
         return search.advice()
+    if not verdict.of_the_sheet:
+        # The sheet is well made; only another design matches better.
+        yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
+        return search.advice()
     single = _single_changes(candidate, settings, search.material, verdict)
     grids = _coarser_grids(candidate, settings, coarser)
     if any(problem.code in CROWDED for problem in verdict.problems):
@@ -220,12 +242,12 @@ class _Search:
 
     @property
     def ready(self) -> list[Fix]:
-        """Fixes after which the sheet is ready to cut."""
-        return [fix for fix in self.found if fix.verdict.ok]
+        """Fixes after which nothing is wrong with the sheet."""
+        return [fix for fix in self.found if not fix.verdict.of_the_sheet]
 
     def advice(self) -> Advice:
         """The best that were found."""
-        fixes = sorted(self.found, key=lambda fix: not fix.verdict.ok)[:MOST_FIXES]
+        fixes = sorted(self.found, key=lambda fix: bool(fix.verdict.of_the_sheet))[:MOST_FIXES]
         cuts = [settings for _, settings in self.seen]
         connectors = [self._connector_mm(settings) for settings in cuts] or [0.0]
         widths = [settings.width_mm for settings in cuts] or [0.0]
@@ -282,10 +304,12 @@ class _Search:
         as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
         after = judge(candidate, plan, report, as_cut)
         if isinstance(as_cut, AsCut) and after.better_than(self.verdict):
-            if after.ok and change.note.code != "fix.material":
+            if not after.of_the_sheet and change.note.code != "fix.material":
                 self.kinds.add(change.note.code)
             note = _told(change.note, self.verdict, as_cut)
-            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead))
+            left = {problem.code for problem in after.problems}
+            solves = tuple(problem.code for problem in self.verdict.problems if problem.code not in left)
+            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead, solves))
 
     def _hopeless(self, change: _Change, motion: Deployment) -> bool:
         """Whether its connectors break or the sheet jams, as estimated; thin sheets that jam are kept for later."""

@@ -347,10 +347,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "x = {x:.2f}, y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred "
         "connectors, or a larger sheet."
     ),
-    "verify.sheet_closes": mark("With these connectors the sheet closes, by the estimate of the simulator."),
-    "verify.sheet_jams": mark(
-        "With these connectors the sheet jams at {jam_deg:.0f} degrees, by the estimate of the simulator."
-    ),
     "verify.connectors_lost": mark(
         "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "
         "planned, {planned_mm:.3f} mm wide or more."
