@@ -17,6 +17,7 @@ from types import MappingProxyType
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem
+from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import KirigamiError
@@ -29,7 +30,7 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
@@ -435,8 +436,9 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors."""
-    for key, material in library().materials.items():
+    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    machine = named_machine(settings)
+    for key, material in (library().materials if machine is None else cuttable(machine)).items():
         if key != settings.material and material.connectors_hold:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
