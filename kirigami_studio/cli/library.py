@@ -1,4 +1,4 @@
-"""What there is: ``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
+"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
 
 from __future__ import annotations
 
