@@ -16,7 +16,7 @@ from pytestqt.qtbot import QtBot
 
 import kirigami_studio as ks
 from kirigami_studio.cli import main
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
@@ -40,24 +40,24 @@ class Answer:
 
 
 def of_window(qtbot: QtBot, target: str, material: str, folder: Path) -> Answer:
-    controller = Controller()
+    services = Services()
     try:
         settings = DesignSettings(GRID, k=DESIGNS, seed=SEED, auto_grid=False)
         cut = FabricationSettings(material=material)
-        controller.session.restart(Document(read_target(target), settings, fabrication=cut), None)
-        with qtbot.waitSignal(controller.run.completed, timeout=PATIENCE):
-            controller.generation.generate()
+        services.session.restart(Document(read_target(target), settings, fabrication=cut), None)
+        with qtbot.waitSignal(services.run.completed, timeout=PATIENCE):
+            services.generation.generate()
         exported: list[Exported] = []
-        controller.cutting.exported.connect(exported.append)
-        controller.export(folder / "window.dxf")
+        services.exporter.exported.connect(exported.append)
+        services.exporter.export(folder / "window.dxf")
         qtbot.waitUntil(lambda: bool(exported), timeout=PATIENCE)
-        document, verdict = controller.document, exported[0].verdict
+        document, verdict = services.session.document, exported[0].verdict
         assert document.candidate is document.candidates[0] and verdict is not None
         order = tuple(one.index for one in document.candidates)
         best = document.candidates[0].sheet.field.ratio.tolist()
         return Answer(order, best, verdict.to_json(), (folder / "window.dxf").read_bytes())
     finally:
-        controller.close()
+        services.close()
 
 
 def of_command_line(capsys: pytest.CaptureFixture[str], target: str, material: str, folder: Path) -> Answer:
