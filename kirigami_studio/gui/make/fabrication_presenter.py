@@ -13,6 +13,7 @@ from kirigami_studio.gui.make.verdict import VerdictKeeper
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
 from kirigami_studio.gui.run.generation import DesignRun
 from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.gui.stage.as_cut import AsCutEstimates
 from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.project.document import Document
 from kirigami_studio.studio.making import Planned
@@ -33,6 +34,7 @@ class FabricationPresenter(QObject):
     editor : FabricationEditor
     planner : CutPlanner
     keeper : VerdictKeeper
+    estimates : AsCutEstimates
     hand : HandEditor
     run : DesignRun
         While it runs, no fix is made.
@@ -48,12 +50,13 @@ class FabricationPresenter(QObject):
         editor: FabricationEditor,
         planner: CutPlanner,
         keeper: VerdictKeeper,
+        estimates: AsCutEstimates,
         hand: HandEditor,
         run: DesignRun,
     ) -> None:
         super().__init__(panel)
         self._panel, self._cuts, self._session, self._planner = panel, cuts, session, planner
-        self._keeper, self._hand, self._run = keeper, hand, run
+        self._keeper, self._estimates, self._hand, self._run = keeper, estimates, hand, run
         panel.changed.connect(lambda changes: editor.change(**changes))
         panel.options_changed.connect(lambda changes: editor.change_options(**changes))
         cuts.width_wanted.connect(editor.set_hinge_width)
@@ -87,6 +90,7 @@ class FabricationPresenter(QObject):
         self._panel.reload_materials()
         self._session.document_changed.emit(self._session.document)
         self._keeper.forget_fixes()
+        self._estimates.forget_verdicts()
         self._planner.plan_soon()
 
     def _apply_fix(self, fix: Fix) -> None:

@@ -18,7 +18,7 @@ from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.services import Services
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
@@ -96,7 +96,7 @@ class Dialogs(QObject):
         self.materials.choose(key)
         bring_to_front(self.materials)
 
-    def show_report(self, exported: Exported) -> None:
+    def show_report(self, exported: ExportedFiles) -> None:
         """Show what two readers found in a written cut file, in the place of an earlier report."""
         from kirigami_studio.gui.make.export_report import ExportReport
 

@@ -109,6 +109,7 @@ class Presenters(QObject):
             editor=services.fabrication,
             planner=services.cutting,
             keeper=services.verdict,
+            estimates=services.estimates,
             hand=services.hand,
             run=services.run,
         )
