@@ -60,7 +60,7 @@ from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
-from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -654,8 +654,6 @@ class Cuts:
 
         Raises
         ------
-        FabricationError
-            The sheet would not survive these cuts.
         ExportError
             An unknown extension, or a place that cannot be written.
         """
@@ -668,13 +666,12 @@ class Cuts:
 
         Raises
         ------
-        FabricationError, ExportError
+        ExportError
             As :meth:`export`.
         """
         return self._written(Output(Path(folder), "cut", record=True))
 
     def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
-        refuse_errors(self.report)
         shown = None if motion is None else motion(self.settings.width_mm)
         found = written(self._request, self._planned, output, self._as_cut, shown)
         return Exported(found.files, found.verifications, self)

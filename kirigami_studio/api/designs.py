@@ -28,7 +28,8 @@ from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Thumbnail, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.evaluate.second_target import SecondTarget
-from kirigami_studio.fabricate.material import default_material, library
+from kirigami_studio.fabricate.machine import machines
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
@@ -36,7 +37,7 @@ from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
@@ -180,6 +181,18 @@ def material_names() -> tuple[str, ...]:
     return tuple(library().materials)
 
 
+def machine_names() -> tuple[str, ...]:
+    """Keys of all machines, bundled and your own, as the command line's ``machines`` lists them.
+
+    Examples
+    --------
+    >>> import kirigami_studio as ks
+    >>> "glowforge" in ks.machine_names()
+    True
+    """
+    return tuple(machines().items)
+
+
 def design(
     target: TargetLike,
     *,
@@ -189,6 +202,7 @@ def design(
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
+    machine: str | None = None,
     width_mm: float = 100.0,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
@@ -217,6 +231,8 @@ def design(
         Time after which the best so far are returned.
     material : str, optional
         One of :func:`material_names`: designs that can be cut in it come first.
+    machine : str, optional
+        One of :func:`machine_names`; without a material, one that it cuts is taken.
     width_mm, connector_mm, kerf_mm, style : optional
         Size and cuts, as in :meth:`Design.plan_cuts`.
     least_panel_mm : float
@@ -235,6 +251,7 @@ def design(
     outline = load_target(target).outline
     cuts = {
         "material": material,
+        "machine": machine,
         "width_mm": width_mm,
         "connector_mm": connector_mm,
         "kerf_mm": kerf_mm,
@@ -243,7 +260,7 @@ def design(
     given = {
         name: value for name, value in checked_choices(cuts, keywords_of(*CUTS), "design").items() if value is not None
     }
-    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
+    fabrication = new_settings(given)
     least = number("least_panel_mm", least_panel_mm)
     chosen = checked_choices({**choices}, keywords_of(*SEARCH), "design")
     wanted = chosen_settings(
@@ -257,7 +274,7 @@ def design(
     line = _Line()
     tell: Tell = progress if callable(progress) else line.show if progress else _quietly
     try:
-        run = run_design(request, fabrication, as_cut=material is not None, least_panel_mm=least)
+        run = run_design(request, fabrication, least_panel_mm=least)
         result = completed(run, tell)
     finally:
         line.end()

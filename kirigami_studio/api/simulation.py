@@ -74,6 +74,11 @@ class Simulation:
         return None if self.closes else self.as_cut.jam_phi
 
     @property
+    def jam_deg(self) -> float:
+        """The same in degrees, in [0, 180]: 0 for a sheet that closes fully, 180 for one that stays flat."""
+        return self.as_cut.jam_deg
+
+    @property
     def strain(self) -> float:
         """Largest strain of a connector on the way."""
         return self.as_cut.strain

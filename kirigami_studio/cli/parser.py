@@ -59,7 +59,7 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 (PHI,) = setting_options(DesignChoices, "phi")
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
-WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", over=USUAL)
+WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", "machine", over=USUAL)
 PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
 SINGLE_CONNECTORS = (
     option(
@@ -316,15 +316,28 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--by", default=None, metavar="NAME", help="who measured the values"),
         option("--delete", default=None, metavar="KEY",
                help="delete one of your own materials; presets cannot be deleted"),
+        option("--machine", default=None, metavar="KEY",
+               help="list what this machine cuts, or copy with its figures there"),
         JSON,
-    ), ("kirigami-studio materials",
+    ), ("kirigami-studio materials", "kirigami-studio materials --machine glowforge",
         "kirigami-studio materials --copy film-uv --as my-film --set kerf_mm=0.028 --calibrated --by Ada",
         "kirigami-studio materials --delete my-film")),
+    SubCommand("machines", "list the machines, or copy and change one", "library:machines", (
+        option("--copy", default=None, metavar="KEY", help="machine to copy and change"),
+        option("--as", default=None, dest="key", metavar="NEW",
+               help="key of the copy (default: the same KEY, which then hides the bundled one)"),
+        option("--set", action="append", default=[], metavar="NAME=VALUE",
+               help="change a value of the copy, such as bed_width_mm=500; may be repeated"),
+        option("--delete", default=None, metavar="KEY", help="delete one of your own machines"),
+        JSON,
+    ), ("kirigami-studio machines",
+        "kirigami-studio machines --copy co2-laser --as my-laser --set bed_width_mm=900 --set bed_height_mm=600",
+        "kirigami-studio machines --delete my-laser")),
     SubCommand("coupon", "write a calibration coupon, or calculate the kerf from measured gaps", "library:coupon", (
         option("--out", default=None, help="file to write (.dxf .svg .pdf)"),
         option("--gap-mm", type=amount, nargs="+", default=None,
                help="gaps measured beside the comb with its fingers pushed to one side"),
-        WIDTHS[1], WIDTHS[3],
+        *setting_options(FabricationSettings, "material", "kerf_mm", over=USUAL),
         option("--profile", default=None, help="machine profile of DXF files"),
         *setting_options(FabricationSettings, "dxf_version"),
         JSON,

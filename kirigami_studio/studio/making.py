@@ -12,15 +12,23 @@ from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.foundation.errors import Cancelled, ExportError, KirigamiError, ProjectError, UsageError
+from kirigami_studio.foundation.errors import (
+    Cancelled,
+    ExportError,
+    FabricationError,
+    KirigamiError,
+    ProjectError,
+    UsageError,
+)
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
 from kirigami_studio.studio import importing
+from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.file_kinds import kind_of
 
 if TYPE_CHECKING:
@@ -221,6 +229,28 @@ def chosen_candidate(document: Document) -> Candidate:
     return candidate
 
 
+def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
+    """Choose the first design of a project, from the chosen one on, whose cuts the sheet survives.
+
+    Returns
+    -------
+    document : Document
+        With that design chosen; as it was where there is none.
+    refusal : KirigamiError or None
+        Why the design that was chosen before cannot be cut; None where it can.
+    """
+    first: KirigamiError | None = None
+    for number in range(document.chosen or 0, len(document.candidates)):
+        chosen = replace(document, chosen=number)
+        try:
+            refuse_errors(planned(CutRequest.of(chosen)).report)
+        except FabricationError as error:
+            first = first or error
+            continue
+        return chosen, first
+    return document, first
+
+
 # from a design to its files -------------------------------------------------------------------------------------------
 
 
@@ -246,7 +276,7 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
-    key = (request.candidate, request.target, settings, material_for(settings), name)
+    key = (request.candidate, request.target, settings, material_for(settings), machine_for(settings), name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -278,7 +308,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
     if not found.slots and len(plan.copies) == 1:
         return None
     try:
-        return work_of(strokes_of(plan, found), plan.material)
+        return work_of(strokes_of(plan, found), plan)
     except ExportError:
         return None
 
@@ -352,7 +382,7 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion), output.path
+    job, path = replace(export_job(request, made), motion=motion, simulated_jam=_jam_of(as_cut)), output.path
     if output.name is not None:
         found = export_all(
             job,
@@ -453,7 +483,7 @@ def exporting_coupon(
     from kirigami_studio.export.verification import verify_export
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.fabricate.coupon import plan_coupon
-    from kirigami_studio.studio.verdict import Verdict
+    from kirigami_studio.studio.verdict import SIGNS_OF_A_JAM, Verdict
 
     if path.suffix.lower() != ".dxf":
         raise UsageError("coupon.not_dxf", name=path.name)
@@ -461,7 +491,10 @@ def exporting_coupon(
     with TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
         draft = Path(folder) / path.name
         write_dxf(plan, draft, settings.dxf_version, find_profile(settings.profile))
-        found = replace(verify_export(plan, draft, settings.profile, settings.dxf_version), path=path)
+        found = verify_export(plan, draft, settings.profile, settings.dxf_version)
+        # Flaps have no voids, and a coupon neither closes nor jams.
+        findings = tuple(finding for finding in found.findings if finding.code not in SIGNS_OF_A_JAM)
+        found = replace(found, path=path, findings=findings, void_miss_um=None)
         write_atomically(path, draft.read_bytes())
     yield ExportedFiles(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
@@ -472,8 +505,14 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
     request = CutRequest.of(document)
     made, cut = planned(request), request.settings
-    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment)
-    return found, judged(request, made, closed(request, made), [found])
+    as_cut = closed(request, made)
+    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment, _jam_of(as_cut))
+    return found, judged(request, made, as_cut, [found])
+
+
+def _jam_of(as_cut: AsCut | str | None) -> float | None:
+    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+    return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
 # the sheet as cut -----------------------------------------------------------------------------------------------------
@@ -481,13 +520,13 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and at which strain connectors break.
+    """What is expected of some designs as cut, and the material that they were estimated in.
 
     Designs that cannot be cut at all are left out.
     """
 
     found: tuple[tuple[Candidate, AsCut], ...]
-    strain_limit: float
+    material: Material
 
 
 def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
@@ -568,7 +607,7 @@ def fixing(
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
     coarser = () if run is None else coarser_designs(request.candidate, run)
-    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser)
+    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser, request.target)
     yield from in_turns(steps, cancel)
 
 
@@ -600,4 +639,4 @@ def estimating(
                     found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
-        yield Estimated(tuple(found), material.strain_limit)
+        yield Estimated(tuple(found), material)
