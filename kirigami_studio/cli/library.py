@@ -1,4 +1,4 @@
-"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
+"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _machine_row(machine: Machine, own: bool) -> str:
 
 
 def _changes(arguments: argparse.Namespace) -> dict[str, object]:
-    """What ``--set`` changes, by name.
+    """Changes of ``--set``, by name.
 
     Raises
     ------

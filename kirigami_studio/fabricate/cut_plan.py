@@ -364,7 +364,7 @@ def _plain_cuts(
 
 
 def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
-    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    """Widths (H,), mm, where the outline is no rectangle and leaves less of a connector."""
     left = (finished > 0.0) & (finished < planned - WIDER_MM)
     widths: FloatArray = np.where(left, finished, planned)
     return widths

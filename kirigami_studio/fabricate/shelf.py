@@ -1,4 +1,4 @@
-"""Values in typed TOML files: bundled ones in a folder of ``resources``, and the user's own in a folder beside them.
+"""Values in typed TOML files: bundled ones, and the user's own beside them.
 
 Materials and machines are kept this way.  The stem of a file is the key; an own value with the key of a bundled one
 wins over it.
@@ -122,7 +122,7 @@ class Shelf(Generic[Item]):
         return Contents(items, frozenset(own), tuple(faults))
 
     def find(self, name: str) -> Item:
-        """Return the value with this key or full name (capitals do not matter); a key wins over a name.
+        """Return the value of this key or full name, whatever its capitals; keys win.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class Shelf(Generic[Item]):
         return key
 
     def save(self, item: Item) -> Path:
-        """Save an own value under its key; one of the same key is replaced, a bundled one stays and is hidden.
+        """Save an own value under its key, in place of one of the same key.
 
         Raises
         ------

@@ -230,7 +230,7 @@ def chosen_candidate(document: Document) -> Candidate:
 
 
 def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
-    """Choose the first design of a project, from the chosen one on, whose cuts the sheet survives.
+    """Choose the first design of a project, from the chosen one on, that survives its cuts.
 
     Returns
     -------
@@ -511,7 +511,7 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
 
 def _jam_of(as_cut: AsCut | str | None) -> float | None:
-    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+    """Where a simulated sheet jams (radians); None where that is unknown."""
     return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
@@ -520,7 +520,7 @@ def _jam_of(as_cut: AsCut | str | None) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and the material that they were estimated in.
+    """Estimates of some designs as cut, and their material.
 
     Designs that cannot be cut at all are left out.
     """

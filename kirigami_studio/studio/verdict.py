@@ -1,4 +1,4 @@
-"""The verdict on a design: does it match, does it fit the material, does it close as cut, are its files right.
+"""The verdict on a design: its match, its material, its closing as cut, its files.
 
 One value for a design and the settings that it is cut with, made of what reading its files back found, of the check of
 its cut plan, of how the sheet does as cut, and of what the material bears.  Window, report, record, command line and
@@ -172,7 +172,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is to be expected of a design that is cut, and why.
+    """Expectations of a design that is cut, and why.
 
     A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
 
@@ -217,14 +217,14 @@ class Verdict:
 
     @property
     def words(self) -> str:
-        """The level, and that it is an estimate where it is one; nobody expects what was not looked for."""
+        """The level, and whether it is an estimate."""
         if not self.is_estimate:
             return self.level.words
         return tr("{level} (estimate)", level=self.level.words) if self.is_checked else tr("Not checked yet")
 
     @property
     def is_checked(self) -> bool:
-        """Whether there is a verdict at all: a sheet without a problem that nobody has closed has none."""
+        """Whether there is a verdict at all: an unclosed sheet without problems has none."""
         return self.as_cut is not None or bool(self.problems) or not self.is_estimate
 
     @property
@@ -255,7 +255,7 @@ class Verdict:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The list that is shown everywhere: its level, then every problem, the answers, and every note."""
+        """The list to show everywhere: level, problems, answers, notes."""
         problems, notes = ([note.text for note in part] for part in (self.problems, self.notes))
         return (self.words, *problems, self.summary, *notes)
 
@@ -501,7 +501,7 @@ def judge(
 def expected(
     candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None, material: Material | None = None
 ) -> Verdict:
-    """An estimate of the verdict, made in no time for designs that nobody has planned the cuts of.
+    """An estimate of the verdict on designs without planned cuts.
 
     Parameters
     ----------
@@ -526,7 +526,7 @@ def expected(
 
 
 def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
-    """IoU that the target is shown with: as cut where that is known, else as designed, trimmed if it is."""
+    """IoU to show the target with: as cut where known, else as designed and trimmed."""
     if as_cut is not None and as_cut.iou is not None:
         return as_cut.iou
     return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
@@ -561,7 +561,7 @@ def _of_design(candidate: Candidate) -> list[Problem]:
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
-    """What the check of a plan says of small panels, known from the design's own sizes."""
+    """Findings of a check of the plan on small panels, by the design's own sizes."""
     if ranking.wide_enough(candidate):
         return []
     size = candidate.score.evenness.least_feature_mm(ranking.width_mm)
@@ -569,14 +569,14 @@ def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
 
 
 def _of_refusal(refusal: Note) -> list[Problem]:
-    """Why a close look refused a design; ranking alone by an estimate, or not at all, is no finding about it."""
+    """Why a close look refused a design; a ranking by estimate is no finding."""
     if refusal.code in ("rank.jams", "rank.not_looked_at"):
         return []
     return [refusal if isinstance(refusal, Problem) else Problem(refusal.code, refusal.fields, Severity.ERROR)]
 
 
 def _of_match(as_cut: AsCut | None) -> list[Problem]:
-    """Match that is lost by cutting; how well the design itself matches is an answer, and no problem."""
+    """Match that is lost by cutting; that of the design itself is no problem."""
     if as_cut is None or as_cut.iou is None or as_cut.ideal_iou is None or (as_cut.lost or 0.0) <= LITTLE_LOST:
         return []
     values = {"match_percent": 100.0 * as_cut.iou, "designed_percent": 100.0 * as_cut.ideal_iou}
@@ -634,7 +634,7 @@ def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[
 
 
 def _strained(material: Material, strains: Sequence[float], where: tuple[float, float] | None = None) -> list[Problem]:
-    """Whether the largest of these strains is more than the material bears: the one place that compares them."""
+    """Whether the largest of these strains is more than the material bears."""
     strain, limit = max(strains, default=0.0), material.strain_limit
     if strain <= limit:
         return []

@@ -1,4 +1,4 @@
-"""The verdict on a design as a card shows it: its level, then what keeps it from being better, then what is well."""
+"""The verdict as a card shows it: its level, its problems, then what is well."""
 
 from __future__ import annotations
 

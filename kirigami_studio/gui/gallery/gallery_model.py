@@ -200,7 +200,7 @@ class GalleryModel(QAbstractListModel):
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
     def verdict_of(self, candidate: Candidate) -> Verdict:
-        """The verdict on a design as it is cut now: the one that everything shows, an estimate until it was made."""
+        """The verdict on a design as it is cut now, an estimate until it was made."""
         from kirigami_studio.studio.verdict import expected
 
         known = self._judged.get(candidate) or self._expected.get(candidate)
@@ -215,7 +215,7 @@ class GalleryModel(QAbstractListModel):
         material: Material | None = None,
         judged: Mapping[Candidate, Verdict] = MappingProxyType({}),
     ) -> None:
-        """Take how designs do as cut, by an estimate, in which material, and the verdicts that were made of some."""
+        """Take estimates of designs as cut, their material, and the verdicts made of some."""
         self._as_cut, self._material, self._judged = known, material, judged
         self._show_verdicts()
 

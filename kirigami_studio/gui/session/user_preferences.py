@@ -27,7 +27,7 @@ class UserPreferences:
         self._path: Path | None = None
 
     def use(self, path: Path) -> None:
-        """Start with the file's preferences and keep it up to date; one that cannot be read is left as it is."""
+        """Start with the file's preferences and keep it up to date."""
         session = self._session
         untouched = session.document in (Document(), self.new_document()) and not session.history.steps
         try:

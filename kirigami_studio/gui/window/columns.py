@@ -1,4 +1,4 @@
-"""The three columns of the window: target and settings, the stage, the gallery over the fabrication panel."""
+"""The three columns of the window: target and settings, stage, gallery and making."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Columns(QWidget):
         self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if window.height() >= height))
 
     def share_width(self, width: int) -> None:
-        """Share the window's width among the columns, until the user has moved a border between them."""
+        """Share the window's width among the columns, until the user has moved a border."""
         if not self._laid_out and not self.target.editing:
             left = min(max(LEFT_SHARE * width, LEFT_WIDTH[0]), LEFT_WIDTH[1])
             right = min(max(RIGHT_SHARE * width, RIGHT_WIDTH[0]), RIGHT_WIDTH[1])

@@ -41,7 +41,7 @@ def commands(
     appearance: Appearance,
     switch_motion: Callable[[], None],
 ) -> tuple[Command, ...]:
-    """Return the commands of the View menu; ``switch_motion`` lets what moves by itself stand still."""
+    """Return the commands of the View menu; ``switch_motion`` stops animations."""
     stage = columns.stage
     return (
         *_deployment(stage, session),
