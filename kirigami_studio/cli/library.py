@@ -1,4 +1,4 @@
-"""What there is: ``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
+"""Commands that list: targets, licences, parts, variants, materials, machines; the coupon."""
 
 from __future__ import annotations
 
