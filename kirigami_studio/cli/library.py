@@ -152,7 +152,7 @@ def _machine_row(machine: Machine, own: bool) -> str:
 
 
 def _changes(arguments: argparse.Namespace) -> dict[str, object]:
-    """What ``--set`` changes, by name.
+    """Changes of ``--set`` by name.
 
     Raises
     ------

@@ -116,7 +116,7 @@ class Edges:
 
     @property
     def sharp_corners(self) -> IntArray:
-        """Places of the edges that begin with a turn sharper than ``SWIFT_TURN``; the start of a path is none."""
+        """Places of edges after a turn sharper than ``SWIFT_TURN``, those that begin a path left out."""
         return np.flatnonzero((self.turn > SWIFT_TURN) & np.isfinite(self.turn))
 
     def runs(self, flowing_turn: float) -> tuple[IntArray, FloatArray]:
