@@ -1,4 +1,4 @@
-"""The table of sub-commands, with the help of every option and examples, and the parser that is built from it."""
+"""The table of sub-commands with help and examples, and the parser that is built from it."""
 
 from __future__ import annotations
 
@@ -415,7 +415,7 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 
 def open_window(arguments: argparse.Namespace) -> int:
-    """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
+    """Open the studio, with a project or a target if one is named; Qt is loaded here."""
     code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
     return code
 

@@ -1,7 +1,7 @@
 """Values in typed TOML files, bundled ones and the user's own.
 
-Bundled ones lie in a folder of ``resources``, own ones in a folder of the user's settings.  Materials and machines are kept this way.  The stem of a file is the key; an own value with the key of a bundled one
-wins over it.
+Bundled ones lie in a folder of ``resources``, own ones in a folder of the user's settings.  Materials and machines are
+kept this way.  The stem of a file is the key; an own value with the key of a bundled one wins over it.
 """
 
 from __future__ import annotations

@@ -57,27 +57,27 @@ def test_that_without_a_machine_every_material_is_offered_in_the_order_of_names(
 
 
 def test_that_a_machine_decides_materials_profile_and_file(designed: MainWindow) -> None:
-    panel, controller = designed.fabrication, designed.controller
+    panel, services = designed.fabrication, designed.services
     pick(panel.machine, "cricut-maker")
-    cut = controller.document.fabrication
+    cut = services.session.document.fabrication
     assert (cut.machine, cut.material, cut.profile) == ("cricut-maker", "drag-knife", "cricut")
     assert set(keys(panel.material)) == set(cuttable(find_machine("cricut-maker")))
     assert panel.material.currentData() == "drag-knife" and names(panel.material) == sorted(names(panel.material))
     assert panel.exports.extension == ".svg" and panel.export.text() == tr("Export SVG")
     pick(panel.material, "card-co2")
     assert panel.material.currentText() == "Card 0.3 mm, drag knife" and panel.lengths["kerf_mm"].value() == 0.0
-    controller.undo()
-    controller.undo()
-    assert controller.document.fabrication.machine == "" and panel.machine.currentData() == ""
+    services.project.undo()
+    services.project.undo()
+    assert services.session.document.fabrication.machine == "" and panel.machine.currentData() == ""
 
 
 def test_that_a_material_that_the_new_machine_cuts_stays(designed: MainWindow) -> None:
-    panel, controller = designed.fabrication, designed.controller
+    panel, services = designed.fabrication, designed.services
     pick(panel.material, "card-co2")
     pick(panel.machine, "xtool-s1")
-    assert controller.document.fabrication.material == "card-co2" and panel.lengths["kerf_mm"].value() == 0.15
+    assert services.session.document.fabrication.material == "card-co2" and panel.lengths["kerf_mm"].value() == 0.15
     pick(panel.machine, "")
-    assert controller.document.fabrication.machine == "" and len(keys(panel.material)) >= 12
+    assert services.session.document.fabrication.machine == "" and len(keys(panel.material)) >= 12
 
 
 def test_that_a_bundled_machine_is_copied_changed_and_reaches_the_plan(
@@ -89,7 +89,7 @@ def test_that_a_bundled_machine_is_copied_changed_and_reaches_the_plan(
     pick(designed.fabrication.machine, "co2-laser-2")
     until(lambda: designed.fabrication.export.isEnabled())
     seen: list[object] = []
-    designed.controller.cutting.planned.connect(seen.append)
+    designed.services.cutting.planned.connect(seen.append)
     editor.form.numbers["bed_width_mm"].setValue(60.0)
     editor.form.numbers["bed_height_mm"].setValue(60.0)
     qtbot.mouseClick(editor.buttons["save"], LEFT)

@@ -1,4 +1,4 @@
-"""Sentences of ``fabricate``, by the code of the problem: widths, materials, and what a check of a plan finds."""
+"""Sentences of ``fabricate``, by the code of the problem: widths, materials, checks."""
 
 from __future__ import annotations
 
