@@ -23,7 +23,7 @@ from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
     from kirigami_studio.outlines.symmetry import TargetSymmetry
 
-#: Extensions of targets that are traced at a threshold.
-PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
 #: Problems of drawings whose lines may be meant as they are painted.
 OPEN_LINES = ("lines.open_at", "lines.not_closed")
 #: Longer side of the picture as it is kept for drawing, pixels.
