@@ -345,7 +345,7 @@ class TargetReading:
 
 
 def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Cancel) -> Iterator[TargetReading]:
-    """Measure how symmetric a request's target is, and choose a grid for it, unless one was ``chosen`` by a run."""
+    """Measure how symmetric a request's target is; take the ``chosen`` grid, or choose one."""
     from kirigami_studio.outlines.symmetry import symmetry_of
     from kirigami_studio.pipeline.auto_grid import known_for
 
