@@ -47,12 +47,12 @@ from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings from the width options; unknown materials are refused here, before any work."""
+    """Fabrication settings of the width options; unknown materials are refused before any work."""
     return new_settings(_given(arguments))
 
 
 def export(arguments: argparse.Namespace) -> int:
-    """Write cut or picture files from a project, verify the cut files, and report what is in them."""
+    """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
         find_exporter(arguments.out)
     document = load(arguments.project)
@@ -172,7 +172,7 @@ def say_verdict(verdict: Verdict) -> None:
 
 
 def _work(plan: CutPlan, profile: str, output: Output) -> Work:
-    """What cutting the files takes; that of the plan for kinds of file that have no profile."""
+    """Time of cutting the files; of the plan for kinds of file that have no profile."""
     suffix = output.path.suffix.lower()
     if len(plan.copies) > 1 and suffix in (".pdf", ".lbrn2"):
         return work_of(strokes_of(plan, find_profile("any")), plan)
@@ -194,7 +194,7 @@ def _summary(found: Verification) -> dict[str, object]:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
+    """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
     judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))

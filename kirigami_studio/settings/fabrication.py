@@ -89,17 +89,6 @@ class FabricationSettings:
             option="--width-mm",
         ).metadata,
     )
-    material: str = field(
-        default=DEFAULT_PRESET,
-        metadata=Setting(
-            help="material, see 'kirigami-studio materials'",
-            code="settings.material_not_a_name",
-            always_written=True,
-            undo=mark("Change the material"),
-            spoken=mark("Material preset"),
-            option="--material",
-        ).metadata,
-    )
     machine: str = field(
         default="",
         metadata=Setting(
@@ -110,6 +99,17 @@ class FabricationSettings:
             undo=mark("Change the machine"),
             spoken=mark("Machine"),
             option="--machine",
+        ).metadata,
+    )
+    material: str = field(
+        default=DEFAULT_PRESET,
+        metadata=Setting(
+            help="material, see 'kirigami-studio materials'",
+            code="settings.material_not_a_name",
+            always_written=True,
+            undo=mark("Change the material"),
+            spoken=mark("Material preset"),
+            option="--material",
         ).metadata,
     )
     connector_mm: float | None = field(

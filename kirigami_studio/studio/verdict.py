@@ -72,6 +72,8 @@ LITTLE_LOST = 0.02
 HALF_WAY = 0.5
 #: Of a sheet that comes within a few degrees of its angle, or loses hardly any match.
 NEARLY = "as_cut.nearly"
+#: What a close look lets pass: ranking counts the match that is lost.
+BEARABLE = frozenset({NEARLY, "as_cut.loses_match"})
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
@@ -133,7 +135,7 @@ _ANSWERS = {
     (Question.FILES, State.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
-_MATCH_FINDINGS = frozenset({"as_cut.matches_roughly", "as_cut.does_not_match"})
+_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
 _CLOSING_FINDINGS = frozenset(
     {
         NEARLY,
@@ -171,6 +173,8 @@ class Answer:
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """What is to be expected of a design that is cut, and why.
+
+    A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
 
     Attributes
     ----------
@@ -232,6 +236,9 @@ class Verdict:
         """The answer to a question: by the worst problem that is about it."""
         found = [problem for problem in self.problems if question_of(problem) is question]
         state = _STATES[_level_of(found)] if found or self._knows(question) else State.OPEN
+        if question is Question.MATCHES and self.match is not None:
+            own = State.GOOD if self.match >= MATCHES else State.CARE
+            state = State.BAD if self.match < MATCHES_ROUGHLY else max(state, own, key=list(State).index)
         word = tr(_ANSWERS[question, state])
         if question is Question.CLOSES and self.as_cut is not None and "rank.not_feasible" not in _codes(found):
             word = self.as_cut.word
@@ -245,11 +252,6 @@ class Verdict:
             Question.CLOSES: self.as_cut is not None,
             Question.FILES: self.read,
         }[question]
-
-    @property
-    def of_the_sheet(self) -> tuple[Problem, ...]:
-        """Problems of making it, however well the design matches."""
-        return tuple(problem for problem in self.problems if question_of(problem) is not Question.MATCHES)
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -268,12 +270,8 @@ class Verdict:
         return ", ".join(words.values())
 
     def better_than(self, other: Verdict) -> bool:
-        """Whether less is to be feared: of the sheet, or of a sheet that is as good, of its match."""
-        return self._fears < other._fears
-
-    @property
-    def _fears(self) -> tuple[int, int]:
-        return RANK[_level_of(self.of_the_sheet)], RANK[self.level]
+        """Whether less is to be feared."""
+        return RANK[self.level] < RANK[other.level]
 
     def to_json(self) -> dict[str, object]:
         """For the record and the command line."""
@@ -439,13 +437,13 @@ def looking(
         return CloseLook(Note(error.code, error.fields))
     yield
     report = check_plan(plan, phi=candidate.final_phi)
-    found = judge(candidate, plan, report, None).of_the_sheet
-    small = next((problem for problem in found if problem.code in TOO_SMALL), None)
-    if _level_of(found) is Level.FAILS or small is not None:
-        return CloseLook(small or found[0])
+    found = judge(candidate, plan, report, None)
+    small = next((problem for problem in found.problems if problem.code in TOO_SMALL), None)
+    if found.level is Level.FAILS or small is not None:
+        return CloseLook(small or found.problems[0])
     as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
-    new = (one for one in judge(candidate, plan, report, as_cut).of_the_sheet if one not in found)
-    refusal = next((problem for problem in new if problem.code != NEARLY), None)
+    new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
+    refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
 
 
@@ -475,7 +473,6 @@ def judge(
         Of files that were written of it.
     """
     known = as_cut if isinstance(as_cut, AsCut) else None
-    match = match_of(candidate, known)
     problems = [
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
@@ -483,7 +480,7 @@ def judge(
         *_of_wishes(plan),
         *_of_jam(known),
         *_of_strain(plan, report, known),
-        *_of_match(candidate, match),
+        *_of_match(known),
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
@@ -496,7 +493,7 @@ def judge(
         tuple(note for note in _once(notes) if note.text not in told),
         None if isinstance(as_cut, str) else Source.ESTIMATE if known is None else known.source,
         known,
-        match,
+        match_of(candidate, known),
         bool(verifications),
     )
 
@@ -516,7 +513,6 @@ def expected(
     material : Material, optional
         For the strain that its connectors bear.
     """
-    match = match_of(candidate, as_cut)
     refusal = ranking.refusals.get(candidate)
     problems = [
         *_of_design(candidate),
@@ -524,9 +520,9 @@ def expected(
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
         *([] if as_cut is None or material is None else _strained(material, [as_cut.strain])),
-        *_of_match(candidate, match),
+        *_of_match(as_cut),
     ]
-    return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match)
+    return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match_of(candidate, as_cut))
 
 
 def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
@@ -579,14 +575,14 @@ def _of_refusal(refusal: Note) -> list[Problem]:
     return [refusal if isinstance(refusal, Problem) else Problem(refusal.code, refusal.fields, Severity.ERROR)]
 
 
-def _of_match(candidate: Candidate, match: float) -> list[Problem]:
-    if match >= MATCHES:
+def _of_match(as_cut: AsCut | None) -> list[Problem]:
+    """Match that is lost by cutting; how well the design itself matches is an answer, and no problem."""
+    if as_cut is None or as_cut.iou is None or as_cut.ideal_iou is None or (as_cut.lost or 0.0) <= LITTLE_LOST:
         return []
-    designed = match_of(candidate, None)
-    values = {"match_percent": 100.0 * match, "designed_percent": 100.0 * designed}
-    if match >= MATCHES_ROUGHLY:
-        return [Problem.warning("as_cut.matches_roughly", **values, least_percent=100.0 * MATCHES)]
-    return [Problem.error("as_cut.does_not_match", **values, least_percent=100.0 * MATCHES_ROUGHLY)]
+    values = {"match_percent": 100.0 * as_cut.iou, "designed_percent": 100.0 * as_cut.ideal_iou}
+    if as_cut.iou < MATCHES_ROUGHLY <= as_cut.ideal_iou:
+        return [Problem.error("as_cut.does_not_match", **values, least_percent=100.0 * MATCHES_ROUGHLY)]
+    return [Problem.warning("as_cut.loses_match", **values)]
 
 
 def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut | None) -> list[Problem]:

@@ -14,22 +14,26 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.gui.gallery import table_card
 from kirigami_studio.gui.gallery.all_designs import AllDesigns
 from kirigami_studio.gui.gallery.badges import badges_of
 from kirigami_studio.gui.gallery.card_delegate import CardButton
 from kirigami_studio.gui.gallery.design_table import MOST_COMPARED
-from kirigami_studio.gui.gallery.gallery_model import BADGES_ROLE, NAME_ROLE
+from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VERDICT_ROLE
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.gallery.table_card import button_boxes
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.widgets.verdict_marks import ICONS
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.as_cut import AsCut, Outcome, Source, StrainFigure
+from kirigami_studio.studio.verdict import Level, expected
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -137,7 +141,7 @@ def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, t
 
 
 def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
-    designed: MainWindow, table: AllDesigns
+    designed: MainWindow, table: AllDesigns, until: Until
 ) -> None:
     document = designed.session.document
     sizes = [one.score.evenness.least_feature_mm(document.fabrication.width_mm) for one in document.candidates]
@@ -148,12 +152,13 @@ def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
     designed.fabrication.lengths["width_mm"].setValue(10 * document.fabrication.width_mm)
     assert len(names(table)) == 3, "larger sheets have larger features"
     table.filters.feature.setValue(0.0)
-    table.filters.cuttable.setChecked(True)
-    ranking = table.table.model_.ranking
-    cuttable = [one for one in document.candidates if ranking.cuttable(one)]
-    assert len(names(table)) == len(cuttable)
+    table.filters.works.setChecked(True)
+    model = table.table.model_
+    works = [one for one in document.candidates if model.verdict_of(one).level is not Level.FAILS]
+    assert len(names(table)) == len(works) > 0
     designed.services.fabrication.change(material="acrylic-co2", width_mm=20.0)
-    assert names(table) == [], "nothing so small can be cut"
+    until(lambda: not designed.services.estimates.busy)
+    assert names(table) == [], "acrylic breaks"
 
 
 def test_that_every_card_shows_flat_half_open_and_open(table: AllDesigns, until: Until) -> None:
@@ -300,29 +305,51 @@ def test_that_cards_become_larger_and_smaller_by_keys(table: AllDesigns) -> None
     assert table.card_size.value() == 0 and table.table.cards.card.width() < before.width()
 
 
-def test_that_badges_say_what_keeps_a_design_from_being_cut(designs: Document) -> None:
+def texts(candidate: Candidate, ranking: Ranking, as_cut: AsCut | None, material: Material | None = None) -> list[str]:
+    return [badge.text for badge in badges_of(expected(candidate, ranking, as_cut, material))]
+
+
+def test_that_badges_say_the_verdict_and_what_keeps_it_from_being_better(designs: Document) -> None:
     candidate = designs.candidates[0]
+    candidate = replace(candidate, score=replace(candidate.score, iou_exact=0.95))
     wide, narrow = Ranking(width_mm=100.0), Ranking(width_mm=100.0, least_feature_mm=50.0)
-    closing = AsCut(0.0, 0.0, Outcome.CLOSES, 0.1, 0.2, StrainFigure.IN_PLANE)
+    closing = AsCut(0.0, 0.0, Outcome.CLOSES, 0.1, 0.2, StrainFigure.IN_PLANE, source=Source.ESTIMATE)
     jamming = replace(closing, jam_phi=0.6, outcome=Outcome.STRETCHED)
-    assert [badge.text for badge in badges_of(candidate, wide, None)] == ["cuttable"]
-    assert [badge.text for badge in badges_of(candidate, wide, closing, 0.45)] == ["cuttable", "closes"]
-    assert [badge.text for badge in badges_of(candidate, wide, closing, 0.1)] == ["hinges break", "cuttable", "closes"]
-    found = badges_of(candidate, narrow, jamming, 0.1)
-    size = candidate.score.evenness.least_feature_mm(100.0)
-    assert [badge.text for badge in found] == [f"too thin: {size:.2f} mm", "jams at 34°", "hinges break"]
-    assert not any(badge.good for badge in found) and "50.00 mm" in found[0].tip
+    tough, brittle = (replace(default_material(), strain_limit=limit) for limit in (0.45, 0.1))
+    fits, about = "fits the material", "\N{ALMOST EQUAL TO} "
+    assert texts(candidate, wide, None) == ["Not checked yet", "matches", fits]
+    assert texts(candidate, wide, closing, tough) == [f"{about}Ready to cut", "matches", fits, f"{about}closes"]
+    misfit = [f"{about}Will not work", "does not fit the material", "matches", f"{about}closes"]
+    assert texts(candidate, wide, closing, brittle) == misfit
+    found = badges_of(expected(candidate, narrow, jamming, brittle))
+    assert [badge.text for badge in found][:3] == [misfit[0], misfit[1], f"{about}jams at 34°"]
+    assert [badge.state for badge in found] == ["will_not_work", "bad", "bad", "good"]
+    assert "50.00 mm" in found[1].tip and [badge.is_level for badge in found] == [True, False, False, False]
     overlapping = replace(candidate, score=replace(candidate.score, feasible=False))
-    assert [badge.text for badge in badges_of(overlapping, wide, closing)] == ["overlaps itself", "closes"]
+    assert texts(overlapping, wide, closing)[:2] == [f"{about}Will not work", f"{about}overlaps itself"]
+    rough = replace(candidate, score=replace(candidate.score, iou_exact=0.85))
+    # How well a design matches is an answer of its own; it is no reason not to cut it.
+    assert texts(rough, wide, closing)[:2] == [f"{about}Ready to cut", "matches roughly"]
+
+
+def test_that_no_badge_of_a_sheet_that_will_not_work_has_a_check_mark(designs: Document) -> None:
+    verdict = expected(designs.candidates[0], Ranking(width_mm=100.0, least_feature_mm=50.0))
+    jammed = AsCut(2.5, 0.0, Outcome.STRETCHED, 3.0, 0.1, StrainFigure.OUT_OF_PLANE, source=Source.ESTIMATE)
+    for one in (verdict, expected(designs.candidates[0], Ranking(), jammed)):
+        icons = [ICONS[badge.state] for badge in badges_of(one) if badge.is_level]
+        assert icons == ["fault" if one.level is Level.FAILS else "warning"]
 
 
 def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns, until: Until) -> None:
-    until(lambda: bool(designed.services.estimates.known) and not designed.services.estimates.busy)
-    index = table.table.model_.index(0, 0)
-    assert "cuttable" in [badge.text for badge in index.data(BADGES_ROLE)]
-    designed.services.fabrication.change(material="card-co2")
-    until(lambda: not designed.services.estimates.busy)
-    assert any(badge.text == "hinges break" for badge in index.data(BADGES_ROLE))
+    services = designed.services
+    until(lambda: bool(services.estimates.known) and not services.estimates.busy)
+    rows = [table.table.model_.index(row, 0) for row in range(table.table.model_.rowCount())]
+    assert all("fits the material" in row.data(VERDICT_ROLE).summary for row in rows)
+    services.fabrication.change(material="card-co2")
+    # What was found in the other material goes at once, not once this one was looked at.
+    assert not any(row.data(VERDICT_ROLE).as_cut for row in rows)
+    until(lambda: not services.estimates.busy)
+    assert all("does not fit the material" in row.data(VERDICT_ROLE).summary for row in rows)
 
 
 def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path) -> None:

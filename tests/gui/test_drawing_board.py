@@ -15,11 +15,14 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.pose_tool import TURN, PoseTool
-from kirigami_studio.gui.target.target_view import DRAWING, Tool
+from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.placed import Placed
+
+#: Tools that draw a figure in one drag.
+FIGURES = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE, Tool.FREEHAND, Tool.POLYGON}
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
@@ -193,7 +196,7 @@ def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> N
 # shapes -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
+@pytest.mark.parametrize("tool", sorted(FIGURES, key=lambda tool: tool.value))
 def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
     use(board, tool)
     board.target.tools.options.text.setText("K")

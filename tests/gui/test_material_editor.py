@@ -120,7 +120,7 @@ def test_that_a_form_that_nobody_touched_changes_nothing(qtbot: QtBot) -> None:
     form = MaterialForm()
     qtbot.addWidget(form)
     for material in presets().values():
-        form.show_material(material, editable=True)
+        form.show_value(material, editable=True)
         assert form.changes() == {}, material.key
     form.numbers["strain_limit"].setValue(12.5)
     assert form.changes() == {"strain_limit": 0.125}

@@ -64,6 +64,7 @@ class FabricationPresenter(QObject):
         cuts.reset_wanted.connect(editor.reset_hinges)
         for edited in (panel.edited, cuts.edited):
             edited.connect(session.history.end_drag)
+        panel.machines_changed.connect(planner.plan_soon)
         planner.planned.connect(self._show_plan)
         planner.refused.connect(self._show_refusal)
         keeper.changed.connect(bar.show_state)
