@@ -270,7 +270,7 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
 
 
 def _given(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Values of the command line, by the names of settings."""
+    """Values of the command line by the names of settings."""
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())

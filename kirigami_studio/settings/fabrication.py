@@ -293,7 +293,7 @@ def stored_material(settings: FabricationSettings) -> Material | None:
 
 
 def material_for(settings: FabricationSettings) -> Material:
-    """Return the material of the settings, on their machine, from library or project.
+    """Return the material of the settings as their machine cuts it, from library or project.
 
     Raises
     ------
@@ -308,12 +308,12 @@ def material_for(settings: FabricationSettings) -> Material:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine that the settings name; None for none, or one that is not there."""
+    """Return the machine of the settings; None where they name none, or an unknown one."""
     return machines().items.get(settings.machine) if settings.machine else None
 
 
 def machine_for(settings: FabricationSettings) -> Machine:
-    """Return the machine that cuts: the one that is named, else that of the material.
+    """Return the machine of the settings, or else the one that their material is for.
 
     Raises
     ------
@@ -324,7 +324,7 @@ def machine_for(settings: FabricationSettings) -> Machine:
 
 
 def machine_changes(settings: FabricationSettings, machine: Machine) -> FabricationChange:
-    """Changes that come with a machine: its profile, and a material that it cuts."""
+    """The changes that come with a machine: its profile and, if need be, another material."""
     changes: FabricationChange = {"machine": machine.key, "profile": machine.profile}
     if machine.kind is not machine_for(settings).kind:
         changes |= {"connector_mm": None, "kerf_mm": None}  # those of the material on the other machine
@@ -335,7 +335,7 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
 
 
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: the given material, or one that the given machine cuts.
+    """Settings without a project: with the given material, or one that the machine cuts.
 
     Raises
     ------

@@ -92,7 +92,7 @@ class Fix:
 
     @property
     def line(self) -> str:
-        """The change, and its expected effect."""
+        """The change, and the verdict that it leads to."""
         return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
@@ -149,7 +149,7 @@ class Advice:
         return tuple(fix.line for fix in self.fixes)
 
     def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """A verdict with fixes below the worst problem that each solves."""
+        """A verdict with fixes: each below the worst problem that it solves, others at the end."""
         told: list[str] = [verdict.words]
         left = list(self.fixes)
         for problem in verdict.problems:

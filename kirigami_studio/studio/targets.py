@@ -342,8 +342,8 @@ class TargetReading:
     start_refusal: str = ""
 
 
-def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
-    """Measure how symmetric a request's target is, and choose a grid for it."""
+def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Cancel) -> Iterator[TargetReading]:
+    """Measure how symmetric a request's target is; take the ``chosen`` grid, or choose one."""
     from kirigami_studio.outlines.symmetry import symmetry_of
     from kirigami_studio.pipeline.auto_grid import known_for
 
@@ -353,8 +353,16 @@ def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:
-        grid = choice.grid if request.grid is None else request.grid
-        yield TargetReading(found, choice.grid, choice.reason, start_refusal(request.start, grid, request.rim))
+        expected, reason = choice.grid, choice.reason
+        if chosen is not None:
+            rows, columns = expected = chosen
+            reason = tr(
+                "The designs have {rows} x {columns} voids: the grid that was chosen for this target.",
+                rows=rows,
+                columns=columns,
+            )
+        grid = expected if request.grid is None else request.grid
+        yield TargetReading(found, expected, reason, start_refusal(request.start, grid, request.rim))
 
 
 def _symmetry_sentence(found: TargetSymmetry) -> str:

@@ -1,4 +1,4 @@
-"""Two questions: which machine, and which of the materials that it cuts."""
+"""Choice of a machine, and then of a material that it cuts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ USUAL = mark("Usual for the material")
 
 
 class MachineChooser(QObject):
-    """A box of machines, and one of the materials that the chosen one cuts.
+    """A box of machines, and a box of the materials that the chosen one cuts.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class MachineChooser(QObject):
         self.show_settings(self._settings)
 
     def show_settings(self, settings: FabricationSettings) -> Material | None:
-        """Show machine and material of settings, and return the material; None if unknown."""
+        """Show machine and material of settings, and return the material, None if unknown."""
         self._settings = settings
         machine = self._machines.get(settings.machine)
         offered = self._offer_materials(machine)

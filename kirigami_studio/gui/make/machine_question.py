@@ -19,8 +19,8 @@ KINDS = (
 )
 
 
-class MachineQuestion(QFrame):
-    """Asks once for the machine, then for a material that it cuts, in menus of buttons."""
+class CuttingQuestion(QFrame):
+    """Asks for the machine, then for a material that it cuts: one button for each kind."""
 
     answered = Signal(str, str)  #: keys of a machine and of a material
     declined = Signal()
@@ -78,7 +78,7 @@ class MachineQuestion(QFrame):
             action.triggered.connect(lambda _=False, key=key: self.answered.emit(machine.key, key))
 
     def _arrange(self) -> None:
-        """In one row where all names fit, else in rows of three; the reason gives way."""
+        """Put buttons in one row or in rows of three, where the reason gives way."""
         buttons = list(self.buttons.values())
         widest = max((button.sizeHint().width() for button in buttons), default=0)
         columns = len(KINDS) if len(buttons) * (widest + 8) <= self.width() else 3

@@ -1,4 +1,4 @@
-"""Icon and colour of a verdict by its level, pale for an estimate."""
+"""Icon and colour of a verdict wherever it is shown, pale for an estimate."""
 
 from __future__ import annotations
 
