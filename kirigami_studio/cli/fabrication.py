@@ -6,6 +6,7 @@ import argparse
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
@@ -20,14 +21,13 @@ from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
@@ -47,13 +47,12 @@ from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings from the width options; unknown materials are refused here, before any work."""
-    material = default_material() if arguments.material is None else find_material(arguments.material)
-    return overridden(FabricationSettings(material=material.key), arguments)
+    """Fabrication settings of the width options; unknown materials are refused before any work."""
+    return new_settings(_given(arguments))
 
 
 def export(arguments: argparse.Namespace) -> int:
-    """Write cut or picture files from a project, verify the cut files, and report what is in them."""
+    """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
         find_exporter(arguments.out)
     document = load(arguments.project)
@@ -173,12 +172,12 @@ def say_verdict(verdict: Verdict) -> None:
 
 
 def _work(plan: CutPlan, profile: str, output: Output) -> Work:
-    """What cutting the files takes; that of the plan for kinds of file that have no profile."""
+    """Time of cutting the files; of the plan for kinds of file that have no profile."""
     suffix = output.path.suffix.lower()
     if len(plan.copies) > 1 and suffix in (".pdf", ".lbrn2"):
-        return work_of(strokes_of(plan, find_profile("any")), plan.material)
+        return work_of(strokes_of(plan, find_profile("any")), plan)
     if output.name is not None or suffix in FORMATS:
-        return work_of(strokes_of(plan, find_profile(profile)), plan.material)
+        return work_of(strokes_of(plan, find_profile(profile)), plan)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
 
 
@@ -195,7 +194,7 @@ def _summary(found: Verification) -> dict[str, object]:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
+    """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
     judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))
@@ -267,10 +266,15 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     UsageError
         An option that no settings can hold.
     """
+    return with_choices(saved, _given(arguments))
+
+
+def _given(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Values of the command line by the names of settings."""
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    return with_choices(saved, given)
+    return given
 
 
 def _hinge_width(text: str) -> tuple[int, float]:

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.posed_design import trimmed_parts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import Cancel, never
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.foundation.words import tr
@@ -215,8 +215,6 @@ def run_design(
     ------
     Cancelled
         ``cancel`` returned true.
-    FabricationError
-        Designs were to be trimmed and none could be.
     """
     from kirigami_studio.pipeline.run import grid_choice, run, with_grid
 
@@ -234,9 +232,14 @@ def run_design(
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
         result = yield from _ranked_as_cut(result, cut, beside, cancel)
-        if request.trim and all(one.trim is None for one in result.candidates):
-            raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
         yield Finished(result)
+
+
+def why_untrimmed(result: Result) -> Note | None:
+    """Why no design of a run was trimmed, though that was asked for; None where one is, or nobody asked."""
+    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+        return None
+    return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:

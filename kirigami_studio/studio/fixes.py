@@ -17,6 +17,7 @@ from types import MappingProxyType
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem
+from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import KirigamiError
@@ -29,7 +30,7 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
@@ -352,14 +353,14 @@ def _single_changes(
         yield _Change(Note.of("fix.hinges"), candidate, even)
     named = [width for problem in verdict.problems for width in _named_widths(problem, settings, material)]
     for width in named:
-        yield from _wider(candidate, settings, material, width)
+        yield from _wider(candidate, settings, width)
     for style in _styles(material, settings):
         yield _Change(Note.of("fix.style", style=style.value), candidate, _with(settings, style=style))
     for connector in _connectors(material, settings, CONNECTORS):
         note = Note.of("fix.connector", connector_mm=connector)
         yield _Change(note, candidate, _with(settings, connector_mm=connector))
     for times in WIDTHS:
-        yield from _wider(candidate, settings, material, settings.width_mm * times)
+        yield from _wider(candidate, settings, settings.width_mm * times)
 
 
 def _named_widths(problem: Problem, settings: FabricationSettings, material: Material) -> list[float]:
@@ -376,17 +377,15 @@ def _named_widths(problem: Problem, settings: FabricationSettings, material: Mat
     return []
 
 
-def _wider(
-    candidate: Candidate, settings: FabricationSettings, material: Material, width_mm: float
-) -> Iterator[_Change]:
+def _wider(candidate: Candidate, settings: FabricationSettings, width_mm: float) -> Iterator[_Change]:
     """Another width of the sheet, rounded up to a tenth of a millimetre, if the machine can reach it."""
     width = math.ceil(10.0 * width_mm - 1e-6) / 10.0
-    if width <= max(_widest(material), settings.width_mm):
+    if width <= max(_widest(settings), settings.width_mm):
         yield _Change(Note.of("fix.width", width_mm=width), candidate, _with(settings, width_mm=width))
 
 
-def _widest(material: Material) -> float:
-    return max(material.bed_width_mm, material.bed_height_mm) or WIDEST_MM
+def _widest(settings: FabricationSettings) -> float:
+    return max(machine_for(settings).reach_mm) or WIDEST_MM
 
 
 def _styles(material: Material, settings: FabricationSettings) -> list[ConnectorStyle]:
@@ -431,14 +430,15 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
     connectors = _connectors(material, settings, (1.0, 2.0)) or [material.connector_mm]
     widths = [round(settings.width_mm * times, 1) for times in (1.0, 1.5, 2.0, 3.0)]
     for width, style, connector in product(widths, COMBINED, connectors):
-        if width <= max(_widest(material), settings.width_mm):
+        if width <= max(_widest(settings), settings.width_mm):
             note = Note.of("fix.combined", style=style.value, connector_mm=connector, width_mm=width)
             yield _Change(note, candidate, _with(settings, style=style, connector_mm=connector, width_mm=width))
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors."""
-    for key, material in library().materials.items():
+    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    machine = named_machine(settings)
+    for key, material in (library().materials if machine is None else cuttable(machine)).items():
         if key != settings.material and material.connectors_hold:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)

@@ -44,8 +44,8 @@ KEY = Qt.Key
 def table(designed: MainWindow) -> AllDesigns:
     """The three designs on the table, opened by its key."""
     QTest.keyClick(designed.stage.view, KEY.Key_A)
-    page = designed.connections.all_designs.page
-    assert page is not None and page.isVisible() and not designed.columns.isVisible()
+    page = designed.presenters.all_designs.page
+    assert page is not None and page.isVisible() and not designed.columns.splitter.isVisible()
     page.filters.grouped.setChecked(False)
     return page
 
@@ -62,23 +62,23 @@ def names(page: AllDesigns) -> list[str]:
 
 
 def test_that_the_table_opens_at_the_chosen_design_and_closes_again(designed: MainWindow, table: AllDesigns) -> None:
-    assert table.table.hasFocus() and table.table.current == designed.controller.document.candidate
+    assert table.table.hasFocus() and table.table.current == designed.session.document.candidate
     press(table, KEY.Key_Escape)
-    assert not designed.connections.all_designs.shown and designed.columns.isVisible()
+    assert not designed.presenters.all_designs.shown and designed.columns.splitter.isVisible()
     QTest.mouseClick(designed.gallery.bar.all, LEFT)
-    assert designed.connections.all_designs.shown
+    assert designed.presenters.all_designs.shown
     QTest.mouseClick(table.close_button, LEFT)
-    assert designed.columns.isVisible() and designed.stage.view.hasFocus()
+    assert designed.columns.splitter.isVisible() and designed.stage.view.hasFocus()
 
 
 def test_that_arrows_move_and_enter_takes_the_design_to_the_stage(
     designed: MainWindow, table: AllDesigns, designs: Document
 ) -> None:
     press(table, KEY.Key_Right)
-    assert table.table.current == designs.candidates[1] and designed.controller.document.chosen == 0
-    assert designed.controller.history.undo_label is None, "looking at designs is no change"
+    assert table.table.current == designs.candidates[1] and designed.session.document.chosen == 0
+    assert designed.session.history.undo_label is None, "looking at designs is no change"
     press(table, KEY.Key_Return)
-    assert designed.controller.document.chosen == 1 and not designed.connections.all_designs.shown
+    assert designed.session.document.chosen == 1 and not designed.presenters.all_designs.shown
     assert designed.stage.title.text() == "Design A2"
 
 
@@ -88,9 +88,9 @@ def test_that_a_double_click_takes_a_design_and_a_click_does_not(
     view = table.table
     place = view.visualRect(view.model_.index(2, 0)).center()
     qtbot.mouseClick(view.viewport(), LEFT, pos=place)
-    assert designed.controller.document.chosen == 0 and view.current == designed.controller.document.candidates[2]
+    assert designed.session.document.chosen == 0 and view.current == designed.session.document.candidates[2]
     qtbot.mouseDClick(view.viewport(), LEFT, pos=place)
-    assert designed.controller.document.chosen == 2 and not designed.connections.all_designs.shown
+    assert designed.session.document.chosen == 2 and not designed.presenters.all_designs.shown
 
 
 def test_that_letters_of_the_window_do_nothing_out_of_sight(designed: MainWindow, table: AllDesigns) -> None:
@@ -98,14 +98,14 @@ def test_that_letters_of_the_window_do_nothing_out_of_sight(designed: MainWindow
     for key in (KEY.Key_T, KEY.Key_M, KEY.Key_E, KEY.Key_D, KEY.Key_J, KEY.Key_B):
         QTest.keyClick(table.table, key)
     assert designed.stage.view.overlays == overlays and designed.stage.showing_cuts is cuts
-    assert designed.connections.all_designs.shown and not designed.target.editing
+    assert designed.presenters.all_designs.shown and not designed.target.editing
 
 
 def test_that_a_design_is_pinned_rejected_and_renamed_by_keys(designed: MainWindow, table: AllDesigns) -> None:
     press(table, KEY.Key_I)
-    assert designed.controller.document.marks[0] is Mark.PINNED
+    assert designed.session.document.marks[0] is Mark.PINNED
     press(table, KEY.Key_Right, KEY.Key_Delete)
-    assert designed.controller.document.marks[1] is Mark.REJECTED and names(table) == ["A1", "A3"]
+    assert designed.session.document.marks[1] is Mark.REJECTED and names(table) == ["A1", "A3"]
     QTest.keyClick(table.table, KEY.Key_F2)
     editor = designed.dialogs.label
     assert editor is not None and editor.isVisible()
@@ -120,11 +120,11 @@ def test_that_buttons_of_a_card_pin_and_reject_it(designed: MainWindow, table: A
     boxes = button_boxes(view.visualRect(view.model_.index(1, 0)))
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.PIN].center())
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.REJECT].center())
-    assert designed.controller.document.marks[1] is Mark.REJECTED and designed.controller.history.position == 2
+    assert designed.session.document.marks[1] is Mark.REJECTED and designed.session.history.position == 2
 
 
 def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, table: AllDesigns) -> None:
-    matches = sorted(one.score.iou_exact for one in designed.controller.document.candidates)
+    matches = sorted(one.score.iou_exact for one in designed.session.document.candidates)
     table.filters.least.setValue(100 * matches[1] - 0.05)
     assert len(names(table)) == 2 and designed.gallery.bar.filters.least.value() == table.filters.least.value()
     assert table.show_all.isVisible() and table.count.text().startswith("2 of 3 shown")
@@ -143,7 +143,7 @@ def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, t
 def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
     designed: MainWindow, table: AllDesigns, until: Until
 ) -> None:
-    document = designed.controller.document
+    document = designed.session.document
     sizes = [one.score.evenness.least_feature_mm(document.fabrication.width_mm) for one in document.candidates]
     least = round(float(np.mean(sorted(sizes)[1:])), 2)
     table.filters.feature.setValue(least)
@@ -156,8 +156,8 @@ def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
     model = table.table.model_
     works = [one for one in document.candidates if model.verdict_of(one).level is not Level.FAILS]
     assert len(names(table)) == len(works) > 0
-    designed.controller.fabrication.change(material="acrylic-co2", width_mm=20.0)
-    until(lambda: not designed.controller.estimates.busy)
+    designed.services.fabrication.change(material="acrylic-co2", width_mm=20.0)
+    until(lambda: not designed.services.estimates.busy)
     assert names(table) == [], "acrylic breaks"
 
 
@@ -216,8 +216,8 @@ def test_that_pictures_wait_for_their_turn(designed: MainWindow, until: Until, m
     monkeypatch.setattr(table_card, "PAINT_SECONDS", 0.0)
     monkeypatch.setattr(table_card, "states_pixmap", counted)
     designed.gallery.bar.filters.grouped.setChecked(False)
-    designed.connections.all_designs.show(True)
-    page = designed.connections.all_designs.page
+    designed.presenters.all_designs.show(True)
+    page = designed.presenters.all_designs.page
     assert page is not None
     begin = page.table.cards.begin
 
@@ -259,8 +259,8 @@ def test_that_marked_designs_are_compared_at_one_angle_and_one_is_taken(
     press(table, KEY.Key_4)
     assert table.comparing, "there is no fourth one"
     press(table, KEY.Key_3)
-    assert designed.controller.document.chosen == 2 and not designed.connections.all_designs.shown
-    designed.connections.all_designs.show(True)
+    assert designed.session.document.chosen == 2 and not designed.presenters.all_designs.shown
+    designed.presenters.all_designs.show(True)
     assert not table.comparing and table.table.compared == designs.candidates, "the marks stay"
 
 
@@ -270,23 +270,23 @@ def test_that_comparing_without_marks_takes_the_current_design_and_the_next(
     press(table, KEY.Key_C)
     assert table.comparing and table.table.compared == designs.candidates[:2]
     press(table, KEY.Key_Escape)
-    assert not table.comparing and designed.connections.all_designs.shown and table.table.hasFocus()
+    assert not table.comparing and designed.presenters.all_designs.shown and table.table.hasFocus()
 
 
 def test_that_designs_that_are_gone_are_no_longer_compared(designed: MainWindow, table: AllDesigns) -> None:
     press(table, KEY.Key_1, KEY.Key_Right, KEY.Key_2, KEY.Key_C)
-    designed.controller.targeting.clear()
+    designed.services.targeting.clear()
     assert table.table.compared == () and not table.comparing and table.table.current is None
     assert not table.use.isEnabled()
 
 
 def test_that_the_drawing_board_and_the_stage_come_before_the_table(designed: MainWindow, table: AllDesigns) -> None:
     designed.commands["edit_target"].trigger()
-    assert designed.target.editing and not designed.connections.all_designs.shown
-    designed.connections.all_designs.show(True)
-    assert designed.connections.all_designs.shown and not designed.target.editing
+    assert designed.target.editing and not designed.presenters.all_designs.shown
+    designed.presenters.all_designs.show(True)
+    assert designed.presenters.all_designs.shown and not designed.target.editing
     designed.commands["compare"].trigger()
-    assert designed.stage.comparing and not designed.connections.all_designs.shown
+    assert designed.stage.comparing and not designed.presenters.all_designs.shown
 
 
 def test_that_the_nearness_is_one_control_in_two_places(designed: MainWindow, table: AllDesigns) -> None:
@@ -341,20 +341,20 @@ def test_that_no_badge_of_a_sheet_that_will_not_work_has_a_check_mark(designs: D
 
 
 def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns, until: Until) -> None:
-    controller = designed.controller
-    until(lambda: bool(controller.estimates.known) and not controller.estimates.busy)
+    services = designed.services
+    until(lambda: bool(services.estimates.known) and not services.estimates.busy)
     rows = [table.table.model_.index(row, 0) for row in range(table.table.model_.rowCount())]
     assert all("fits the material" in row.data(VERDICT_ROLE).summary for row in rows)
-    controller.fabrication.change(material="card-co2")
+    services.fabrication.change(material="card-co2")
     # What was found in the other material goes at once, not once this one was looked at.
     assert not any(row.data(VERDICT_ROLE).as_cut for row in rows)
-    until(lambda: not controller.estimates.busy)
+    until(lambda: not services.estimates.busy)
     assert all("does not fit the material" in row.data(VERDICT_ROLE).summary for row in rows)
 
 
 def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path) -> None:
     window.commands["all_designs"].trigger()
-    page = window.connections.all_designs.page
+    page = window.presenters.all_designs.page
     assert page is not None and page.isVisible() and page.table.hint()[0] == "No designs yet"
     assert not page.use.isEnabled() and not page.alike.isEnabled()
     press(page, KEY.Key_C, KEY.Key_Return, KEY.Key_1, KEY.Key_Escape)

@@ -51,7 +51,7 @@ def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: 
 
 
 def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> None:
-    before = designed.controller.document
+    before = designed.session.document
     sort_by(designed, order)
     chosen = designs.candidates[0].sheet.field
     values = {
@@ -65,7 +65,7 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
         SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.sheet.field])[0]),
     }[order]
     assert shown(designed) == sorted(designs.candidates, key=values)
-    assert designed.controller.document is before and not designed.controller.history.unsaved
+    assert designed.session.document is before and not designed.session.history.unsaved
     model = designed.gallery.view.model_
     names = [model.data(model.index(row, 0), NAME_ROLE) for row in range(3)]
     assert names == [f"A{designs.candidates.index(one) + 1}" for one in shown(designed)]
@@ -99,7 +99,7 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     told = [str(model.data(model.index(row, 0), VALUE_ROLE)) for row in range(3)]
     assert told == [f"roughness {one.score.tv:.2f}" for one in shown(designed)]
     sort_by(designed, SortOrder.PANEL)
-    designed.controller.fabrication.change(width_mm=250.0)
+    designed.services.fabrication.change(width_mm=250.0)
     sizes = [250.0 * least_panel_share(deploy(one.sheet.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
     assert told == [f"smallest {size:.1f} mm" for size in sizes]
@@ -111,7 +111,7 @@ def test_that_unlike_stays_with_its_design_until_it_is_asked_for_again(designed:
     sort_by(designed, SortOrder.UNLIKE)
     first = shown(designed)
     assert first[-1] == designs.candidates[0] and "design A1" in designed.gallery.bar.order.currentText()
-    designed.controller.choose(designs.candidates[2])
+    designed.services.chosen.choose(designs.candidates[2])
     assert shown(designed) == first
     sort_by(designed, SortOrder.UNLIKE)
     assert shown(designed)[-1] == designs.candidates[2] and "design A3" in designed.gallery.bar.order.currentText()
@@ -129,7 +129,7 @@ def test_that_filters_leave_designs_out_and_the_head_counts_them(
     taken = [one for one in designs.candidates if one.score.iou_exact >= 0.01 * bar.filters.least.value()]
     assert shown(designed) == taken and len(taken) == 2
     assert designed.gallery.count.text() == "2 of 3 shown"
-    designed.controller.marks.pin(best)
+    designed.services.marks.pin(best)
     bar.filters.pinned.setChecked(True)
     assert shown(designed) == [best]
     qtbot.mouseClick(bar.filter, LEFT)
@@ -152,7 +152,7 @@ def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindo
     view, bar = designed.gallery.view, designed.gallery.bar
     bar.filters.pinned.setChecked(True)
     assert shown(designed) == [] and view.hint[0] == "No design matches the filter"
-    assert designed.controller.stage is not None and designed.controller.document.chosen == 0
+    assert designed.session.stage is not None and designed.session.document.chosen == 0
     qtbot.mouseClick(view.viewport(), LEFT, pos=view.viewport().rect().center())
     assert len(shown(designed)) == 3 and not bar.filters.pinned.isChecked()
     assert view.currentIndex().row() == 0

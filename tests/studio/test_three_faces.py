@@ -16,12 +16,12 @@ from pytestqt.qtbot import QtBot
 
 import kirigami_studio as ks
 from kirigami_studio.cli import main
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 #: Voids, designs and seed of every case: panels are small enough for some designs to jam or to be refused as cut.
 GRID, DESIGNS, SEED = (6, 6), 6, 3
@@ -48,29 +48,29 @@ def named(material: str | None) -> dict[str, str]:
 
 
 def of_window(qtbot: QtBot, target: str, material: str | None, folder: Path) -> Answer:
-    controller = Controller()
+    services = Services()
     try:
         settings = DesignSettings(GRID, k=DESIGNS, seed=SEED, auto_grid=False)
         cut = FabricationSettings(**named(material))
-        controller.session.restart(Document(read_target(target), settings, fabrication=cut), None)
-        with qtbot.waitSignal(controller.run.completed, timeout=PATIENCE):
-            controller.generation.generate()
-        exported: list[Exported] = []
-        controller.cutting.exported.connect(exported.append)
-        controller.export(folder / "window.dxf")
+        services.session.restart(Document(read_target(target), settings, fabrication=cut), None)
+        with qtbot.waitSignal(services.run.completed, timeout=PATIENCE):
+            services.generation.generate()
+        exported: list[ExportedFiles] = []
+        services.exporter.exported.connect(exported.append)
+        services.exporter.export(folder / "window.dxf")
         qtbot.waitUntil(lambda: bool(exported), timeout=PATIENCE)
-        document, verdict = controller.document, exported[0].verdict
+        document, verdict = services.session.document, exported[0].verdict
         assert document.candidate is document.candidates[0] and verdict is not None
         # Card, table and banner have the verdict of the file, but for the file itself.
-        qtbot.waitUntil(lambda: not controller.verdict.state.pending, timeout=PATIENCE)
-        shown = controller.estimates.verdicts[document.candidates[0]]
-        assert controller.verdict.state.verdict == shown and not shown.read and verdict.read
+        qtbot.waitUntil(lambda: not services.verdict.state.pending, timeout=PATIENCE)
+        shown = services.estimates.verdicts[document.candidates[0]]
+        assert services.verdict.state.verdict == shown and not shown.read and verdict.read
         assert replace(shown, read=True).to_json() == verdict.to_json()
         order = tuple(one.index for one in document.candidates)
         best = document.candidates[0].sheet.field.ratio.tolist()
         return Answer(order, best, verdict.to_json(), (folder / "window.dxf").read_bytes())
     finally:
-        controller.close()
+        services.close()
 
 
 def of_command_line(capsys: pytest.CaptureFixture[str], target: str, material: str | None, folder: Path) -> Answer:

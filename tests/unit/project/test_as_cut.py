@@ -154,7 +154,7 @@ def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deploy
     assert again.candidates == (uniform, irregular) and again.best == uniform
     assert [reason.code for reason in again.ranking.reasons(again.candidates)][1] == "rank.jams"
     assert result.ranked_as_cut(jam_angles(result, CENTRED)).candidates == result.candidates
-    apart = CutOptions(removed=tuple(range(cut_table(6, 6).hinge_count)))
+    apart = replace(STRAIGHT.options, removed=tuple(range(cut_table(6, 6).hinge_count)))
     assert jam_angles(result, replace(STRAIGHT, options=apart)) == {}
 
 
