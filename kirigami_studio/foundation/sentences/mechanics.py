@@ -81,8 +81,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "other."
     ),
     "as_cut.jams_while_flat": mark(
-        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. It "
-        "is thin and may pass by bending out of the plane."
+        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
+        "It is thin and may pass by bending out of the plane."
     ),
     "as_cut.hardly_opens": mark(
         "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
