@@ -91,6 +91,12 @@ class CutPlan:
         Where the design comes from, repeated in every file of the plan; decides nothing.
     engraving : Engraving or None
         A name on the sheet, which is engraved before anything is cut and counts as no cut.
+    name : str
+        That was to be engraved, "" for none; the sheet may have no room for it.
+    trimmed : int
+        Panels of which something was trimmed off.
+    verdict : str
+        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
     """
 
     paths: tuple[CutPath, ...]
@@ -109,6 +115,9 @@ class CutPlan:
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
+    name: str = ""
+    trimmed: int = 0
+    verdict: str = ""
 
     @cached_property
     def cut_length_mm(self) -> float:
@@ -221,7 +230,7 @@ def plan_cuts(
     overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(*deployment.sheet.grid)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    design_hash = _design_hash(deployment, parts)
+    identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
     left = _without(options, lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
@@ -283,7 +292,8 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=design_hash,
+        design_hash=identity,
+        trimmed=sum(part is not None for part in parts),
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
@@ -411,7 +421,8 @@ def _on_grid(points: FloatArray) -> FloatArray:
     return rounded
 
 
-def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:
