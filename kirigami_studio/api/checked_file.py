@@ -1,4 +1,4 @@
-"""Cut files that are read again: what is in them, and whether that is what their design asks for."""
+"""Cut files that are read again: their content, and whether it is that of their design."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from kirigami_studio.studio.checking import Checked, checked
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CheckedFile(Checked):
-    """What is in a cut file.
+    """Content of a cut file.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class CheckedFile(Checked):
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin or a cut file of this program: units, duplicates, gaps, pieces, ligaments.
+    """Read a DXF of any origin or a cut file of this program: units, duplicates, gaps, ligaments.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
-from itertools import count, takewhile
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -50,10 +50,10 @@ FLATTEN_MM = 0.005
 #: own records.
 RECORDED_FACTS = (
     "KIRIGAMI_STUDIO", "CONSTRUCTION", "DESIGN", "WIDTH_MM", "CONNECTOR_MM", "LEAST_CONNECTOR_MM", "KERF_MM",
-    "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "LINES", "TRIMMED", "TABS", "TABS_ASKED", "TAB_MM", "JOINS",
-    "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
+    "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "MACHINE", "LINES", "TRIMMED", "TABS", "TABS_ASKED",
+    "TAB_MM", "JOINS", "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
 )  # fmt: skip
-RECORDED_LISTS = ("HINGE_MM", "REMOVED")
+RECORDED_LISTS, MOST_PIECES = ("HINGE_MM", "REMOVED"), 400
 #: What ezdxf raises on damaged files, depending on where the damage is.
 PARSER_FAULTS = (
     DXFError,
@@ -284,7 +284,7 @@ def _facts(document: Drawing) -> dict[str, str]:
         if key not in facts and key in record:
             facts[key] = str(record[key])
     for name in RECORDED_LISTS:
-        for piece in takewhile(record.__contains__, (f"{name}_{number}" for number in count())):
+        for piece in takewhile(record.__contains__, (f"{name}_{number}" for number in range(MOST_PIECES))):
             facts.setdefault(piece, str(record[piece]))
     return facts
 

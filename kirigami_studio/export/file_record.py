@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from kirigami_studio.export.dxf_reading import MOST_PIECES
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.provenance import ONE_SHEET, PROGRAM, SLOT_KERF, VERDICT
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM
@@ -17,8 +18,8 @@ from kirigami_studio.fabricate.options import COPY_GAP_MM, TAB_MM, ConnectorStyl
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.plain_text import plain_line
 
-#: Letters of a fact that are looked at, pieces that a list may have, and the largest number of anything.
-LONGEST_FACT, MOST_PIECES, LARGEST_COUNT = 255, 400, 10_000_000
+#: Letters of a fact that are looked at, and the largest number of anything.
+LONGEST_FACT, LARGEST_COUNT = 255, 10_000_000
 #: A connector with a width of its own, and the name of a piece of a list.
 SINGLE = re.compile(r"(\d{1,6})=(\d{1,6}(?:\.\d{1,20})?(?:e-?\d{1,2})?)")
 
@@ -35,8 +36,8 @@ class FileRecord:
         Identifies the sheet, see ``CutPlan.design_hash``.
     construction : str
         "one-sheet".
-    material : str
-        Key of the preset.
+    material, machine : str
+        Keys of the preset, and of the machine that was asked for, "" for the one that the material is for.
     profile : Profile
     options : CutOptions
     width_mm, connector_mm, kerf_mm : float
@@ -57,6 +58,7 @@ class FileRecord:
     design: str
     construction: str
     material: str
+    machine: str
     profile: Profile
     options: CutOptions
     width_mm: float
@@ -76,6 +78,7 @@ class FileRecord:
             "design": self.design,
             "construction": self.construction,
             "material": self.material,
+            "machine": self.machine,
             "profile": self.profile.key,
             "style": options.style.value,
             "order": options.order.value,
@@ -108,6 +111,7 @@ def record_of(facts: Mapping[str, str]) -> FileRecord | None:
         design=read.text("DESIGN"),
         construction=read.one_of("CONSTRUCTION", (ONE_SHEET,)),
         material=read.text("MATERIAL"),
+        machine=read.text("MACHINE", ""),
         profile=read.profile(),
         options=read.options(),
         width_mm=read.number("WIDTH_MM"),

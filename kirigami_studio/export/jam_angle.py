@@ -16,6 +16,7 @@ from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.mechanics.connectors import ElasticSheet, Junctions, cut_connectors, junctions
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -39,7 +40,8 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     Returns
     -------
     phi : float or None, radians
-        0 where it closes; None where the connectors of the file are not those of the plan, or end in shapes.
+        0 where it closes; None where the connectors of the file are not those of the plan, end in shapes, or hold no
+        sheet together.
     """
     if plan.centres is None and plan.options.style not in (ConnectorStyle.CENTRED, ConnectorStyle.STRAIGHT):
         return None  # necks before holes, arcs and bars do not tell where the connector turns
@@ -70,7 +72,11 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
     connectors = cut_connectors(places, widths, plan.kerf_mm, centres)
     elastic = ElasticSheet(MPA_PER_GPA * plan.material.young_gpa, plan.material.thickness_mm)
     rows = polygons_as_rows([part + shift for part in plan.panels])
-    return estimate_stretch(deployment, sheet_network(rows, connectors, elastic), width).jam_phi()
+    try:
+        network = sheet_network(rows, connectors, elastic)
+    except MechanicsError:  # parts neither close nor jam; that they are parts is another finding
+        return None
+    return estimate_stretch(deployment, network, width).jam_phi()
 
 
 def neck_middles(places: Junctions, plan: CutPlan) -> FloatArray:

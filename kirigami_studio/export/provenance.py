@@ -60,6 +60,7 @@ def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
         "ORDER": plan.options.order.value,
         "PROFILE": profile.key,
         "MATERIAL": plan.material.key,
+        **({} if plan.chosen_machine is None else {"MACHINE": plan.chosen_machine.key}),
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
         "LINES": f"{len(strokes_of(plan, profile))}",
         **({"TRIMMED": f"{plan.trimmed}"} if plan.trimmed else {}),
@@ -198,6 +199,7 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
             "kerf_mm": plan.kerf_mm,
             "overcut_mm": plan.overcut_mm,
             "material": _plain(plan.material),
+            "machine": _plain(plan.machine),
             "options": _plain(plan.options),
             "profile": job.profile,
             "dxf_version": job.dxf_version,
@@ -211,7 +213,7 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
 
 
 def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
-    work = work_of(strokes_of(plan, profile), plan.material)
+    work = work_of(strokes_of(plan, profile), plan)
     return {
         "size_mm": [float(side) for side in plan.size_mm],
         "cut_length_mm": work.cut_length_mm,
@@ -246,9 +248,9 @@ def engraved_json(engraving: Engraving) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Turn a flat dataclass into what JSON knows."""
+    """Turn a flat dataclass into what JSON knows, without what is not there."""
     entries = {entry.name: getattr(value, entry.name) for entry in fields(value)}
-    return {name: _entry(entry) for name, entry in entries.items()}
+    return {name: _entry(entry) for name, entry in entries.items() if entry is not None}
 
 
 def _entry(value: Any) -> Any:

@@ -48,7 +48,6 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import CLOSED
 
 Reader = Callable[[Path], FileContent]
 
@@ -221,14 +220,13 @@ def _judged(
     jam = simulated_jam if as_simulated else None
     if not as_simulated and deployment is not None:
         jam = jam_angle_of_file(voids, plan, deployment)
-    times = work_of(strokes, plan.material).times
+    times = work_of(strokes, plan).times
     findings = [
         *_agreed(contents, by_reader),
         *_agreed(contents, _name_findings(written, plan, profile, kind)),
         *_physics_findings(physics, plan),
         *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
-        *_jam_findings(jam, as_simulated),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     return Verification(
@@ -256,7 +254,7 @@ def _project_verified(plan: CutPlan, path: Path, simulated_jam: float | None) ->
     )
     profile = find_profile(DEFAULT_PROFILE)
     strokes = sheet_strokes(plan, profile)
-    work = work_of(strokes_of(plan, profile), plan.material)
+    work = work_of(strokes_of(plan, profile), plan)
     findings = [Finding.judged(same, "verify.project_as_planned" if same else "verify.project_differs")]
     physics = file_physics(strokes, plan, profile) if same else None
     if physics is not None:
@@ -498,7 +496,7 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
 
 
 def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
-    """Find connectors and voids in the strokes of a file, in the plan's frame; arguments as for :func:`file_physics`."""
+    """Find connectors and voids in the strokes of a file, in the plan's frame; see :func:`file_physics`."""
     outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
     return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
 
@@ -546,15 +544,6 @@ def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     x, y = hinges.position[there[worst]]
     widths = {"width_mm": float(width[worst]), "planned_mm": float(least[there[worst]])}
     return [Finding.judged(False, "verify.connectors_narrower", count=int(short.sum()), x=x, y=y, **widths)]
-
-
-def _jam_findings(jam: float | None, simulated: bool) -> list[Finding]:
-    """Where the sheet jams by an estimate for the connectors of the file; a simulated angle is no finding of readers."""
-    if jam is None or simulated:
-        return []
-    jams = jam > CLOSED
-    code = "verify.sheet_jams" if jams else "verify.sheet_closes"
-    return [Finding(code, {"jam_deg": math.degrees(jam)}, warning=jams)]
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:

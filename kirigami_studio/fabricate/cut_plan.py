@@ -25,9 +25,10 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.lettering import Engraving
+from kirigami_studio.fabricate.machine import Machine, machine_of
 from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
@@ -97,6 +98,8 @@ class CutPlan:
         Panels of which something was trimmed off.
     verdict : str
         Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
+    chosen_machine : Machine or None
+        That was asked for; None for the one that the material is for.
     """
 
     paths: tuple[CutPath, ...]
@@ -107,7 +110,7 @@ class CutPlan:
     hinges: Hinges
     material: Material
     design_hash: str
-    options: CutOptions = field(default_factory=CutOptions)
+    options: CutOptions = STRAIGHT
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
@@ -118,6 +121,12 @@ class CutPlan:
     name: str = ""
     trimmed: int = 0
     verdict: str = ""
+    chosen_machine: Machine | None = None
+
+    @cached_property
+    def machine(self) -> Machine:
+        """The machine that cuts it."""
+        return machine_of(self.material) if self.chosen_machine is None else self.chosen_machine
 
     @cached_property
     def cut_length_mm(self) -> float:
@@ -131,7 +140,7 @@ class CutPlan:
     @cached_property
     def times(self) -> timing.CutTimes:
         """Seconds for cutting, travel and switching, and the range that the job may take."""
-        return timing.cut_times(self.paths, self.material)
+        return timing.cut_times(self.paths, self.material, self.machine)
 
     @property
     def seconds_estimate(self) -> float:
@@ -159,8 +168,7 @@ class CutPlan:
     @cached_property
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
-        bed = (self.material.bed_width_mm, self.material.bed_height_mm)
-        return lay_out(self.bounds_mm, bed, self.options, self.kerf_mm)
+        return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -183,10 +191,11 @@ def plan_cuts(
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     material: Material | None = None,
-    options: CutOptions | None = None,
+    options: CutOptions = STRAIGHT,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
     cancel: Callable[[], bool] = lambda: False,
+    machine: Machine | None = None,
 ) -> CutPlan:
     """Turn a design into a job for the cutter.
 
@@ -199,8 +208,8 @@ def plan_cuts(
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
         The default preset unless given.
-    options : CutOptions, optional
-        Straight connectors of one width, in the shortest order, without tabs, unless given.
+    options : CutOptions
+        Not those of new projects: plain slits unless given.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
     kept : sequence of (P, 2) float or None, unit cells, optional
@@ -208,6 +217,8 @@ def plan_cuts(
         stays that of the untrimmed sheet.
     cancel : function
         Asked between the steps of planning, and while room is made for centred connectors.
+    machine : Machine, optional
+        The one that the material is for unless given.
 
     Raises
     ------
@@ -222,7 +233,7 @@ def plan_cuts(
         if cancel():
             raise Cancelled("plan.stopped")
 
-    material, options = material or default_material(), options or CutOptions()
+    material = material or default_material()
     width = check_length("sheet.width_not_positive", width_mm)
     asked = material.connector_mm if connector_mm is None else connector_mm
     connector = check_length("connector.width_not_positive", asked)
@@ -306,6 +317,7 @@ def plan_cuts(
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, left, table),
         made=made,
+        chosen_machine=machine,
     )
     return replace(plan, notes=(*plan.notes, *plan.copies.notes))
 

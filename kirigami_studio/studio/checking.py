@@ -96,7 +96,9 @@ class Checked:
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
         if self.verdict is None and record is not None:
-            found.append(tr("not checked: whether the sheet closes and its material holds; name its project by --design"))
+            found.append(
+                tr("not checked: whether the sheet closes and its material holds; name its project by --design")
+            )
         return tuple(found)
 
 
@@ -140,9 +142,7 @@ def _is_cut_file(report: FileReport) -> bool:
     return all(problem.code != "cut_file.not_for_cutting" for problem in report.problems)
 
 
-def _request(
-    record: FileRecord | None, path: Path, document: Document
-) -> tuple[CutRequest, tuple[Problem, ...]]:
+def _request(record: FileRecord | None, path: Path, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
     """The design of a file, cut as its record says; a problem where the project does not have that design."""
     if record is None:
         return CutRequest.of(document, _enclosed(path) or document.fabrication), ()
@@ -174,6 +174,7 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
             saved,
             width_mm=record.width_mm,
             material=record.material,
+            machine=record.machine,
             own=_own_material(record.material, path, saved),
             connector_mm=record.connector_mm,
             kerf_mm=record.kerf_mm,

@@ -25,7 +25,7 @@ from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
 from kirigami_studio.studio.checking import checked
-from kirigami_studio.studio.making import CutRequest, Exported, Output, closed, planned, written
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, closed, planned, written
 from tests.refusals import refused
 
 TRIMMED_STAR = Path(__file__).parents[1] / "data" / "making" / "star_trim4.kiri"
@@ -58,10 +58,10 @@ def project() -> Document:
 
 
 @pytest.fixture
-def exported(project: Document, tmp_path: Path) -> Callable[..., Exported]:
+def exported(project: Document, tmp_path: Path) -> Callable[..., ExportedFiles]:
     """Exports a whole set with some options."""
 
-    def write(**options: object) -> Exported:
+    def write(**options: object) -> ExportedFiles:
         request = CutRequest.of(project, with_choices(project.fabrication, options))
         made = planned(request)
         return written(request, made, Output(tmp_path / "set", "cut", True), closed(request, made))
@@ -69,14 +69,14 @@ def exported(project: Document, tmp_path: Path) -> Callable[..., Exported]:
     return write
 
 
-def cut_files(found: Exported) -> list[Path]:
+def cut_files(found: ExportedFiles) -> list[Path]:
     """The files of a set that are for a cutter."""
     return [path for path in found.files if path.suffix in (".dxf", ".lbrn2", "") or path.name == "cut.svg"][:4]
 
 
 @pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_that_every_cut_file_of_a_set_is_judged_as_its_export_judged_it(
-    options: dict[str, object], project: Document, exported: Callable[..., Exported]
+    options: dict[str, object], project: Document, exported: Callable[..., ExportedFiles]
 ) -> None:
     found = exported(**options)
     assert found.verdict is not None
@@ -100,7 +100,7 @@ def test_that_a_trimmed_design_is_known_again(tmp_path: Path) -> None:
 
 
 def test_that_a_file_of_another_design_is_refused_by_name(
-    project: Document, exported: Callable[..., Exported]
+    project: Document, exported: Callable[..., ExportedFiles]
 ) -> None:
     other = replace(project, candidates=project.candidates[:1], chosen=0, labels=(), marks=())
     found = checked(exported().files[0], other)
@@ -109,7 +109,7 @@ def test_that_a_file_of_another_design_is_refused_by_name(
 
 
 @pytest.mark.parametrize("name", ["cut.dxf", "cut_r12.dxf", "cut.svg", "cut.lbrn2"])
-def test_that_a_file_says_how_it_was_made(name: str, exported: Callable[..., Exported]) -> None:
+def test_that_a_file_says_how_it_was_made(name: str, exported: Callable[..., ExportedFiles]) -> None:
     found = exported(style=ConnectorStyle.STRAIGHT, connector_mm=0.1234567891, hinge_mm=[(3, 0.33)], removed=[5])
     report = check_file(next(path for path in found.files if path.name == name))
     record = report.record
@@ -120,7 +120,9 @@ def test_that_a_file_says_how_it_was_made(name: str, exported: Callable[..., Exp
     assert found.verdict is not None and record.verdict == found.verdict.level.value
 
 
-def test_that_many_connectors_of_their_own_come_back_from_the_oldest_dxf(exported: Callable[..., Exported]) -> None:
+def test_that_many_connectors_of_their_own_come_back(
+    exported: Callable[..., ExportedFiles],
+) -> None:
     widths = [(number, 0.2 + 0.001 * number) for number in range(40)]
     found = exported(hinge_mm=widths)
     for path in cut_files(found):
@@ -129,7 +131,7 @@ def test_that_many_connectors_of_their_own_come_back_from_the_oldest_dxf(exporte
             assert record is not None and record.options.hinge_mm == tuple(widths)
 
 
-def test_that_a_file_that_lost_a_cut_is_not_sound(exported: Callable[..., Exported], tmp_path: Path) -> None:
+def test_that_a_file_that_lost_a_cut_is_not_sound(exported: Callable[..., ExportedFiles], tmp_path: Path) -> None:
     (svg,) = (path for path in exported().files if path.name == "cut.svg")
     text = svg.read_text()
     start = text.index("<path")
@@ -139,7 +141,7 @@ def test_that_a_file_that_lost_a_cut_is_not_sound(exported: Callable[..., Export
     assert "cut_file.lines_differ" in codes
 
 
-def test_that_pictures_of_a_set_are_no_cut_files(project: Document, exported: Callable[..., Exported]) -> None:
+def test_that_pictures_of_a_set_are_no_cut_files(project: Document, exported: Callable[..., ExportedFiles]) -> None:
     found = exported()
     for name in ("cut-picture.svg", "reference.dxf"):
         (path,) = (one for one in found.files if one.name == name)
@@ -198,7 +200,7 @@ def test_that_a_hostile_record_is_refused_in_one_short_line(name: str, value: st
 
 
 def test_that_a_damaged_record_makes_a_file_unsound_and_no_more(
-    exported: Callable[..., Exported], tmp_path: Path
+    exported: Callable[..., ExportedFiles], tmp_path: Path
 ) -> None:
     (svg,) = (path for path in exported().files if path.name == "cut.svg")
     bad = tmp_path / "bad.svg"

@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.gui.session.messages import Message, Tone
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -23,7 +23,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
-from kirigami_studio.studio.making import CutRequest, Exported, Output, exporting, planned
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, exporting, planned
 
 #: What goes wrong, and where: the verdict's sentences, the second reader, the sheet as cut.
 FAULTS = (
@@ -48,9 +48,9 @@ def planted(*_: object, **__: object) -> object:
     raise IndexError("list index out of range")
 
 
-def export(request: CutRequest, output: Output) -> Exported:
+def export(request: CutRequest, output: Output) -> ExportedFiles:
     (found,) = exporting(request, output, True, never)
-    assert isinstance(found, Exported)
+    assert isinstance(found, ExportedFiles)
     return found
 
 
@@ -106,17 +106,17 @@ def test_that_an_error_in_the_verdict_is_shown_and_never_leaves_it_checking(
 
     monkeypatch.setattr(verdicts, "judge", fails)
     monkeypatch.setattr("kirigami_studio.studio.making._PLANS", OrderedDict())
-    controller, posted = Controller(), []
-    controller.session.message_posted.connect(posted.append)
+    services, posted = Services(), []
+    services.session.message_posted.connect(posted.append)
     try:
-        controller.session.restart(request_.document, None)
-        qtbot.waitUntil(lambda: controller.verdict.state.verdict is not None, timeout=60_000)
-        qtbot.waitUntil(lambda: not controller.verdict.busy and not controller.queue.busy, timeout=60_000)
-        state = controller.verdict.state
+        services.session.restart(request_.document, None)
+        qtbot.waitUntil(lambda: services.verdict.state.verdict is not None, timeout=60_000)
+        qtbot.waitUntil(lambda: not services.verdict.busy and not services.session.queue.busy, timeout=60_000)
+        state = services.verdict.state
         assert state.verdict is not None and not state.verdict.ok
         assert any("list index out of range" in line for line in state.lines)
         if closes:
             (message,) = [one for one in posted if isinstance(one, Message) and one.tone is Tone.ERROR]
             assert "list index out of range" in message.sentence
     finally:
-        controller.close()
+        services.close()
