@@ -327,7 +327,7 @@ def test_that_leaving_leads_back_to_the_table(marked: MainWindow, key: Qt.Key) -
 
 def test_that_the_columns_come_back_as_they_were(designed: MainWindow, designs: Document) -> None:
     designed.columns.splitter.setSizes([300, 700, 400])
-    designed._keep_columns()  # as the user has left them
+    designed.columns._keep_sizes()  # as the user has left them
     before = designed.columns.splitter.sizes()
     designed.presenters.comparison.compare(designs.candidates)
     QApplication.processEvents()
