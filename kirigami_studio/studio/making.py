@@ -84,6 +84,23 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
+class TimedDesign:
+    """Time of cutting a design.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    settings : FabricationSettings
+        How it is cut.
+    seconds : float
+    """
+
+    candidate: Candidate
+    settings: FabricationSettings
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """What is to be written.
 
@@ -615,6 +632,18 @@ def gripping(
     end = max(sheet.as_cut.reached, CLOSED)
     steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
     yield from in_turns(steps, cancel)
+
+
+def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDesign]:
+    """Yield the cutting times of designs, but for those whose cuts cannot be planned."""
+    importing.import_as_cut()
+    for request in requests:
+        try:
+            made = planned(request, cancel)
+        except FabricationError:
+            continue  # which planning explains once it is chosen
+        times = made.plan.times if made.work is None else made.work.times
+        yield TimedDesign(request.candidate, request.settings, times.total)
 
 
 def estimating(

@@ -226,6 +226,10 @@ class GalleryModel(QAbstractListModel):
         elif self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
+    def as_cut_of(self, candidate: Candidate) -> AsCut | None:
+        """The estimate of a design as cut, as far as there is one."""
+        return self._as_cut.get(candidate)
+
     def set_ranking(self, ranking: Ranking) -> None:
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
         if ranking != self.ranking:

@@ -63,10 +63,6 @@ class UserPreferences:
         """The window is to speak this language from now on: "system" or a code such as "de"."""
         self._save(replace(self.present, language=language))
 
-    def note_tour(self) -> None:
-        """The guided tour was taken."""
-        self._save(replace(self.present, tour_seen=True))
-
     def _save(self, wanted: Preferences) -> None:
         if wanted == self.present:
             return

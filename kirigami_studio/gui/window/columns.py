@@ -51,6 +51,7 @@ class Columns(QWidget):
         self.splitter.setStretchFactor(1, 1)
         self.splitter.splitterMoved.connect(self._keep_sizes)
         self.target.editing_changed.connect(self._make_room)
+        self.stage.whole_width_wanted.connect(self._give_whole_width)
         self.pages = QStackedWidget()
         self.pages.addWidget(self.splitter)
         whole = QVBoxLayout(self)
@@ -76,6 +77,9 @@ class Columns(QWidget):
     def _make_room(self, editing: bool) -> None:
         """The target's editor takes the place of the stage and the settings while it is open."""
         sizes = self.splitter.sizes()
+        if editing and self.stage.wants_whole_width:
+            self.stage.set_comparing(False)
+            sizes = self._sizes_before
         if editing:
             self._sizes_before = sizes
             self.splitter.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
@@ -86,7 +90,20 @@ class Columns(QWidget):
             self.splitter.setSizes(self._sizes_before)
             self.share_width(self.window().width())
             if self.target.view.hasFocus() or self.window().focusWidget() is None:
-                self.stage.view.setFocus()
+                self.stage.take_focus()
+
+    def _give_whole_width(self, whole: bool) -> None:
+        """Three designs and more beside each other take the place of the outer columns."""
+        outer = self.splitter.widget(0), self.splitter.widget(2)
+        if whole == outer[0].isHidden():
+            return
+        if whole:
+            self._sizes_before = self.splitter.sizes()
+        for column in outer:
+            column.setVisible(not whole)
+        if not whole:
+            self.splitter.setSizes(self._sizes_before)
+            self.share_width(self.window().width())
 
     def _keep_sizes(self) -> None:
         self._laid_out = True
