@@ -41,7 +41,7 @@ from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.registry import export, find_exporter
+from kirigami_studio.export.registry import export, find_writer
 from kirigami_studio.export.verification import Verification
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -450,7 +450,7 @@ class Design:
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
         goal = Path(path)
-        find_exporter(goal)
+        find_writer(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
         return Exported((export(export_job(CutRequest.of(self.document), None), goal),))

@@ -15,7 +15,7 @@ from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import engraved_json, narrowed_json
-from kirigami_studio.export.registry import find_exporter
+from kirigami_studio.export.registry import find_writer
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -53,7 +53,7 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
 def export(arguments: argparse.Namespace) -> int:
     """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
-        find_exporter(arguments.out)
+        find_writer(arguments.out)
     document = load(arguments.project)
     chosen_candidate(document)
     if arguments.name is not None and document.chosen is not None and document.label is not None:

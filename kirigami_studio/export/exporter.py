@@ -1,11 +1,9 @@
-"""The request and the interface of every exporter."""
+"""The request for every kind of file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -107,18 +105,3 @@ class ExportJob:
         design = PosedDesign(self.deployment, self.transform, self.phi, self.trim)
         made = self.motion.made if self.motion is not None else None if self.plan is None else self.plan.made
         return design if made is None else design.laid_over(made)
-
-
-class Exporter(Protocol):
-    """Writes one kind of file."""
-
-    @property
-    def extension(self) -> str:
-        """Lower case, with the dot."""
-
-    @property
-    def name(self) -> str:
-        """Name of the format in a file dialog."""
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write and verify; raises ExportError and leaves an older file alone when that fails."""

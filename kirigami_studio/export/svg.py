@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
@@ -31,18 +30,6 @@ CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
 #: What the AutoCAD colours of the profiles look like on white.
 ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
-
-
-@dataclass(frozen=True, slots=True)
-class SvgExporter:
-    """Cut plan as SVG."""
-
-    extension: str = ".svg"
-    name: str = "SVG cut file"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan."""
-        write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:

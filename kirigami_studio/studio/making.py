@@ -441,11 +441,11 @@ def exporting(
     """
     importing.import_exporters()
     importing.import_as_cut()
-    from kirigami_studio.export.registry import export, find_exporter
+    from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
     if output.name is None:
-        find_exporter(path)  # an unknown kind is refused before anything is planned
+        find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(export_job(request, None), path), None)
             return

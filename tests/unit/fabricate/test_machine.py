@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.machine import (
@@ -45,7 +45,7 @@ def test_that_every_bundled_machine_names_a_profile_a_file_and_where_its_numbers
     found = machines()
     assert not found.faults and not found.own and next(iter(found.items)) == "uv-laser"
     for machine in found.items.values():
-        assert machine.profile in PROFILES and machine.file in exporters(), machine.key
+        assert machine.profile in PROFILES and machine.file in WRITERS, machine.key
         assert min(machine.reach_mm) > 150.0 and machine.note, machine.key
     kinds = {machine.kind for machine in found.items.values()}
     assert kinds == set(MachineKind) - {MachineKind.OTHER} == set(USUAL)
