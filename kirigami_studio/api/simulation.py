@@ -75,7 +75,7 @@ class Simulation:
 
     @property
     def jam_deg(self) -> float:
-        """The same in degrees, in [0, 180]: 0 for a sheet that closes fully, 180 for one that stays flat."""
+        """The same in degrees, in [0, 180]: 0 where it closes fully, 180 where it stays flat."""
         return self.as_cut.jam_deg
 
     @property

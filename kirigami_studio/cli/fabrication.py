@@ -12,7 +12,6 @@ from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import engraved_json, narrowed_json
@@ -29,6 +28,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
+from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
@@ -39,7 +39,6 @@ from kirigami_studio.studio.making import (
     closed,
     export_job,
     fixing,
-    judged_file,
     planned,
     written,
 )
@@ -195,13 +194,14 @@ def _summary(found: Verification) -> dict[str, object]:
 
 def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
-    report = check_file(Path(arguments.file))
+    document = None if arguments.design is None else load(arguments.design)
+    found = checked(Path(arguments.file), document)
+    report, record = found.report, found.report.record
     problems = [problem.text for problem in report.problems]
-    judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))
-    ok = report.ok and (judged is None or judged[1].ok)
     if arguments.json:
         answer: dict[str, object] = {
-            "ok": ok,
+            "ok": found.ok,
+            "sound": found.sound,
             "problems": problems,
             "unit": report.unit,
             "layers": report.layers,
@@ -211,19 +211,22 @@ def check(arguments: argparse.Namespace) -> int:
             "overlap_mm": report.overlap_mm,
             "pieces": report.pieces,
             "min_ligament_mm": report.min_ligament_mm,
+            "record": None if record is None else record.to_json(),
+            "verdict_at_export": None if found.said is None else found.said.value,
         }
-        if judged is not None:
-            answer |= {"void_miss_um": judged[0].void_miss_um, **jam_json(judged[1].as_cut)}
-            answer["verdict"] = judged[1].to_json()
+        if found.verification is not None:
+            answer["void_miss_um"] = found.verification.void_miss_um
+        if found.verdict is not None:
+            answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
         print_json(answer)
-    else:
-        ready = tr("{file}: ready to cut", file=arguments.file)
-        say(ready if ok else tr("{file}: not ready to cut", file=arguments.file))
-        for problem in problems:
-            say(f"  {problem}")
-        if judged is not None:
-            say_verdict(judged[1])
-    return 0 if ok else 1
+        return 0 if found.ok else 1
+    sound = tr("{file}: the file is sound", file=arguments.file)
+    say(sound if found.sound else tr("{file}: the file is not sound", file=arguments.file))
+    for line in (*problems, *found.lines):
+        say(f"  {line}")
+    if found.verdict is not None:
+        say_verdict(found.verdict)
+    return 0 if found.ok else 1
 
 
 def animate(arguments: argparse.Namespace) -> int:

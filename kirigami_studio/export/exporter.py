@@ -57,6 +57,8 @@ class ExportJob:
         The design as a packed project, which DXF and SVG cut files carry; empty for none.
     simulated_jam : float or None, radians
         Where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked.
+    verdict : str
+        Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it.
     """
 
     deployment: Deployment
@@ -74,6 +76,7 @@ class ExportJob:
     artwork: Artwork | None = None
     record: bytes = b""
     simulated_jam: float | None = None
+    verdict: str = ""
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
@@ -83,7 +86,7 @@ class ExportJob:
 
     @property
     def required_plan(self) -> CutPlan:
-        """The plan, with the provenance of its design.
+        """The plan, with the provenance of its design and the verdict on it.
 
         Raises
         ------
@@ -92,7 +95,8 @@ class ExportJob:
         """
         if self.plan is None:
             raise ExportError("export.no_plan")
-        return replace(self.plan, origin=self.provenance) if self.provenance else self.plan
+        origin = self.provenance or self.plan.origin
+        return replace(self.plan, origin=origin, verdict=self.verdict or self.plan.verdict)
 
     @property
     def posed(self) -> PosedDesign:

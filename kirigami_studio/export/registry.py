@@ -29,7 +29,7 @@ class DxfExporter:
         """Write the job's cut plan in its DXF version and profile: one file, or a folder of them."""
         profile = find_profile(job.profile)
         if profile.file_per_layer:
-            write_layer_files(job.required_plan, path, job.dxf_version, profile)
+            write_layer_files(job.required_plan, path, job.dxf_version, profile, job.record)
         else:
             write_dxf(job.required_plan, path, job.dxf_version, profile, job.record)
 

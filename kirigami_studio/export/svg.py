@@ -10,12 +10,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from kirigami_studio import __version__
 from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
-from kirigami_studio.export.provenance import facts_of, origin_facts
+from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
@@ -139,7 +140,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
     root = root_element(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
-    _describe(root, origin_facts(job.provenance))
+    _describe(root, {PROGRAM: __version__, "PURPOSE": "picture, not for cutting", **origin_facts(job.provenance)})
     groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
         ("TARGET_AREA", {"fill": hexadecimal(picture.TARGET_FILL)}, [] if target is None else [target]),
         ("VOIDS", {"fill": hexadecimal(picture.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),

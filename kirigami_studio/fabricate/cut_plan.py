@@ -92,6 +92,12 @@ class CutPlan:
         Where the design comes from, repeated in every file of the plan; decides nothing.
     engraving : Engraving or None
         A name on the sheet, which is engraved before anything is cut and counts as no cut.
+    name : str
+        That was to be engraved, "" for none; the sheet may have no room for it.
+    trimmed : int
+        Panels of which something was trimmed off.
+    verdict : str
+        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
     chosen_machine : Machine or None
         That was asked for; None for the one that the material is for.
     """
@@ -112,6 +118,9 @@ class CutPlan:
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
+    name: str = ""
+    trimmed: int = 0
+    verdict: str = ""
     chosen_machine: Machine | None = None
 
     @cached_property
@@ -232,7 +241,7 @@ def plan_cuts(
     overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(*deployment.sheet.grid)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    design_hash = _design_hash(deployment, parts)
+    identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
     left = _without(options, lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
@@ -294,7 +303,8 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=design_hash,
+        design_hash=identity,
+        trimmed=sum(part is not None for part in parts),
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
@@ -364,7 +374,7 @@ def _plain_cuts(
 
 
 def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
-    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    """Widths (H,), mm, where the outline is no rectangle and leaves less of a connector."""
     left = (finished > 0.0) & (finished < planned - WIDER_MM)
     widths: FloatArray = np.where(left, finished, planned)
     return widths
@@ -423,7 +433,8 @@ def _on_grid(points: FloatArray) -> FloatArray:
     return rounded
 
 
-def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:

@@ -92,7 +92,7 @@ class Fix:
 
     @property
     def line(self) -> str:
-        """What to do, and what is then to be expected."""
+        """The change, and the verdict that it leads to."""
         return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
@@ -149,7 +149,7 @@ class Advice:
         return tuple(fix.line for fix in self.fixes)
 
     def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """A verdict with what was tried: each fix below the worst problem that it solves, others at the end."""
+        """A verdict with fixes: each below the worst problem that it solves, others at the end."""
         told: list[str] = [verdict.words]
         left = list(self.fixes)
         for problem in verdict.problems:
@@ -436,7 +436,7 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    """All other materials with centred connectors; of a chosen machine, those that it cuts."""
     machine = named_machine(settings)
     for key, material in (library().materials if machine is None else cuttable(machine)).items():
         if key != settings.material and material.connectors_hold:

@@ -33,10 +33,10 @@ from kirigami_studio.studio.verdict import (
     HALF_WAY,
     LITTLE_LOST,
     MATCHES_ROUGHLY,
+    AnswerState,
     Assessment,
     Level,
     Question,
-    State,
     Verdict,
     assess,
     expected,
@@ -155,8 +155,8 @@ def test_that_a_film_star_which_jams_at_143_degrees_will_not_work() -> None:
     assert found.level is Level.FAILS
     assert codes(found)[:2] == ["as_cut.hardly_opens", "as_cut.does_not_match"]
     answers = {answer.question: answer.state for answer in found.answers}
-    assert answers[Question.CLOSES] is State.BAD and answers[Question.MATCHES] is State.BAD
-    assert answers[Question.FITS] is not State.BAD and answers[Question.FILES] is State.OPEN
+    assert answers[Question.CLOSES] is AnswerState.BAD and answers[Question.MATCHES] is AnswerState.BAD
+    assert answers[Question.FITS] is not AnswerState.BAD and answers[Question.FILES] is AnswerState.OPEN
     assert found.match == as_cut.iou and found.answer(Question.CLOSES).word == as_cut.word
 
 
@@ -169,10 +169,10 @@ def test_that_match_lost_by_cutting_is_a_problem_and_a_rough_design_is_none(
     poor = judge(design, ready.plan, ready.report, replace(losing, iou=MATCHES_ROUGHLY - 0.01))
     assert codes(poor) == ["as_cut.does_not_match"] and poor.level is Level.FAILS
     rough = judge(design, ready.plan, ready.report, replace(losing, iou=0.8, ideal_iou=0.8))
-    assert rough.ok and rough.answer(Question.MATCHES).state is State.CARE
+    assert rough.ok and rough.answer(Question.MATCHES).state is AnswerState.CARE
     none = judge(design, ready.plan, ready.report, replace(losing, iou=0.6, ideal_iou=0.6))
-    assert none.ok and none.answer(Question.MATCHES).state is State.BAD
-    assert found.answer(Question.MATCHES).state is State.CARE
+    assert none.ok and none.answer(Question.MATCHES).state is AnswerState.BAD
+    assert found.answer(Question.MATCHES).state is AnswerState.CARE
 
 
 def test_that_four_questions_have_an_answer_each(design: Candidate, ready: Assessment, written: Verification) -> None:
@@ -192,7 +192,7 @@ def test_that_four_questions_have_an_answer_each(design: Candidate, ready: Asses
     unseen = judge(design, ready.plan, ready.report, None)
     assert unseen.is_estimate and unseen.words == "Not checked yet"
     states = [answer.state for answer in unseen.answers]
-    assert states == [State.GOOD, State.GOOD, State.OPEN, State.OPEN]
+    assert states == [AnswerState.GOOD, AnswerState.GOOD, AnswerState.OPEN, AnswerState.OPEN]
     assert (unseen.to_json()["jam_deg"], unseen.to_json()["from"]) == (None, "estimate")
 
 
@@ -205,9 +205,9 @@ def test_that_every_problem_belongs_to_one_question(design: Candidate, ready: As
     }
     for question, problem in by_question.items():
         found = Verdict((problem,), source=Source.SIMULATION, as_cut=CLOSES, match=0.99, read=True)
-        bad = State.BAD if problem.severity is Severity.ERROR else State.CARE
+        bad = AnswerState.BAD if problem.severity is Severity.ERROR else AnswerState.CARE
         states = {answer.question: answer.state for answer in found.answers}
-        assert states == {one: bad if one is question else State.GOOD for one in Question}
+        assert states == {one: bad if one is question else AnswerState.GOOD for one in Question}
         (entry,) = found.to_json()["problems"]  # type: ignore[misc]
         assert entry["question"] == question.value
 
