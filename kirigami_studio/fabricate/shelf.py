@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
 from pathlib import Path
@@ -157,7 +157,8 @@ class Shelf(Generic[Item]):
         if unknown := entries.keys() - expected.keys():
             names = ", ".join(sorted(unknown))
             raise FabricationError(self.codes["not_known"], path=path, names=names, count=len(unknown))
-        return self.kind(key=plain_line(path.stem), **entries)
+        make: Callable[..., Item] = self.kind
+        return make(key=plain_line(path.stem), **entries)
 
     def check_key(self, key: str) -> str:
         """Return a key that can be a file's name, or refuse it.

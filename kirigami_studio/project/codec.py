@@ -280,7 +280,7 @@ def _fabrication(record: Record) -> FabricationSettings:
 def _own_material(record: Record) -> Material:
     """The numbers of a material; those of its machine stand in older files."""
     older = {name: record.number(name) for name in OLDER_ENTRIES if record.holds(name)}
-    return Material(**_plain_fields(record, Material), **older)
+    return Material(**_plain_fields(record, Material) | older)
 
 
 def _hinge(entry: object) -> int:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -101,9 +102,9 @@ def test_that_a_machine_is_of_a_kind_by_what_it_is_called(words: str, kind: Mach
 
 
 def test_that_an_own_material_from_before_keeps_its_bed_speeds_and_delays(own_materials: Path) -> None:
-    older = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
-    bed = {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
-    path = save_copy(replace(find_material("card-co2"), key="mine", **older, **bed))
+    older: dict[str, Any] = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
+    older |= {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
+    path = save_copy(replace(find_material("card-co2"), key="mine", **older))
     assert "travel_mm_s = 321.0" in path.read_text(encoding="utf-8")
     material = read_preset(path)
     machine = machine_of(material)
