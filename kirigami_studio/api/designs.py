@@ -27,7 +27,7 @@ from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChange, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, usual_settings, with_choices
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
@@ -183,7 +183,7 @@ def design(
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
-    width_mm: float = 100.0,
+    width_mm: float | None = None,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     style: str | None = None,
@@ -235,7 +235,7 @@ def design(
     material : str, optional
         One of :func:`material_names`: designs that can be cut in it come first.
     width_mm, connector_mm, kerf_mm, style : optional
-        Size and cuts, as in :meth:`Design.plan_cuts`.
+        Size and cuts, as in :meth:`Design.plan_cuts`; the material's usual ones unless given.
     least_panel_mm : float
         Least panel edge and neck that fits keep.
     progress : bool or callable
@@ -255,7 +255,8 @@ def design(
         "style": style,
     }
     given = {name: value for name, value in checked_choices(cuts, cut_choices(), "design").items() if value is not None}
-    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
+    chosen = with_choices(FabricationSettings(material=default_material().key), given)
+    fabrication = with_choices(usual_settings(material_for(chosen)), given)
     least = number("least_panel_mm", least_panel_mm)
     wanted = chosen_settings(
         _grid(grid),

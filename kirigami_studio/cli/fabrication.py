@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, usual_settings, with_choices
 from kirigami_studio.studio.as_cut import simulated
 from kirigami_studio.studio.cutting import check_connectors, refuse_errors
 from kirigami_studio.studio.designing import request_for
@@ -47,9 +48,16 @@ from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings from the width options; unknown materials are refused here, before any work."""
-    material = default_material() if arguments.material is None else find_material(arguments.material)
-    return overridden(FabricationSettings(material=material.key), arguments)
+    """Fabrication settings from the width options, else the material's; warns of what it cannot do.
+
+    Unknown materials are refused here, before any work.
+    """
+    if arguments.material is None:
+        return overridden(usual_settings(default_material()), arguments)
+    material = find_material(arguments.material)
+    if material.limits_note is not None:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {material.limits_note.text}\n")
+    return overridden(usual_settings(material), arguments)
 
 
 def export(arguments: argparse.Namespace) -> int:

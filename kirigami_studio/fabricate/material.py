@@ -8,23 +8,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, asdict, dataclass, field, fields
 from datetime import date
+from enum import StrEnum
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import platformdirs
 
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.files import read_toml
-from kirigami_studio.foundation.plain_text import plain_line, plain_lines
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line, plain_lines
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.foundation.settings import Setting, check
+from kirigami_studio.foundation.settings import NamedSetting, Setting, check
 from kirigami_studio.foundation.words import mark
 
-#: The preset that a new project starts with: the film of the paper's specimens.
+#: The preset that a new project starts with.
 DEFAULT_PRESET = "film-uv"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
@@ -32,7 +35,18 @@ BY_HAND = "by hand"
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Full power, percent.
 LARGEST_POWER = 100.0
+#: Entry of files from before bending and tension were told apart: the strain at which connectors were taken to break.
+OLD_LIMIT = "strain_limit"
 _FLAG = Setting(code="material.wrong_type", error=FabricationError).metadata
+_WORD = Setting(code="material.no_such_word", error=FabricationError).metadata
+
+
+class Construction(StrEnum):
+    """Way of making a sheet; the values stand in files."""
+
+    ONE_SHEET = "one-sheet"  #: bridges of the sheet itself turn
+    PINNED = "pinned"  #: two layers of rigid panels turn on pins
+    BACKED = "backed"  #: tiles are glued on a hinge layer
 
 
 def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
@@ -69,6 +83,11 @@ def _number(
     return setting.metadata
 
 
+def _strain(label: str, about: str, zero: bool = False) -> Mapping[str, Setting]:
+    """Describe a strain, which the editor shows in percent."""
+    return _number(label, about, "%", 0.0 if zero else 0.01, 1000.0, 0.5, decimals=2, scale=100.0, zero=zero)
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
     """One sheet material on one kind of machine.
@@ -98,8 +117,12 @@ class Material:
     calibrated : bool
         False until the numbers were measured on a coupon.
     note : str
-    strain_limit : float
-        Strain at which the material breaks (0.05 = 5 %); files without it get that of a brittle sheet.
+    yield_strain : float
+        Strain (0.05 = 5 %) above which it stays bent; 0 for what springs back until it breaks, and where nobody knows.
+    break_strain : float
+        Elongation at which it tears when pulled; files without it get that of a brittle sheet.
+    bend_strain : float
+        Strain of the outer fibre at which a bend breaks; larger than ``break_strain`` in what delaminates or folds.
     on_delay_s, off_delay_s : float
         What the machine waits at the start and at the end of every path; 0 in files without it.
     passes : int
@@ -116,6 +139,16 @@ class Material:
         A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it.
     connectors_hold : bool
         False where no style, width and sheet size is known whose connectors survive opening.
+    construction : Construction
+        Way of making sheets that works in it.
+    backing : bool
+        Whether it is meant as the hinge layer under tiles.
+    sheet_mm : float
+        Usual width of the flat sheet.
+    style : ConnectorStyle
+        Style that works at that width.
+    sources : tuple of (str, str)
+        Entries and where their figures are from, or that they are an estimate.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
     """
@@ -158,18 +191,16 @@ class Material:
     )
     calibrated: bool = field(metadata=_FLAG)
     note: str = field(metadata=_text(mark("Note"), mark("Anything worth knowing.")))
-    strain_limit: float = field(
+    yield_strain: float = field(
+        default=0.0,
+        metadata=_strain(mark("Yield strain"), mark("Strain above which it stays bent; 0: none."), zero=True),
+    )
+    break_strain: float = field(
+        default=0.05, metadata=_strain(mark("Breaking strain"), mark("Strain at which it tears when pulled."))
+    )
+    bend_strain: float = field(
         default=0.05,
-        metadata=_number(
-            mark("Breaking strain"),
-            mark("Strain at which the material breaks."),
-            "%",
-            0.01,
-            500.0,
-            0.5,
-            decimals=2,
-            scale=100.0,
-        ),
+        metadata=_strain(mark("Bending strain"), mark("Strain of the outer fibre at which a bend breaks.")),
     )
     on_delay_s: float = field(
         default=0.0,
@@ -267,6 +298,14 @@ class Material:
         ),
     )
     connectors_hold: bool = field(default=True, metadata=_FLAG)
+    construction: Construction = field(default=Construction.ONE_SHEET, metadata=_WORD)
+    backing: bool = field(default=False, metadata=_FLAG)
+    sheet_mm: float = field(
+        default=100.0,
+        metadata=_number(mark("Usual width"), mark("Usual width of the flat sheet."), "mm", 5.0, 3000.0, 10.0, 1),
+    )
+    style: ConnectorStyle = field(default=ConnectorStyle.CENTRED, metadata=_WORD)
+    sources: tuple[tuple[str, str], ...] = ()
     measured_on: str = field(default="", metadata=_text())
     measured_by: str = field(default="", metadata=_text())
 
@@ -275,6 +314,7 @@ class Material:
         for name in ("name", "machine", "measured_on", "measured_by"):  # the key names a file, which its writer checks
             object.__setattr__(self, name, plain_line(getattr(self, name)))
         object.__setattr__(self, "note", plain_lines(self.note))
+        self._check_sources()
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.power_percent > LARGEST_POWER:
@@ -283,9 +323,34 @@ class Material:
             self._check_day()
 
     @property
+    def entries(self) -> dict[str, object]:
+        """As its file has it, which is named by its key."""
+        found = {name: NamedSetting.word(value) for name, value in asdict(self).items() if name != "key"}
+        return found | {"sources": dict(self.sources)}
+
+    @property
+    def limits_note(self) -> Note | None:
+        """Word before a run that no single sheet of it works, and which construction does; else None."""
+        if self.backing:
+            return Note.of("plan.material_is_hinge_layer", material=self.name)
+        if self.connectors_hold:
+            return None
+        backed = self.construction is Construction.BACKED
+        return Note.of("plan.material_needs_backing" if backed else "plan.material_does_not_hold", material=self.name)
+
+    @property
     def by_hand(self) -> bool:
         """Whether it is cut with scissors or a knife."""
         return self.machine == BY_HAND
+
+    def _check_sources(self) -> None:
+        pairs = self.sources if isinstance(self.sources, tuple) else None
+        if pairs is None or not all(isinstance(text, str) for pair in pairs for text in pair):
+            raise FabricationError(
+                "material.wrong_type", key=self.key, name="sources", kind="a table of texts", value=self.sources
+            )
+        clean = tuple((plain_line(name), plain_line(text, LONGEST_NOTE)) for name, text in pairs)
+        object.__setattr__(self, "sources", clean)
 
     def _check_day(self) -> None:
         try:
@@ -386,6 +451,7 @@ def read_preset(path: Path) -> Material:
         entries = read_toml(path)
     except (OSError, ValueError) as error:
         raise FabricationError("material.file_not_readable", path=path, reason=str(error)) from error
+    entries = _as_now(entries)
     expected = {one.name: one.default is MISSING for one in fields(Material) if one.name != "key"}
     if missing := {name for name, needed in expected.items() if needed} - entries.keys():
         names = ", ".join(sorted(missing))
@@ -394,3 +460,18 @@ def read_preset(path: Path) -> Material:
         names = ", ".join(sorted(unknown))
         raise FabricationError("material.entries_unknown", path=path, names=names, count=len(unknown))
     return Material(key=plain_line(path.stem), **entries)
+
+
+def strains_of_old(limit: float) -> dict[str, float]:
+    """Entries for a material with one limit for tension and bending, as older files have it."""
+    return {"break_strain": limit, "bend_strain": limit}
+
+
+def _as_now(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a file, those of older programs as they are called now, sources as pairs."""
+    now = dict(entries)
+    if OLD_LIMIT in now:
+        now = strains_of_old(now.pop(OLD_LIMIT)) | now
+    if isinstance(now.get("sources"), dict):
+        now["sources"] = tuple(now["sources"].items())
+    return now

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from datetime import date
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from kirigami_studio.fabricate.material import Material, find_material, library, own_folder, presets
+from kirigami_studio.fabricate.material import (
+    OLD_LIMIT,
+    Construction,
+    Material,
+    find_material,
+    library,
+    own_folder,
+    presets,
+    strains_of_old,
+)
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
@@ -19,7 +28,7 @@ from kirigami_studio.foundation.resources import resource
 #: Keys are file names on every platform: lower case, so that no two differ by capitals only.
 KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
 #: Entries that are no numbers or words of the user's own.
-JUDGED = frozenset({"key", "calibrated", "connectors_hold"})
+JUDGED = frozenset({"key", "calibrated", "connectors_hold", "construction", "backing", "style", "sources"})
 #: Files of these names cannot exist on Windows.
 RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))})
 
@@ -48,8 +57,7 @@ def save_copy(material: Material) -> Path:
         The file cannot be written.
     """
     path = _own_file(material.key)
-    entries = {name: value for name, value in asdict(material).items() if name != "key"}
-    write_atomically(path, tomli_w.dumps(entries).encode("utf-8"))
+    write_atomically(path, tomli_w.dumps(material.entries).encode("utf-8"))
     return path
 
 
@@ -93,6 +101,10 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
     """
     original = find_material(source)
     kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in JUDGED}
+    if OLD_LIMIT in changes:  # as scripts call it that were written before bending and tension were told apart
+        limit = _typed(OLD_LIMIT, "float", changes[OLD_LIMIT])
+        changes = {**{name: limit for name in strains_of_old(0.0)}, **changes}
+        del changes[OLD_LIMIT]
     for name in changes:
         if name not in kinds:
             raise FabricationError("material.no_such_entry", name=name, known=", ".join(kinds))
@@ -101,7 +113,9 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
         values["name"] = f"{original.name} ({key})"
     clean: dict[str, Any] = {"calibrated": False, "measured_on": "", "measured_by": ""}
     if any(kinds[name] != "str" for name in changes):
-        clean["connectors_hold"] = True  # what was known of the original is not known of other numbers
+        # What was known of the original is not known of other numbers.
+        clean |= {"connectors_hold": True, "construction": Construction.ONE_SHEET}
+    clean["sources"] = tuple(pair for pair in original.sources if pair[0] not in changes)
     return replace(original, key=check_key(key), **(clean | values))
 
 

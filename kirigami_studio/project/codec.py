@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, fields, replace
+from dataclasses import MISSING, asdict, fields, replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, co
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
-from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.material import OLD_LIMIT, Material, strains_of_old
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
@@ -259,7 +259,7 @@ def _nodes(record: Record) -> Nodes:
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
     lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
-    own = None if settings.own is None else asdict(settings.own)
+    own = None if settings.own is None else {"key": settings.own.key, **settings.own.entries}
     return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
 
 
@@ -272,7 +272,7 @@ def _fabrication(record: Record) -> FabricationSettings:
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
         ),
-        own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
+        own=_material(record.record("own")) if record.holds("own") else None,
     )
 
 
@@ -291,12 +291,22 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     return _hinge(hinge), float(width)
 
 
+def _material(record: Record) -> Material:
+    """Numbers of an own material; those that older programs did not write are the usual ones."""
+    older = {} if not record.holds(OLD_LIMIT) else strains_of_old(record.number(OLD_LIMIT))
+    newer: dict[str, Any] = {name: record.text(name) for name in ("construction", "style") if record.holds(name)}
+    if record.holds("sources"):
+        newer["sources"] = tuple(record.texts("sources").items())
+    # The note is longer than a name; a material makes plain text of it itself.
+    return Material(**older | _plain_fields(record, Material) | newer | {"note": record.verbatim("note")})
+
+
 def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
-    plain = {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
-    # Longer than a name; a material makes plain text of it itself.
-    return plain | {"note": record.verbatim("note")} if kind is Material else plain
+    entries = [entry for entry in fields(kind) if entry.type in read]
+    wanted = [entry for entry in entries if entry.default is MISSING or record.holds(entry.name)]
+    return {entry.name: read[str(entry.type)](entry.name) for entry in wanted}
 
 
 def _candidate_json(

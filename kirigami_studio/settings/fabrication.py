@@ -265,6 +265,12 @@ class CutChange(SheetChange, OptionsChange, total=False):
     """Values for settings of a sheet, of its files and of all its cuts."""
 
 
+def usual_settings(material: Material) -> FabricationSettings:
+    """Settings of a first cut in a material: its usual width and connector style."""
+    style = CutOptions(style=material.style)
+    return FabricationSettings(width_mm=material.sheet_mm, material=material.key, options=style)
+
+
 def stored_material(settings: FabricationSettings) -> Material | None:
     """Return the material's numbers as the project stores them; None for bundled materials."""
     return settings.own if settings.own is not None and settings.own.key == settings.material else None

@@ -19,6 +19,7 @@ from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -29,7 +30,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
-from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
+from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
@@ -291,7 +292,7 @@ class _Search:
         settings, phi = change.settings, change.candidate.final_phi
         try:
             material = material_for(settings)
-            if least_strain(motion, settings, phi, material) > material.strain_limit:
+            if all_break(motion, settings, phi, material):
                 return True
             found = estimate(motion, settings, phi, material)
         except KirigamiError:

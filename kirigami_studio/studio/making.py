@@ -479,13 +479,9 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and at which strain connectors break.
-
-    Designs that cannot be cut at all are left out.
-    """
+    """What is expected of some designs as cut; those that cannot be cut at all are left out."""
 
     found: tuple[tuple[Candidate, AsCut], ...]
-    strain_limit: float
 
 
 def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
@@ -598,4 +594,4 @@ def estimating(
                     found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
-        yield Estimated(tuple(found), material.strain_limit)
+        yield Estimated(tuple(found))

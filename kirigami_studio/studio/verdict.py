@@ -16,13 +16,14 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
+from kirigami_studio.fabricate.strain import StrainFigure, strain_note
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
+from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, simulate
 from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:
@@ -30,8 +31,10 @@ if TYPE_CHECKING:
 
 #: What the check of a plan finds about strain; the verdict has one sentence for it, without advice that nobody tried.
 STRAINED = frozenset({"plan.strain_choose_style", "plan.strain_larger_sheet"})
+#: Fields that both have.
+STRAIN_FIELDS = ("strain_percent", "limit_percent", "material", "why")
 #: Warnings of that check that mean that the sheet does not survive.
-FATAL = frozenset({"plan.material_does_not_hold"})
+FATAL = frozenset({"plan.material_does_not_hold", "plan.material_needs_backing"})
 #: Findings about panels smaller than the material needs.
 TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
 #: Notes of a plan that mean that a person does not get what was asked for.
@@ -301,7 +304,8 @@ def judge(
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
-    notes: list[Note] = [*plan.notes, *(note for one in verifications for note in one.warnings)]
+    warned = (note for one in verifications for note in one.warnings)
+    notes: list[Note] = [*plan.notes, *_strain_notes(plan, known), *warned]
     if known is not None and known.closes:
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]
     worst_first = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
@@ -369,12 +373,17 @@ def _of_jam(as_cut: AsCut) -> list[Problem]:
 def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
     """One sentence for connectors that break, by the larger of the plan's estimate and the simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
-    limit = 100.0 * plan.material.strain_limit
-    strains = [float(str(problem.fields["strain_percent"])) for problem in planned]
-    if as_cut is not None and 100.0 * as_cut.strain > limit:
-        strains.append(100.0 * as_cut.strain)
-    if not strains:
+    found = [{name: problem.fields[name] for name in STRAIN_FIELDS} for problem in planned]
+    if as_cut is not None and as_cut.survival.breaks:
+        found.append(dict(strain_note(plan.material, as_cut.survival).fields))
+    if not found:
         return []
-    name, where = plan.material.name, planned[0].where if planned else None
-    values = {"strain_percent": max(strains), "material": name, "limit_percent": limit}
-    return [Problem.error("as_cut.breaks", where, **values)]
+    worst = max(found, key=lambda fields: float(str(fields["strain_percent"])) / float(str(fields["limit_percent"])))
+    return [Problem.error("as_cut.breaks", planned[0].where if planned else None, **worst)]
+
+
+def _strain_notes(plan: CutPlan, as_cut: AsCut | None) -> list[Note]:
+    """Note on the strain that a sheet survives, and whether its connectors stay bent."""
+    if as_cut is None or as_cut.survival.breaks:
+        return []
+    return [strain_note(plan.material, as_cut.survival)]

@@ -32,9 +32,7 @@ class Badge:
     good: bool
 
 
-def badges_of(
-    candidate: Candidate, ranking: Ranking, as_cut: AsCut | None, strain_limit: float = math.inf
-) -> tuple[Badge, ...]:
+def badges_of(candidate: Candidate, ranking: Ranking, as_cut: AsCut | None) -> tuple[Badge, ...]:
     """What is known of a design, what keeps it from being cut first.
 
     Parameters
@@ -44,8 +42,6 @@ def badges_of(
         With the sheet's width and the least feature of the material.
     as_cut : AsCut or None
         As estimated; None while that is not known.
-    strain_limit : float
-        Strain at which connectors of the material break.
     """
     found: list[Badge] = []
     if not candidate.score.feasible:
@@ -67,11 +63,11 @@ def badges_of(
         jam = math.degrees(as_cut.jam_phi)
         tip = tr("As cut, the sheet is expected to jam at {jam:.0f}° before it shows the target (estimate).", jam=jam)
         found.append(Badge(tr("jams at {jam:.0f}°", jam=jam), tip, False))
-    if as_cut is not None and as_cut.strain > strain_limit:
+    if as_cut is not None and as_cut.survival.breaks:
         tip = tr(
             "Connectors are expected to break: strain {strain:.0f} %, the material breaks at {limit:.1f} % (estimate).",
             strain=100 * as_cut.strain,
-            limit=100 * strain_limit,
+            limit=100 * as_cut.strain_limit,
         )
         found.append(Badge(tr("hinges break"), tip, False))
     if ranking.cuttable(candidate):

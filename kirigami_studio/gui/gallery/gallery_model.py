@@ -73,7 +73,6 @@ class GalleryModel(QAbstractListModel):
         self._target: Outline | None = None
         self._starts_differ: bool | None = None  # once it is asked for
         self._as_cut: Mapping[Candidate, AsCut] = {}
-        self._strain_limit = math.inf
         self._labels: Mapping[Candidate, Label] = {}
 
     @property
@@ -121,7 +120,7 @@ class GalleryModel(QAbstractListModel):
             return self.ranking.cuttable(entry.candidate)
         if role == BADGES_ROLE:
             as_cut = self._as_cut.get(entry.candidate)
-            return badges_of(entry.candidate, self.ranking, as_cut, self._strain_limit)
+            return badges_of(entry.candidate, self.ranking, as_cut)
         if role == FEATURE_ROLE:
             return entry.candidate.score.evenness.least_feature_mm(self._width_mm)
         if role == THIN_ROLE:
@@ -199,9 +198,9 @@ class GalleryModel(QAbstractListModel):
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
-    def set_as_cut(self, known: Mapping[Candidate, AsCut], strain_limit: float = math.inf) -> None:
+    def set_as_cut(self, known: Mapping[Candidate, AsCut]) -> None:
         """Tell which designs close as cut, by an estimate, and at which strain connectors break."""
-        self._as_cut, self._strain_limit = known, strain_limit
+        self._as_cut = known
         if self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 

@@ -127,7 +127,7 @@ class GalleryPresenter(QObject):
 
     def _show_estimates(self, known: Mapping[Candidate, AsCut]) -> None:
         """Designs were estimated as cut: the cards say so, and are ranked by it too."""
-        self._view.model_.set_as_cut(known, self._estimates.strain_limit)
+        self._view.model_.set_as_cut(known)
         if self._running or not known:
             return
         ranking = self._ranking

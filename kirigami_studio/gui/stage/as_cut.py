@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from dataclasses import dataclass, replace
 from functools import partial
@@ -138,7 +137,6 @@ class AsCutEstimates(QObject):
         self._entries: tuple[Entry, ...] = ()
         self._settings: FabricationSettings | None = None
         self.known: dict[Candidate, AsCut] = {}
-        self.strain_limit = math.inf  #: of the material that they were estimated in
         self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
         self._timer.timeout.connect(self._begin)
         session.display.gallery_reset.connect(self._on_entries)
@@ -181,7 +179,6 @@ class AsCutEstimates(QObject):
 
     def _on_result(self, report: Estimated) -> None:
         self.known.update(report.found)
-        self.strain_limit = report.strain_limit
 
     def _tell(self) -> None:
         self.changed.emit(dict(self.known))
