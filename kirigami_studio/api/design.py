@@ -21,11 +21,13 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.api.choices import (
+    CUTS,
     checked_choices,
     connector_widths,
     connectors,
-    cut_choices,
+    explicit_docstring,
     explicit_signature,
+    keywords_of,
 )
 from kirigami_studio.api.pictures import cuts_picture, states_picture
 from kirigami_studio.api.simulation import Simulation
@@ -58,7 +60,7 @@ from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
-from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -392,34 +394,13 @@ class Design:
 
         Parameters
         ----------
-        material : str
-            One of :func:`material_names`.
-        width_mm : float
-            Width of the flat sheet (100 in new projects).
-        connector_mm, kerf_mm : float
-            Finished width of the connectors, width of a cut; the material's own unless given.
-        style : str
-            How slits end at their connectors: ``centred``, ``straight``, ``round``, ``teardrop``, ``arc``, ``double``.
-        order : str
-            ``shortest``, ``rows``, ``inside-out`` or ``spread``.
-        tabs, tab_mm : int, float
-            Uncut places of the outline, and their finished width.
-        copies, copy_gap_mm : int, float
-            Sheets in one file (0: as many as fit on the bed), and the gap between them.
         hinge_mm : mapping of int to float
             Widths of single connectors by their numbers.
         removed : sequence of int
             Connectors to cut through.
-        engrave : bool
-            Whether the design's name is engraved.
-        profile : str
-            What machine files are for: ``any``, ``lightburn``, ``k40``, ``single``, ``layers``, ``slots``.
-        dxf_version : str
-            ``R2010`` or ``R12``.
-        paper : str
-            ``none``, ``a4`` or ``letter``, over whose pages PDFs are spread.
-        markers : bool
-            Whether LightBurn projects mark the connectors.
+        **choices : settings of a sheet and its cuts
+            Those of :class:`kirigami_studio.settings.fabrication.FabricationSettings` and
+            :class:`kirigami_studio.fabricate.options.CutOptions`; ``material`` is one of :func:`material_names`.
 
         Raises
         ------
@@ -434,14 +415,15 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        given = checked_choices({**choices}, keywords_of(*CUTS), "plan_cuts")
         if hinge_mm is not None:
             given["hinge_mm"] = connector_widths(hinge_mm)
         if removed is not None:
             given["removed"] = connectors(removed)
         return _plan_cuts(self, {name: value for name, value in given.items() if value is not None})
 
-    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, keywords_of(*CUTS), over=True)  # type: ignore[attr-defined]
+    plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -670,8 +652,6 @@ class Cuts:
 
         Raises
         ------
-        FabricationError
-            The sheet would not survive these cuts.
         ExportError
             An unknown extension, or a place that cannot be written.
         """
@@ -684,13 +664,12 @@ class Cuts:
 
         Raises
         ------
-        FabricationError, ExportError
+        ExportError
             As :meth:`export`.
         """
         return self._written(Output(Path(folder), "cut", record=True))
 
     def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
-        refuse_errors(self.report)
         shown = None if motion is None else motion(self.settings.width_mm)
         found = written(self._request, self._planned, output, self._as_cut, shown)
         return Exported(found.files, found.verifications, self)

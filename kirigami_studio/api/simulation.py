@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from kirigami_studio.api.pictures import Curve, curves_picture
+from kirigami_studio.api.pictures import AngleCurve, curves_picture
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
@@ -90,6 +90,11 @@ class Simulation:
         return None if self.closes else self.as_cut.jam_phi
 
     @property
+    def jam_deg(self) -> float:
+        """The same in degrees, in [0, 180]: 0 for a sheet that closes fully, 180 for one that stays flat."""
+        return self.as_cut.jam_deg
+
+    @property
     def strain(self) -> float:
         """Strain of the connector that is nearest to breaking on the way."""
         return self.as_cut.strain
@@ -116,8 +121,8 @@ class Simulation:
 
     def _repr_svg_(self) -> str:
         curves = (
-            Curve(self.phi, self.force_n, "force (N)"),
-            Curve(self.phi, self.stretch, "largest stretch (connector widths)", TOLERATED_STRETCH),
+            AngleCurve(self.phi, self.force_n, "force (N)"),
+            AngleCurve(self.phi, self.stretch, "largest stretch (connector widths)", TOLERATED_STRETCH),
         )
         return curves_picture(curves, f"As cut: {self._ends}  ·  IoU {self.iou:.3f}", self.jam_phi)
 

@@ -7,6 +7,7 @@ import math
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
@@ -21,16 +22,15 @@ from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.fabricate.material import default_material, find_material
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, usual_settings, with_choices
-from kirigami_studio.studio.as_cut import simulated
-from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, new_settings, with_choices
+from kirigami_studio.studio.as_cut import Source, jam_json, simulated
+from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
 from kirigami_studio.studio.making import (
@@ -52,12 +52,11 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
 
     Unknown materials are refused here, before any work.
     """
-    if arguments.material is None:
-        return overridden(usual_settings(default_material()), arguments)
-    material = find_material(arguments.material)
-    if material.limits_note is not None:
-        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {material.limits_note.text}\n")
-    return overridden(usual_settings(material), arguments)
+    settings = new_settings(_given(arguments))
+    limits = material_for(settings).limits_note
+    if limits is not None:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
+    return settings
 
 
 def export(arguments: argparse.Namespace) -> int:
@@ -74,7 +73,6 @@ def export(arguments: argparse.Namespace) -> int:
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
-        refuse_errors(made.report)
     except FabricationError as error:
         if not arguments.fixes:
             raise
@@ -116,7 +114,7 @@ def export(arguments: argparse.Namespace) -> int:
                 **({} if plan.engraving is None else {"engraved": engraved_json(plan.engraving)}),
                 **({} if not plan.hinges.narrowed.size else {"narrowed_connectors": narrowed_json(plan)}),
                 "void_miss_um": None if not verified else verified[0]["void_miss_um"],
-                "jam_deg": None if not verified else verified[0]["jam_deg"],
+                **jam_json(verdict.as_cut),
                 "warnings": warnings,
                 "verified": verified,
                 "ok": verdict.ok,
@@ -171,7 +169,8 @@ def _advice(request: CutRequest, verdict: Verdict) -> Advice:
 
 def say_verdict(verdict: Verdict) -> None:
     """Say what is to be expected of a sheet, and why, one line each."""
-    say("  " + tr("verdict: {level}", level=verdict.level.words))
+    say("  " + tr("verdict: {level}", level=verdict.words))
+    say("  " + tr("answers: {answers}", answers=verdict.summary))
     for problem in verdict.problems:
         error = problem.severity is Severity.ERROR
         text = problem.text
@@ -184,9 +183,9 @@ def _work(plan: CutPlan, profile: str, output: Output) -> Work:
     """What cutting the files takes; that of the plan for kinds of file that have no profile."""
     suffix = output.path.suffix.lower()
     if len(plan.copies) > 1 and suffix in (".pdf", ".lbrn2"):
-        return work_of(strokes_of(plan, find_profile("any")), plan.material)
+        return work_of(strokes_of(plan, find_profile("any")), plan)
     if output.name is not None or suffix in FORMATS:
-        return work_of(strokes_of(plan, find_profile(profile)), plan.material)
+        return work_of(strokes_of(plan, find_profile(profile)), plan)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
 
 
@@ -198,7 +197,6 @@ def _summary(found: Verification) -> dict[str, object]:
         "cut_length_mm": found.cut_length_mm,
         "seconds": [found.seconds_low, found.seconds_high],
         "void_miss_um": found.void_miss_um,
-        "jam_deg": None if found.jam_phi is None else math.degrees(found.jam_phi),
         "findings": [finding.text for finding in found.findings],
     }
 
@@ -223,8 +221,7 @@ def check(arguments: argparse.Namespace) -> int:
             "min_ligament_mm": report.min_ligament_mm,
         }
         if judged is not None:
-            summary = _summary(judged[0])
-            answer |= {name: summary[name] for name in ("void_miss_um", "jam_deg")}
+            answer |= {"void_miss_um": judged[0].void_miss_um, **jam_json(judged[1].as_cut)}
             answer["verdict"] = judged[1].to_json()
         print_json(answer)
     else:
@@ -250,7 +247,8 @@ def animate(arguments: argparse.Namespace) -> int:
     if arguments.json:
         answer: dict[str, object] = {"frames": frames, "files": [str(path)]}
         if motion is not None:
-            answer |= {"jam_deg": math.degrees(motion.jam_phi), "reached_deg": math.degrees(motion.reached)}
+            jam = {"jam_deg": math.degrees(motion.jam_phi), "jam_from": Source.SIMULATION.value}
+            answer |= {**jam, "reached_deg": math.degrees(motion.reached)}
         print_json(answer)
     elif motion is None:
         say(tr("{path}: {frames} frames", path=path, frames=frames))
@@ -276,10 +274,15 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
     UsageError
         An option that no settings can hold.
     """
+    return with_choices(saved, _given(arguments))
+
+
+def _given(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What the command line gives, by the names of settings."""
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())
-    return with_choices(saved, given)
+    return given
 
 
 def _hinge_width(text: str) -> tuple[int, float]:

@@ -29,7 +29,7 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, breaking_phi, overlap, planned_sheet
+from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, Source, breaking_phi, overlap, planned_sheet
 from kirigami_studio.studio.cutting import plan_sheet
 
 FLAT_DEG = 180.0
@@ -91,8 +91,10 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     else:
         found = closing(cut.sheet, even_closing(cut.sheet, end, arguments.steps))
     gripped, tolerated = arguments.hold is not None or arguments.find_grips, arguments.tolerance
-    jam = None if _ended_early(found, tolerated) else math.degrees(found.jam_phi(tolerated))
-    estimate = math.degrees(estimate_stretch(cut.deployment, cut.sheet, width).jam_phi(tolerated))
+    jam, source = math.degrees(found.jam_phi(tolerated)), Source.SIMULATION
+    if _ended_early(found, tolerated):
+        beyond = estimate_stretch(cut.deployment, cut.sheet, width)
+        jam, source = math.degrees(beyond.jam_phi(tolerated)), Source.ESTIMATE
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
@@ -105,7 +107,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
         answer |= {"lever_mm": None if gripped else cut.sheet.network.panel_size, "material": cut.material.key}
         answer |= {"strain_believed": judged.figure.value, "strain_limit": judged.limit, "strain_why": judged.why.text}
         answer |= {"breaks": breaks is not None, "breaks_deg": None if breaks is None else math.degrees(breaks)}
-        answer |= {"jam_deg": jam, "estimated_jam_deg": estimate}
+        answer |= {"jam_deg": jam, "jam_from": source.value}
         if gripping is not None:
             answer |= {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
         print_json(answer if lap is None else answer | _overlap_json(lap))
@@ -113,7 +115,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     _tell_steps(found, load)
     _tell_loads(load, judged)
     _tell_survival(cut.material, breaks, judged)
-    _tell_jam(jam, estimate, tolerated, breaks is not None)
+    _tell_jam(jam, source, tolerated, breaks is not None)
     stable = ", ".join(f"{angle:.0f}" for angle in np.degrees(found.stable_phi))
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
     if gripping is not None:
@@ -230,11 +232,13 @@ def _tell_survival(material: Material, breaks: float | None, judged: Survival) -
     say(strain_note(material, judged).text)
 
 
-def _tell_jam(jam: float | None, estimate: float, tolerated: float, breaks: bool) -> None:
-    if jam == 0.0 and breaks:
-        say(tr("It would close if they held: none is stretched by more than {w:g} of its width.", w=tolerated))
-    elif jam is None:
+def _tell_jam(jam: float, source: Source, tolerated: float, breaks: bool) -> None:
+    if source is Source.ESTIMATE:
         say(tr("As far as it was driven no connector is stretched by more than {w:g} of its width.", w=tolerated))
+        jams = tr("It jams at {jam:.0f} degrees (estimate).", jam=jam)
+        say(jams if jam > 0.0 else tr("Beyond that it closes (estimate)."))
+    elif jam == 0.0 and breaks:
+        say(tr("It would close if they held: none is stretched by more than {w:g} of its width.", w=tolerated))
     elif jam == 0.0:
         say(tr("Closes: no connector is stretched by more than {w:g} of its width.", w=tolerated))
     else:
@@ -246,7 +250,6 @@ def _tell_jam(jam: float | None, estimate: float, tolerated: float, breaks: bool
                 w=tolerated,
             )
         )
-    say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=estimate))
 
 
 def _tell_grips(gripping: Gripping) -> None:

@@ -99,7 +99,9 @@ def drafted(job: ExportJob, path: Path) -> Iterator[Draft]:
     """
     with tempfile.TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
         written = export(job, Path(folder) / path.name)
-        found = verify_export(job.required_plan, written, job.profile, job.dxf_version, job.deployment)
+        found = verify_export(
+            job.required_plan, written, job.profile, job.dxf_version, job.deployment, job.simulated_jam
+        )
         yield Draft(job, path, written, replace(found, path=written_path(path, job.profile)))
 
 

@@ -55,6 +55,8 @@ class ExportJob:
         What is printed on the sheet; only a whole set of files has it.
     record : bytes
         The design as a packed project, which DXF and SVG cut files carry; empty for none.
+    simulated_jam : float or None, radians
+        Where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked.
     """
 
     deployment: Deployment
@@ -71,6 +73,7 @@ class ExportJob:
     motion: CutMotion | None = None
     artwork: Artwork | None = None
     record: bytes = b""
+    simulated_jam: float | None = None
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

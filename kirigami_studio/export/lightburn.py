@@ -114,7 +114,7 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
     material = plan.material
     power = f"{material.power_percent:g}"
     work = {
-        "speed": f"{material.speed_mm_s:g}",
+        "speed": f"{plan.machine.speed_mm_s(material):g}",
         "minPower": power,
         "maxPower": power,
         "numPasses": f"{material.passes}",

@@ -170,7 +170,7 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
 
 
 def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
-    work = work_of(strokes_of(plan, profile), plan.material)
+    work = work_of(strokes_of(plan, profile), plan)
     return {
         "size_mm": [float(side) for side in plan.size_mm],
         "cut_length_mm": work.cut_length_mm,

@@ -14,7 +14,7 @@ from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
@@ -75,6 +75,7 @@ def _cut_drawing(
     strokes = file_strokes(plan, profile)
     width, height = extent(strokes)
     root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
+    turned = _counted_at(root, width, height, profile.svg_dpi)
     facts = facts_of(plan, profile)
     _describe(root, facts)
     if record:
@@ -82,12 +83,21 @@ def _cut_drawing(
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
         # A layer that comes back later in the cutting order needs a name of its own.
         again = any(element.get("id") == name for element in root)
-        group = ElementTree.SubElement(root, "g", {"id": f"{name}.{number}" if again else name})
+        group = ElementTree.SubElement(root, "g", {"id": f"{name}.{number}" if again else name, **turned})
         # On every path: MeerK40t takes a path that inherits its stroke for a second operation too, and burns it twice.
         look = {"fill": "none", "stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
         for stroke in run:
             ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height), **look})
     return root, len(strokes), (width, height)
+
+
+def _counted_at(root: ElementTree.Element, width: float, height: float, dpi: float) -> dict[str, str]:
+    """Let a drawing of a frame (mm) count so many units to the inch; what its groups need so that they stay in mm."""
+    if dpi == MM_DPI:
+        return {}
+    scale = dpi / MM_DPI
+    root.set("viewBox", f"0 0 {decimals(scale * width)} {decimals(scale * height)}")
+    return {"transform": f"scale({scale:.10f})"}
 
 
 def _stroke_data(stroke: Stroke, height: float) -> str:

@@ -22,7 +22,15 @@ from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.jam_angle import jam_angle_of_file, matched_connectors
 from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
 from kirigami_studio.export.profile import NAME_LAYER, Profile, find_profile
-from kirigami_studio.export.strokes import Stroke, extent, layer_colours, name_strokes, strokes_of, work_of
+from kirigami_studio.export.strokes import (
+    Stroke,
+    extent,
+    frame_origin,
+    layer_colours,
+    name_strokes,
+    strokes_of,
+    work_of,
+)
 from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
 from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
@@ -37,7 +45,6 @@ from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import CLOSED
 
 Reader = Callable[[Path], FileContent]
 
@@ -100,7 +107,8 @@ class Verification:
         By how much voids miss being parallelograms about the connectors' centres as read from the file; None where
         none were found.
     jam_phi : float or None, radians
-        Where the sheet jams by the estimate for these centres, 0 if it closes; None where nothing is known.
+        Where the sheet jams, 0 if it closes: by its simulation where that is known and the file is as planned, else by
+        the estimate for these centres; None where nothing is known.
     """
 
     path: Path
@@ -147,6 +155,7 @@ def verify_export(
     profile_key: str,
     version: str = "R2010",
     deployment: Deployment | None = None,
+    simulated_jam: float | None = None,
 ) -> Verification:
     """Read a written file with two readers and compare it with the plan that it was written from.
 
@@ -160,6 +169,8 @@ def verify_export(
         DXF dialect that it was written in.
     deployment : Deployment, optional
         The design of the plan; without it nothing is said about where the sheet jams.
+    simulated_jam : float, optional, radians
+        Where the planned sheet jams by its simulation, 0 if it closes; a file that is as planned has no other angle.
 
     Raises
     ------
@@ -173,12 +184,12 @@ def verify_export(
         parts = layer_paths(goal)
         strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
         contents = [laid_together([read(part) for part in parts], goal) for read in kind.readers]
-        return _judged(plan, goal, profile, version, strokes, contents, kind, deployment)
+        return _judged(plan, goal, profile, version, strokes, contents, kind, deployment, simulated_jam)
     if goal.suffix.lower() not in FORMATS:
         raise ExportError("verify.unknown_kind", path=goal, known=", ".join(FORMATS))
     kind = FORMATS[goal.suffix.lower()]
     contents = [read(goal) for read in kind.readers]
-    return _judged(plan, goal, profile, version, strokes, contents, kind, deployment)
+    return _judged(plan, goal, profile, version, strokes, contents, kind, deployment, simulated_jam)
 
 
 def _judged(
@@ -190,20 +201,24 @@ def _judged(
     contents: Sequence[FileContent],
     kind: Format,
     deployment: Deployment | None,
+    simulated_jam: float | None,
 ) -> Verification:
     written, contents = contents, [_cuts_of(content) for content in contents]
     sheets = _copies_read(contents[-1].strokes, plan)
     physics = file_physics(sheets[0], plan, profile)
     voids = file_voids(sheets[0], plan, profile)
-    jam = None if deployment is None else jam_angle_of_file(voids, plan, deployment)
-    times = work_of(strokes, plan.material).times
+    by_reader = [_reader_findings(content, strokes, version, kind) for content in contents]
+    as_simulated = simulated_jam is not None and all(finding.ok for found in by_reader for finding in found)
+    jam = simulated_jam if as_simulated else None
+    if not as_simulated and deployment is not None:
+        jam = jam_angle_of_file(voids, plan, deployment)
+    times = work_of(strokes, plan).times
     findings = [
-        *_agreed(contents, [_reader_findings(content, strokes, version, kind) for content in contents]),
+        *_agreed(contents, by_reader),
         *_agreed(contents, _name_findings(written, plan, profile, kind)),
         *_physics_findings(physics, plan),
         *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
-        *_jam_findings(jam),
     ]
     warnings = [*plan.notes, *_cautions(plan, profile, version, strokes, path)]
     return Verification(
@@ -437,9 +452,9 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
 
 
 def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
-    """Find connectors and voids in the strokes of a file; arguments as for :func:`file_physics`."""
+    """Find connectors and voids in the strokes of a file, in the plan's frame; see :func:`file_physics`."""
     outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
-    return read_voids(strokes, outlines, plan.kerf_mm, profile.slots)
+    return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
 
 
 def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
@@ -470,7 +485,8 @@ def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Connectors of the file that are narrower than asked for, or, of those listed as narrowed, than listed."""
     hinges = plan.hinges
     there = np.flatnonzero(~hinges.removed)
-    matched = matched_connectors(voids, hinges.position[there])
+    places = hinges.position if plan.centres is None else plan.centres
+    matched = matched_connectors(voids, places[there])
     if matched is None:
         return []
     least = hinges.asked_mm.copy()
@@ -484,14 +500,6 @@ def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     x, y = hinges.position[there[worst]]
     widths = {"width_mm": float(width[worst]), "planned_mm": float(least[there[worst]])}
     return [Finding.judged(False, "verify.connectors_narrower", count=int(short.sum()), x=x, y=y, **widths)]
-
-
-def _jam_findings(jam: float | None) -> list[Finding]:
-    if jam is None:
-        return []
-    jams = jam > CLOSED
-    code = "verify.sheet_jams" if jams else "verify.sheet_closes"
-    return [Finding(code, {"jam_deg": math.degrees(jam)}, warning=jams)]
 
 
 def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[Stroke], path: Path) -> list[Note]:

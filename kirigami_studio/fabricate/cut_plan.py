@@ -25,9 +25,10 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.lettering import Engraving
+from kirigami_studio.fabricate.machine import Machine, machine_of
 from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
@@ -91,6 +92,8 @@ class CutPlan:
         Where the design comes from, repeated in every file of the plan; decides nothing.
     engraving : Engraving or None
         A name on the sheet, which is engraved before anything is cut and counts as no cut.
+    chosen_machine : Machine or None
+        That was asked for; None for the one that the material is for.
     """
 
     paths: tuple[CutPath, ...]
@@ -101,7 +104,7 @@ class CutPlan:
     hinges: Hinges
     material: Material
     design_hash: str
-    options: CutOptions = field(default_factory=CutOptions)
+    options: CutOptions = STRAIGHT
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
@@ -109,6 +112,12 @@ class CutPlan:
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
+    chosen_machine: Machine | None = None
+
+    @cached_property
+    def machine(self) -> Machine:
+        """The machine that cuts it."""
+        return machine_of(self.material) if self.chosen_machine is None else self.chosen_machine
 
     @cached_property
     def cut_length_mm(self) -> float:
@@ -122,7 +131,7 @@ class CutPlan:
     @cached_property
     def times(self) -> timing.CutTimes:
         """Seconds for cutting, travel and switching, and the range that the job may take."""
-        return timing.cut_times(self.paths, self.material)
+        return timing.cut_times(self.paths, self.material, self.machine)
 
     @property
     def seconds_estimate(self) -> float:
@@ -150,8 +159,7 @@ class CutPlan:
     @cached_property
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
-        bed = (self.material.bed_width_mm, self.material.bed_height_mm)
-        return lay_out(self.bounds_mm, bed, self.options, self.kerf_mm)
+        return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -174,10 +182,11 @@ def plan_cuts(
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     material: Material | None = None,
-    options: CutOptions | None = None,
+    options: CutOptions = STRAIGHT,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
     cancel: Callable[[], bool] = lambda: False,
+    machine: Machine | None = None,
 ) -> CutPlan:
     """Turn a design into a job for the cutter.
 
@@ -190,8 +199,8 @@ def plan_cuts(
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
         The default preset unless given.
-    options : CutOptions, optional
-        Straight connectors of one width, in the shortest order, without tabs, unless given.
+    options : CutOptions
+        Not those of new projects: plain slits unless given.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
     kept : sequence of (P, 2) float or None, unit cells, optional
@@ -199,6 +208,8 @@ def plan_cuts(
         stays that of the untrimmed sheet.
     cancel : function
         Asked between the steps of planning, and while room is made for centred connectors.
+    machine : Machine, optional
+        The one that the material is for unless given.
 
     Raises
     ------
@@ -213,7 +224,7 @@ def plan_cuts(
         if cancel():
             raise Cancelled("plan.stopped")
 
-    material, options = material or default_material(), options or CutOptions()
+    material = material or default_material()
     width = check_length("sheet.width_not_positive", width_mm)
     asked = material.connector_mm if connector_mm is None else connector_mm
     connector = check_length("connector.width_not_positive", asked)
@@ -267,7 +278,10 @@ def plan_cuts(
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
     go_on()
-    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
+    finished = cuts.widths(table, left.removed, boundary, kerf)
+    if parts or deployment.sheet.start is not None:
+        planned = _left_by_outline(planned, finished)
+    hinges = _hinges(cuts, table, widths, planned, finished, lost)
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -293,6 +307,7 @@ def plan_cuts(
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, left, table),
         made=made,
+        chosen_machine=machine,
     )
     return replace(plan, notes=(*plan.notes, *plan.copies.notes))
 
@@ -346,6 +361,13 @@ def _plain_cuts(
     lines = [*shortened[: table.slit_count], *edge_cut_paths(shortened, table, size, kerf, overcut)]
     pieces = [CutPiece(cut, points, cut >= table.slit_count) for cut, points in enumerate(lines)]
     return Polygon(outline_path(size, kerf)), pieces
+
+
+def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
+    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    left = (finished > 0.0) & (finished < planned - WIDER_MM)
+    widths: FloatArray = np.where(left, finished, planned)
+    return widths
 
 
 def _hinges(

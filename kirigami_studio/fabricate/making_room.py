@@ -19,10 +19,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
@@ -32,6 +31,7 @@ from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
@@ -64,8 +64,8 @@ RATIO_WEIGHT = 0.05
 CLOSE_SPANS = 4.0
 #: Weight of what cannot be met against all else.
 UNMET = 300.0
-#: Newton steps at most; shares of the cost and of the promised fall that a step has to bring to be taken whole.
-MOST_STEPS, NO_FALL, LEAST_FALL = 60, 1e-9, 1e-4
+#: What is not met by less than this, of the most that one variable can do for it, counts as met.
+VIOLATED = 1e-9
 #: Right sides that are solved for at once: longer work would hold up the window, which waits for the lock.
 AT_ONCE = 32
 
@@ -341,70 +341,19 @@ def _crossed(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _least(curvature: FloatArray, pull: FloatArray, falls: FloatArray, missing: FloatArray) -> FloatArray:
-    """The y with the least y.curvature.y / 2 + pull.y of those with falls y >= missing, as nearly as that can be.
-
-    In variables that make the curvature 1 it is a problem of least distance (Lawson and Hanson, Solving Least Squares
-    Problems, 1974, chapter 23).
-    """
+    """The y with the least y.curvature.y / 2 + pull.y of those with falls y >= missing, as nearly as that can be."""
     root = cholesky(curvature, lower=True)
     start = solve_triangular(root, pull, lower=True)
     rows = solve_triangular(root, falls.T, lower=True).T
     wanted = missing + rows @ start
     scale = np.maximum(np.abs(rows).max(axis=1), 1e-12)
-    rows, wanted = rows / scale[:, None], wanted / scale
-    found: FloatArray = solve_triangular(root.T, shortest(rows, wanted) - start, lower=False)
+    conditions = Conditions(np.arange(scale.size), rows, wanted, (scale / UNMET) ** 2)
+
+    def violated(step: FloatArray) -> Conditions:
+        return conditions.chosen(wanted - rows @ step > VIOLATED * scale)
+
+    found: FloatArray = solve_triangular(root.T, shortest_step(start.size, violated)[0] - start, lower=False)
     return found
-
-
-def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The least u (V,) with rows.u >= wanted, where what is not met counts UNMET^2 times as much.
-
-    Newton's method on a convex cost of quadratic pieces, with the best share of a step where a whole one is too far.
-    """
-    # Imported when it is needed: it takes long, and the window starts without it.
-    from scipy.optimize import brentq
-
-    u = np.zeros(rows.shape[1])
-    for _ in range(MOST_STEPS):
-        short = wanted - rows @ u
-        own = rows[short > 0.0]
-        step = _balance(own, wanted[short > 0.0]) - u
-        line = _CostLine(u, step, short, rows @ step)
-        if line.slope(0.0) >= -NO_FALL * line.cost(0.0):
-            break
-        if line.cost(1.0) <= line.cost(0.0) + LEAST_FALL * line.slope(0.0) or line.slope(1.0) <= 0.0:
-            u = u + step
-        else:
-            u = u + brentq(line.slope, 0.0, 1.0) * step
-    return u
-
-
-def _balance(rows: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The u (V,) with the least |u|^2 + UNMET^2 |wanted - rows u|^2, from the smaller of two systems."""
-    count, size = rows.shape
-    table = rows @ rows.T if count < size else rows.T @ rows
-    table[np.diag_indices(len(table))] += UNMET**-2
-    factor = cho_factor(table, overwrite_a=True)
-    found: FloatArray = rows.T @ cho_solve(factor, wanted) if count < size else cho_solve(factor, rows.T @ wanted)
-    return found
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _CostLine:
-    """The cost from a place (V,) along a step (V,): conditions (N,) are short there, and by ``along`` less after it."""
-
-    place: FloatArray
-    step: FloatArray
-    short: FloatArray
-    along: FloatArray
-
-    def cost(self, share: float) -> float:
-        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
-        return 0.5 * float(place @ place) + 0.5 * UNMET**2 * float(unmet @ unmet)
-
-    def slope(self, share: float) -> float:
-        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
-        return float(place @ self.step) - UNMET**2 * float(unmet @ self.along)
 
 
 def _node_slopes(design: Deployment) -> FloatArray:

@@ -2,48 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
-from kirigami_studio.fabricate.material import (
-    OLD_LIMIT,
-    Construction,
-    Material,
-    find_material,
-    library,
-    own_folder,
-    presets,
-    strains_of_old,
-)
+from kirigami_studio.fabricate.material import SHELF, Construction, Material, find_material, with_entries_of_now
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.foundation.resources import resource
-
-#: Keys are file names on every platform: lower case, so that no two differ by capitals only.
-KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
-#: Entries that are no numbers or words of the user's own.
-JUDGED = frozenset({"key", "calibrated", "connectors_hold", "construction", "backing", "style", "sources"})
-#: Files of these names cannot exist on Windows.
-RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))})
-
-
-def check_key(key: str) -> str:
-    """Return a key that can be a file's name, or refuse it.
-
-    Raises
-    ------
-    FabricationError
-        Empty, too long, with other characters than a-z, 0-9, - and _, or reserved by a platform.
-    """
-    if not isinstance(key, str) or KEY.fullmatch(key) is None or key in RESERVED:
-        raise FabricationError("material.key_not_usable", key=key)
-    return key
 
 
 def save_copy(material: Material) -> Path:
@@ -56,9 +22,7 @@ def save_copy(material: Material) -> Path:
     ExportError
         The file cannot be written.
     """
-    path = _own_file(material.key)
-    write_atomically(path, tomli_w.dumps(material.entries).encode("utf-8"))
-    return path
+    return SHELF.save(material)
 
 
 def delete_copy(key: str) -> None:
@@ -69,18 +33,7 @@ def delete_copy(key: str) -> None:
     FabricationError
         There is no own material of that key.
     """
-    path = _own_file(key)
-    try:
-        path.unlink()
-    except FileNotFoundError:
-        if key in presets():
-            raise FabricationError("material.bundled_not_deleted", key=key) from None
-        own = ", ".join(sorted(library().own))
-        if not own:
-            raise FabricationError("material.none_own", key=key) from None
-        raise FabricationError("material.not_own", key=key, own=own) from None
-    except OSError as error:
-        raise FabricationError("material.not_deleted", path=path, reason=error.strerror or str(error)) from error
+    SHELF.delete(key)
 
 
 def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Material:
@@ -100,23 +53,15 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
         No such material or field, or a value that makes no sense.
     """
     original = find_material(source)
-    kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in JUDGED}
-    if OLD_LIMIT in changes:  # as scripts call it that were written before bending and tension were told apart
-        limit = _typed(OLD_LIMIT, "float", changes[OLD_LIMIT])
-        changes = {**{name: limit for name in strains_of_old(0.0)}, **changes}
-        del changes[OLD_LIMIT]
-    for name in changes:
-        if name not in kinds:
-            raise FabricationError("material.no_such_entry", name=name, known=", ".join(kinds))
-    values = {name: _typed(name, kinds[name], value) for name, value in changes.items()}
+    values = SHELF.typed(with_entries_of_now(changes))
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"
     clean: dict[str, Any] = {"calibrated": False, "measured_on": "", "measured_by": ""}
-    if any(kinds[name] != "str" for name in changes):
+    if any(not isinstance(value, str) for value in values.values()):
         # What was known of the original is not known of other numbers.
         clean |= {"connectors_hold": True, "construction": Construction.ONE_SHEET}
-    clean["sources"] = tuple(pair for pair in original.sources if pair[0] not in changes)
-    return replace(original, key=check_key(key), **(clean | values))
+        clean["sources"] = {name: text for name, text in original.sources.items() if name not in values}
+    return replace(original, key=SHELF.check_key(key), **(clean | values))
 
 
 def mark_calibrated(
@@ -155,21 +100,3 @@ def mark_calibrated(
     )
     save_copy(measured)
     return measured
-
-
-def _typed(name: str, kind: str, value: object) -> object:
-    """A value as typed on a command line, as float, int or text."""
-    if not isinstance(value, str) or kind == "str":
-        return value
-    try:
-        return int(value) if kind == "int" else float(value)
-    except ValueError:
-        code = "material.not_a_whole_number" if kind == "int" else "material.not_a_number"
-        raise FabricationError(code, name=name, value=value) from None
-
-
-def _own_file(key: str) -> Path:
-    folder = own_folder()
-    if folder.resolve() == resource("materials").resolve():
-        raise FabricationError("material.folder_is_bundled", folder=folder)
-    return folder / f"{check_key(key)}.toml"

@@ -291,9 +291,13 @@ def _levels(content: bytes) -> Levels:
     grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
     if channel.mode == "L":
         return Levels(grey / 255.0, reduction, is_alpha, channel.size)
-    # 16- and 32-bit pictures seldom use their whole range: black and white are what they contain.
-    lowest, highest = float(np.min(grey)), float(np.max(grey))
-    return Levels((grey - lowest) / max(highest - lowest, 1e-12), reduction, is_alpha, channel.size)
+    return Levels(stretched(grey), reduction, is_alpha, channel.size)
+
+
+def stretched(deep: FloatArray) -> FloatArray:
+    """Levels of a 16- or 32-bit picture, from 0 to 1: it seldom uses its whole range, black and white are its own."""
+    lowest, highest = float(np.min(deep)), float(np.max(deep))
+    return (deep - lowest) / max(highest - lowest, 1e-12)
 
 
 def _channel(image: Image.Image) -> tuple[Image.Image, bool]:

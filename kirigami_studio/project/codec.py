@@ -18,7 +18,8 @@ from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, co
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
-from kirigami_studio.fabricate.material import OLD_LIMIT, Material, strains_of_old
+from kirigami_studio.fabricate.machine import OLDER_ENTRIES
+from kirigami_studio.fabricate.material import OLD_LIMIT, Material, with_entries_of_now
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
@@ -259,7 +260,10 @@ def _nodes(record: Record) -> Nodes:
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
     lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
-    own = None if settings.own is None else {"key": settings.own.key, **settings.own.entries}
+    own = None
+    if settings.own is not None:
+        own = {name: one for name, one in asdict(settings.own).items() if one is not None}
+        own["sources"] = dict(settings.own.sources)
     return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
 
 
@@ -272,8 +276,20 @@ def _fabrication(record: Record) -> FabricationSettings:
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
         ),
-        own=_material(record.record("own")) if record.holds("own") else None,
+        own=_own_material(record.record("own")) if record.holds("own") else None,
     )
+
+
+def _own_material(record: Record) -> Material:
+    """The numbers of a material; those of its machine stand in older files."""
+    older = {name: record.number(name) for name in OLDER_ENTRIES if record.holds(name)}
+    limits = {OLD_LIMIT: record.number(OLD_LIMIT)} if record.holds(OLD_LIMIT) else {}
+    newer: dict[str, Any] = {name: record.text(name) for name in ("construction", "style") if record.holds(name)}
+    if record.holds("sources"):
+        newer["sources"] = record.texts("sources")
+    # The note is longer than a name; a material makes plain text of it itself.
+    note = {"note": record.verbatim("note")}
+    return Material(**with_entries_of_now(limits) | _plain_fields(record, Material) | older | newer | note)
 
 
 def _hinge(entry: object) -> int:
@@ -289,16 +305,6 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     if isinstance(width, bool) or not isinstance(width, (int, float)):
         raise ProjectError("project.not_a_connector_width", value=width)
     return _hinge(hinge), float(width)
-
-
-def _material(record: Record) -> Material:
-    """Numbers of an own material; those that older programs did not write are the usual ones."""
-    older = {} if not record.holds(OLD_LIMIT) else strains_of_old(record.number(OLD_LIMIT))
-    newer: dict[str, Any] = {name: record.text(name) for name in ("construction", "style") if record.holds(name)}
-    if record.holds("sources"):
-        newer["sources"] = tuple(record.texts("sources").items())
-    # The note is longer than a name; a material makes plain text of it itself.
-    return Material(**older | _plain_fields(record, Material) | newer | {"note": record.verbatim("note")})
 
 
 def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:

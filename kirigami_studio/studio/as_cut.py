@@ -30,7 +30,8 @@ from kirigami_studio.fabricate.strain import StrainFigure, Survival, survival, u
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.mechanics.closing import (
     CLOSED,
     TOLERATED_STRETCH,
@@ -63,6 +64,13 @@ class Outcome(Enum):
     TOUCHING = "touching"  #: panels run into each other
 
 
+class Source(Enum):
+    """How something is known of a sheet as cut; the values are the names in JSON."""
+
+    ESTIMATE = "estimate"  #: from the design, the material and the widths
+    SIMULATION = "simulation"  #: closed step by step on the connectors of its planned cuts
+
+
 @dataclass(frozen=True, slots=True)
 class AsCut:
     """What is expected of a cut sheet.
@@ -70,7 +78,7 @@ class AsCut:
     Attributes
     ----------
     jam_phi : float, radians
-        Angle at which it jams; 0 for a sheet that closes.
+        Angle at which it jams, from 0 for a sheet that closes to pi for one that stays flat.
     phi : float, radians
         At which it is meant to show the target.
     outcome : Outcome
@@ -83,8 +91,14 @@ class AsCut:
     iou, ideal_iou : float or None
         Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
         and without a target.
+    source : Source
     strain_limit, thinness, yields_at : float
         Of that connector, see :class:`Survival`.
+
+    Raises
+    ------
+    AngleError
+        A jam outside of 0 to pi.
     """
 
     jam_phi: float
@@ -95,9 +109,13 @@ class AsCut:
     figure: StrainFigure
     iou: float | None = None
     ideal_iou: float | None = None
+    source: Source = Source.SIMULATION
     strain_limit: float = math.inf
     thinness: float = 0.0
     yields_at: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_phi(self.jam_phi)
 
     @property
     def survival(self) -> Survival:
@@ -113,6 +131,39 @@ class AsCut:
     def reached(self) -> float:
         """The angle (radians) nearest to ``phi`` that the sheet comes to."""
         return self.phi if self.closes else max(self.jam_phi, self.phi)
+
+    @property
+    def jam_deg(self) -> float:
+        """The angle at which it jams, degrees in [0, 180]: the one figure that everything shows."""
+        return math.degrees(self.jam_phi)
+
+    @property
+    def opened(self) -> float:
+        """Share (0..1) of its way from flat to its angle that the sheet comes."""
+        return 1.0 if self.closes else min((math.pi - self.jam_phi) / (math.pi - self.phi), 1.0)
+
+    @property
+    def lost(self) -> float | None:
+        """Match (IoU) that is lost by being cut; None where that is not known."""
+        return None if self.iou is None or self.ideal_iou is None else max(0.0, self.ideal_iou - self.iou)
+
+    @property
+    def word(self) -> str:
+        """Whether it comes to its angle, in the words that everything shows."""
+        if not self.closes:
+            return tr("jams at {jam:.0f}°", jam=self.jam_deg)
+        return tr("closes") if self.phi < CLOSE_TO else tr("opens to {phi:.0f}°", phi=math.degrees(self.phi))
+
+    def to_json(self) -> dict[str, object]:
+        """For the command line: the jam, the match as cut (null where it is not known) and the largest strain."""
+        return {**jam_json(self), "iou": self.iou, "max_strain": self.strain}
+
+
+def jam_json(found: AsCut | None) -> dict[str, object]:
+    """Where a sheet jams and how that is known, for every JSON that tells it; nulls where nothing is known."""
+    if found is None:
+        return {"jam_deg": None, "jam_from": None}
+    return {"jam_deg": found.jam_deg, "jam_from": found.source.value}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -282,7 +333,8 @@ def estimate(
     blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
     figures = _both_figures(sheet, phi if outcome is Outcome.CLOSES else max(jam, phi))
-    return _told(jam, phi, outcome, largest, survival(chosen, sheet.connectors.width_mm, *figures))
+    judged = survival(chosen, sheet.connectors.width_mm, *figures)
+    return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
 def all_break(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> bool:
@@ -297,16 +349,22 @@ def _both_figures(sheet: SheetNetwork, phi: float) -> tuple[FloatArray, FloatArr
     return sheet.strains(turn, np.zeros(len(turn)))
 
 
-def _told(
-    jam: float, phi: float, outcome: Outcome, stretch: float, judged: Survival, lap: Overlap | None = None
+def _made(
+    jam: float,
+    phi: float,
+    outcome: Outcome,
+    stretch: float,
+    judged: Survival,
+    source: Source,
+    lap: Overlap | None = None,
 ) -> AsCut:
     iou, ideal = (None, None) if lap is None else (lap.iou_as_cut, lap.iou_ideal)
-    known = judged.strain, judged.figure, iou, ideal, judged.limit, judged.thinness, judged.yields_at
+    known = judged.strain, judged.figure, iou, ideal, source, judged.limit, judged.thinness, judged.yields_at
     return AsCut(jam, phi, outcome, stretch, *known)
 
 
-def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, float]:
-    """Estimate where designs jam (radians, 0 for those that close); those that cannot be cut at all are left out.
+def estimates(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, AsCut]:
+    """Estimate where designs jam; those that cannot be cut at all are left out.
 
     Raises
     ------
@@ -316,10 +374,9 @@ def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -
     material, found = material_for(settings), {}
     for candidate in candidates:
         try:
-            as_cut = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
+            found[candidate] = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
         except KirigamiError:
             continue  # widths that make no sense on this sheet, which planning its cuts explains
-        found[candidate] = as_cut.jam_phi
     return found
 
 
@@ -391,7 +448,7 @@ def _simulated(material: Material, found: Closing, jam: float, phi: float, lap: 
     blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     until = _until(found, reached)
     judged = survival(material, found.sheet.connectors.width_mm, found.in_plane[until], found.out_of_plane[until])
-    return _told(jam, phi, Outcome.CLOSES if closes else blame, largest, judged, lap)
+    return _made(jam, phi, Outcome.CLOSES if closes else blame, largest, judged, Source.SIMULATION, lap)
 
 
 def breaking_phi(material: Material, found: Closing) -> float | None:

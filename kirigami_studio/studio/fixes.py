@@ -29,7 +29,7 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
@@ -77,6 +77,8 @@ class Fix:
     as_cut : AsCut
     instead : tuple of Candidate
         Designs on another grid, best first, that take the place of all there are; empty where those stay.
+    solves : tuple of str
+        Codes of the problems that are then gone.
     """
 
     change: Note
@@ -85,6 +87,12 @@ class Fix:
     verdict: Verdict
     as_cut: AsCut
     instead: tuple[Candidate, ...] = ()
+    solves: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """What to do, and what is then to be expected."""
+        return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
         """Make the change, as one step that can be undone; a design that is gone leaves the choice as it is."""
@@ -113,6 +121,7 @@ class Fix:
             "material": settings.material,
             "grid": list(self.candidate.sheet.grid),
             "max_strain": self.as_cut.strain,
+            "solves": list(self.solves),
         }
 
 
@@ -136,9 +145,18 @@ class Advice:
         """As it is shown: every fix with what is then to be expected, or that nothing works."""
         if not self.fixes:
             return (self.tried.text,)
-        return tuple(
-            Note.of("fix.then", change=fix.change.text, level=fix.verdict.level.words).text for fix in self.fixes
-        )
+        return tuple(fix.line for fix in self.fixes)
+
+    def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
+        """A verdict with each fix below the worst problem that it solves; fixes that solve none come last."""
+        told: list[str] = [verdict.words]
+        left = list(self.fixes)
+        for problem in verdict.problems:
+            told.append(problem.text)
+            told += [fix.line for fix in left if problem.code in fix.solves]
+            left = [fix for fix in left if problem.code not in fix.solves]
+        rest = [fix.line for fix in left] if self.fixes else [self.tried.text]
+        return (*told, *rest, verdict.summary, *(note.text for note in verdict.notes))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -183,6 +201,10 @@ def find_fixes(
         # However it is cut, its panels overlap.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
         return search.advice()
+    if not verdict.of_the_sheet:
+        # The sheet is well made; only another design matches better.
+        yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
+        return search.advice()
     single = _single_changes(candidate, settings, search.material, verdict)
     grids = _coarser_grids(candidate, settings, coarser)
     if any(problem.code in CROWDED for problem in verdict.problems):
@@ -220,12 +242,12 @@ class _Search:
 
     @property
     def ready(self) -> list[Fix]:
-        """Fixes after which the sheet is ready to cut."""
-        return [fix for fix in self.found if fix.verdict.ok]
+        """Fixes after which nothing is wrong with the sheet."""
+        return [fix for fix in self.found if not fix.verdict.of_the_sheet]
 
     def advice(self) -> Advice:
         """The best that were found."""
-        fixes = sorted(self.found, key=lambda fix: not fix.verdict.ok)[:MOST_FIXES]
+        fixes = sorted(self.found, key=lambda fix: bool(fix.verdict.of_the_sheet))[:MOST_FIXES]
         cuts = [settings for _, settings in self.seen]
         connectors = [self._connector_mm(settings) for settings in cuts] or [0.0]
         widths = [settings.width_mm for settings in cuts] or [0.0]
@@ -282,10 +304,12 @@ class _Search:
         as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
         after = judge(candidate, plan, report, as_cut)
         if isinstance(as_cut, AsCut) and after.better_than(self.verdict):
-            if after.ok and change.note.code != "fix.material":
+            if not after.of_the_sheet and change.note.code != "fix.material":
                 self.kinds.add(change.note.code)
             note = _told(change.note, self.verdict, as_cut)
-            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead))
+            left = {problem.code for problem in after.problems}
+            solves = tuple(problem.code for problem in self.verdict.problems if problem.code not in left)
+            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead, solves))
 
     def _hopeless(self, change: _Change, motion: Deployment) -> bool:
         """Whether its connectors break or the sheet jams, as estimated; thin sheets that jam are kept for later."""
@@ -328,14 +352,14 @@ def _single_changes(
         yield _Change(Note.of("fix.hinges"), candidate, even)
     named = [width for problem in verdict.problems for width in _named_widths(problem, settings, material)]
     for width in named:
-        yield from _wider(candidate, settings, material, width)
+        yield from _wider(candidate, settings, width)
     for style in _styles(material, settings):
         yield _Change(Note.of("fix.style", style=style.value), candidate, _with(settings, style=style))
     for connector in _connectors(material, settings, CONNECTORS):
         note = Note.of("fix.connector", connector_mm=connector)
         yield _Change(note, candidate, _with(settings, connector_mm=connector))
     for times in WIDTHS:
-        yield from _wider(candidate, settings, material, settings.width_mm * times)
+        yield from _wider(candidate, settings, settings.width_mm * times)
 
 
 def _named_widths(problem: Problem, settings: FabricationSettings, material: Material) -> list[float]:
@@ -352,17 +376,15 @@ def _named_widths(problem: Problem, settings: FabricationSettings, material: Mat
     return []
 
 
-def _wider(
-    candidate: Candidate, settings: FabricationSettings, material: Material, width_mm: float
-) -> Iterator[_Change]:
+def _wider(candidate: Candidate, settings: FabricationSettings, width_mm: float) -> Iterator[_Change]:
     """Another width of the sheet, rounded up to a tenth of a millimetre, if the machine can reach it."""
     width = math.ceil(10.0 * width_mm - 1e-6) / 10.0
-    if width <= max(_widest(material), settings.width_mm):
+    if width <= max(_widest(settings), settings.width_mm):
         yield _Change(Note.of("fix.width", width_mm=width), candidate, _with(settings, width_mm=width))
 
 
-def _widest(material: Material) -> float:
-    return max(material.bed_width_mm, material.bed_height_mm) or WIDEST_MM
+def _widest(settings: FabricationSettings) -> float:
+    return max(machine_for(settings).reach_mm) or WIDEST_MM
 
 
 def _styles(material: Material, settings: FabricationSettings) -> list[ConnectorStyle]:
@@ -407,7 +429,7 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
     connectors = _connectors(material, settings, (1.0, 2.0)) or [material.connector_mm]
     widths = [round(settings.width_mm * times, 1) for times in (1.0, 1.5, 2.0, 3.0)]
     for width, style, connector in product(widths, COMBINED, connectors):
-        if width <= max(_widest(material), settings.width_mm):
+        if width <= max(_widest(settings), settings.width_mm):
             note = Note.of("fix.combined", style=style.value, connector_mm=connector, width_mm=width)
             yield _Change(note, candidate, _with(settings, style=style, connector_mm=connector, width_mm=width))
 

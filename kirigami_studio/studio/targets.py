@@ -305,16 +305,15 @@ def reduced_picture(path: Path) -> NDArray[np.uint8] | None:
     """
     from PIL import Image, ImageOps
 
-    from kirigami_studio.outlines.read_image import opened_image
+    from kirigami_studio.outlines.read_image import opened_image, stretched
     from kirigami_studio.outlines.source_file import decoding, read_bytes
 
     try:
         with decoding(path, "source.image_damaged"):
             image = ImageOps.exif_transpose(opened_image(read_bytes(path)))
-            if image.mode.startswith(("I", "F")):  # 16 and 32 bit: black and white are the extremes
-                deep = np.asarray(image, dtype=np.float64)
-                lowest, highest = float(np.min(deep)), float(np.max(deep))
-                image = Image.fromarray((255.0 * (deep - lowest) / max(highest - lowest, 1e-12)).astype(np.uint8))
+            if image.mode.startswith(("I", "F")):
+                levels = stretched(np.asarray(image, dtype=np.float64))
+                image = Image.fromarray((255.0 * levels).astype(np.uint8))
             image = image.convert("RGBA")
             image.thumbnail((LARGEST_SIDE, LARGEST_SIDE))
     except KirigamiError:

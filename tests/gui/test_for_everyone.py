@@ -27,7 +27,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 CONTROLS = (
     QAbstractButton,
@@ -119,7 +119,7 @@ def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow)
 
 def test_that_the_report_of_an_export_is_named_too(designed: MainWindow, files: object, until: Until, tmp_path) -> None:  # type: ignore[no-untyped-def]
     files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
-    told_: list[Exported] = []
+    told_: list[ExportedFiles] = []
     designed.controller.cutting.exported.connect(told_.append)
     designed.commands["export"].trigger()
     until(lambda: bool(told_) and designed.dialogs.report is not None)

@@ -23,7 +23,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
-from kirigami_studio.studio.making import CutRequest, Exported, Output, exporting, planned
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, exporting, planned
 
 #: What goes wrong, and where: the verdict's sentences, the second reader, the sheet as cut.
 FAULTS = (
@@ -48,9 +48,9 @@ def planted(*_: object, **__: object) -> object:
     raise IndexError("list index out of range")
 
 
-def export(request: CutRequest, output: Output) -> Exported:
+def export(request: CutRequest, output: Output) -> ExportedFiles:
     (found,) = exporting(request, output, True, never)
-    assert isinstance(found, Exported)
+    assert isinstance(found, ExportedFiles)
     return found
 
 

@@ -21,7 +21,7 @@ from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 #: Voids, designs and seed of every case: panels are small enough for some designs to jam or to be refused as cut.
 GRID, DESIGNS, SEED = (6, 6), 6, 3
@@ -47,7 +47,7 @@ def of_window(qtbot: QtBot, target: str, material: str, folder: Path) -> Answer:
         controller.session.restart(Document(read_target(target), settings, fabrication=cut), None)
         with qtbot.waitSignal(controller.run.completed, timeout=PATIENCE):
             controller.generation.generate()
-        exported: list[Exported] = []
+        exported: list[ExportedFiles] = []
         controller.cutting.exported.connect(exported.append)
         controller.export(folder / "window.dxf")
         qtbot.waitUntil(lambda: bool(exported), timeout=PATIENCE)

@@ -35,8 +35,9 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
     """The sentence of a problem in the user's language, with its values in place; an unknown code is shown as it is."""
     text = SENTENCES.get(code, code)
     fields = {name: one_line(value) for name, value in fields.items()}
-    if isinstance(material := fields.get("material"), str):
-        fields = {**fields, "material": tr(material)}  # the bundled ones have names in every language
+    for named in ("material", "machine"):  # the bundled ones have names in every language
+        if isinstance(bundled := fields.get(named), str):
+            fields = {**fields, named: tr(bundled)}
     if isinstance(text, tuple):
         one, many = text
         others = {name: value for name, value in fields.items() if name != "count"}

@@ -14,6 +14,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "profile.only_red_is_cut": mark(
         "MeerK40t and K40 Whisperer cut red lines only and engrave the others: choose the k40 profile for those."
     ),
+    "profile.attach_and_measure": mark(
+        "In Design Space, select everything and choose Attach, or cuts move on the mat. Then compare the width with "
+        "that of the sheet: where it differs, lock the proportions and type it."
+    ),
+    "profile.measure": mark(
+        "In Silhouette Studio, compare the width with that of the sheet: where it differs, lock the proportions and "
+        "type it."
+    ),
+    "profile.order_of_steps": mark(
+        "Drag the steps into the order of the layers, the outline last, and compare the width with that of the sheet."
+    ),
     "profile.one_origin": mark(
         "Import all files of the folder at one origin, so that their registration marks (layer REGISTRATION) lie upon "
         "each other, and cut them in the order of their numbers. The marks need not be cut."
@@ -335,10 +346,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} \N{MICRO SIGN}m at "
         "x = {x:.2f}, y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred "
         "connectors, or a larger sheet."
-    ),
-    "verify.sheet_closes": mark("With these connectors the sheet closes, by the estimate of the simulator."),
-    "verify.sheet_jams": mark(
-        "With these connectors the sheet jams at {jam_deg:.0f} degrees, by the estimate of the simulator."
     ),
     "verify.connectors_lost": mark(
         "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "

@@ -82,11 +82,23 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "as_cut.jams_while_flat": mark(
         "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f} while it stays flat. It is "
-        "thin, so it may pass by bending out of the plane."
+        "thin and comes {opened_percent:.0f} % of its way, so it may pass by bending out of the plane."
+    ),
+    "as_cut.hardly_opens": mark(
+        "As cut, the sheet jams at {jam_deg:.0f} degrees: it comes {opened_percent:.0f} % of its way from flat to "
+        "{phi_deg:.0f}. Thin sheet passes a jam by bending out of the plane only beyond {least_percent:.0f} %."
     ),
     "as_cut.nearly": mark("As cut, the sheet comes to {jam_deg:.0f} degrees instead of {phi_deg:.0f}."),
     "as_cut.file_jams": mark(
-        "By the connectors read from {name:.80}, the sheet jams at {jam_deg:.0f} degrees (estimate)."
+        "The connectors read from {name:.80} lie where the sheet would jam, although the planned ones close."
+    ),
+    "as_cut.matches_roughly": mark(
+        "It matches the target by {match_percent:.0f} % (as designed {designed_percent:.0f} %). Below "
+        "{least_percent:.0f} % a silhouette is only roughly that of its target."
+    ),
+    "as_cut.does_not_match": mark(
+        "It matches the target by {match_percent:.0f} % (as designed {designed_percent:.0f} %). Below "
+        "{least_percent:.0f} % a silhouette is another shape."
     ),
     "as_cut.breaks": mark(
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "

@@ -27,7 +27,7 @@ from kirigami_studio.settings.fabrication import FabricationChange, OptionsChang
 from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
-    Exported,
+    ExportedFiles,
     ManyPages,
     Motion,
     Output,
@@ -55,7 +55,7 @@ class CutPlanner(QObject):
     answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
     refused = Signal(str)
     not_planned = Signal(CutRequest, str)  #: what was to be planned, and why it cannot be
-    exported = Signal(Exported)
+    exported = Signal(ExportedFiles)
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
@@ -147,22 +147,22 @@ class CutPlanner(QObject):
         self._write(tr("exporting {name}", name=path.name), steps)
 
     def _write(
-        self, name: str, steps: Steps[Exported | ManyPages | None], with_pages: Callable[[], None] | None = None
+        self, name: str, steps: Steps[ExportedFiles | ManyPages | None], with_pages: Callable[[], None] | None = None
     ) -> None:
         """Start a job; ``with_pages`` starts it once more, for as many pages as it takes."""
         callbacks = JobCallbacks(partial(self._take_written, with_pages), on_failed=self._report_failure)
         self._session.queue.start(name, steps, callbacks)
 
-    def _take_written(self, with_pages: Callable[[], None] | None, report: Exported | ManyPages | None) -> None:
+    def _take_written(self, with_pages: Callable[[], None] | None, report: ExportedFiles | ManyPages | None) -> None:
         match report:
-            case Exported():
+            case ExportedFiles():
                 self._report(report)
             case ManyPages() if with_pages is not None:
                 self._session.set_status(tr("Not exported yet: {count} pages.", count=report.pages))
                 write = (tr("Write all pages"), with_pages)
                 self._session.post(Message(report.note, Tone.WARNING, actions=(write,)))
 
-    def _report(self, exported: Exported) -> None:
+    def _report(self, exported: ExportedFiles) -> None:
         path, made = exported.path, exported.planned
         if made is None:
             self._session.set_status(tr("Exported {path}.", path=path))
@@ -188,7 +188,7 @@ class CutPlanner(QObject):
         self._session.post(Message(sentence, Tone.ERROR, trace))
 
 
-def older_messages(exported: Exported) -> list[Message]:
+def older_messages(exported: ExportedFiles) -> list[Message]:
     """What became of files that an earlier export left in the folder."""
     found = []
     if exported.removed:
@@ -203,7 +203,7 @@ def older_messages(exported: Exported) -> list[Message]:
     return found
 
 
-def picture_sentence(exported: Exported) -> str:
+def picture_sentence(exported: ExportedFiles) -> str:
     """Say that a picture was written, and which motion an animation shows."""
     name, motion = exported.path.name, exported.motion
     if exported.path.suffix.lower() != ANIMATION:

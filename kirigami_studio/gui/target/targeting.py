@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_PHI, SecondTarget
 from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.target_reader import next_run
@@ -129,7 +129,7 @@ class ReadReason(Enum):
     AGAIN = "again"
 
 
-class TargetReader(QObject):
+class SourceReader(QObject):
     """Reads one target at a time and registers the picture or drawing that it came from.
 
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
@@ -314,7 +314,7 @@ def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
     if settings.second is not None:
         return replace(settings.second, outline=outline)
     phi = USUAL_PHI if settings.phi < USUAL_PHI else 0.5 * (settings.phi + math.pi)
-    return SecondTarget(outline, phi, USUAL_WEIGHT)
+    return SecondTarget(outline, phi)
 
 
 class Targeting(QObject):
@@ -329,8 +329,9 @@ class Targeting(QObject):
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
+        self.on_board: Callable[[Outline], Outline] = lambda outline: outline  #: gives a contour its size on the board
         self.tracer = PictureTracer(session, self)
-        self.reader = TargetReader(session, self.tracer, self)
+        self.reader = SourceReader(session, self.tracer, self)
         self.reader.read.connect(self._on_read)
         self.reader.failed.connect(session.report_failure)
         self.tracer.traced.connect(self._on_traced)
@@ -381,14 +382,15 @@ class Targeting(QObject):
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
     def _on_traced(self, outline: Outline) -> None:
-        self.adjusted.emit(edits.edit_target(self._session.document, outline, tr("Change threshold")))
+        target = self.on_board(outline)
+        self.adjusted.emit(edits.edit_target(self._session.document, target, tr("Change threshold")))
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
     def _on_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
         if reason is ReadReason.START and untouched:
-            self.begun.emit(replace(document, target=outline))
+            self.begun.emit(replace(edits.as_drawn(document, outline), target=outline))
             self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
             self._session.set_status(said)

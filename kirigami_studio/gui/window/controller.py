@@ -117,6 +117,7 @@ class Controller(QObject):
         self.cutting.answered.connect(self.verdict.take_plan)
         self.cutting.refused.connect(lambda _: self.as_cut.forget())
         self.cutting.not_planned.connect(self.verdict.take_refusal)
+        self.verdict.judged.connect(self.estimates.take_verdict)
         self.generation.begun.connect(self._stop_work_on_design)
         self.targeting.replaced.connect(self._replace_target)
         self.targeting.adjusted.connect(self._adjust_target)
@@ -311,6 +312,7 @@ class Controller(QObject):
         """A material has changed on disk."""
         self.session.document_changed.emit(self.document)
         self.verdict.forget_fixes()
+        self.estimates.forget_verdicts()
         self.cutting.plan_soon()
 
     # the project ---------------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.stage.empty_stage import moves
 from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.preferences import Motion, TypedSize
+from kirigami_studio.project.preferences import MotionPreference, TypedSize
 from kirigami_studio.studio.projects import Pair, reading_sample
 
 #: Longer side (mm) of opened shapes that are cut by hand: their sheets fit on one page of A4 or Letter.
@@ -93,8 +93,10 @@ class FirstStart(QObject):
     def switch_motion(self) -> None:
         """Let what moves by itself stand still, or move again."""
         preferences, empty = self._preferences, self._stage.empty
-        still = preferences.present.motion is Motion.STILL
-        preferences.keep(replace(preferences.present, motion=Motion.SYSTEM if still else Motion.STILL))
+        still = preferences.present.motion is MotionPreference.STILL
+        preferences.keep(
+            replace(preferences.present, motion=MotionPreference.SYSTEM if still else MotionPreference.STILL)
+        )
         if moves(preferences.present.motion, self._stage.style()):
             empty.start()
         else:

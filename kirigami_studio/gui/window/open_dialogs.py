@@ -16,7 +16,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
@@ -76,7 +76,7 @@ class Dialogs(QObject):
         self._window.fabrication.reload_materials()
         self._controller.replan()
 
-    def show_report(self, exported: Exported) -> None:
+    def show_report(self, exported: ExportedFiles) -> None:
         """Show what two readers found in a written cut file, in the place of an earlier report."""
         from kirigami_studio.gui.make.export_report import ExportReport
 

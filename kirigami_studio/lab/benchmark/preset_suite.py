@@ -11,7 +11,7 @@ from kirigami_studio.fabricate.material import Material, find_material, presets
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import usual_settings
+from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.designing import completed, request_for, run_design
 from kirigami_studio.studio.verdict import Level, assess
@@ -147,7 +147,7 @@ def measure_presets(
 
 def judged_preset(material: Material, shape: str, k: int, seed: int = 0) -> PresetSheet:
     """Design a shape as ``design --material`` does, and judge the best."""
-    target, settings = load(shape), usual_settings(material)
+    target, settings = load(shape), new_settings({"material": material.key})
     wanted = DesignSettings(k=k, seed=seed)
     best = completed(run_design(request_for(target, wanted, settings), settings, as_cut=True), lambda _: None).best
     try:

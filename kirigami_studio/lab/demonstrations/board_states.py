@@ -14,7 +14,7 @@ from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
-from kirigami_studio.lab.demonstrations.offscreen_session import Session, SessionError, click
+from kirigami_studio.lab.demonstrations.offscreen_session import OffscreenSession, SessionError, click
 from kirigami_studio.outlines.combining import Combine, combined
 from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.figures import BoundingBox, Figure, figure, placed_figure
@@ -39,7 +39,7 @@ stroke="#108040" stroke-width="5" stroke-linecap="round"/></g></svg>"""
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
-class BoardStates(Session):
+class BoardStates(OffscreenSession):
     """Takes one window through the states of the target, and a screenshot of each in all sizes and themes."""
 
     def sizes(self, name: str) -> tuple[QSize, ...]:

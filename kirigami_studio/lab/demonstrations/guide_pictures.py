@@ -18,7 +18,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, Session, click, main
+from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, OffscreenSession, click, main
 
 #: Colours of a picture: the window has few, and smooth edges need the rest.
 COLOURS = 96
@@ -26,7 +26,7 @@ COLOURS = 96
 SIZE = QSize(1180, 760)
 
 
-class GuidePictures(Session):
+class GuidePictures(OffscreenSession):
     """Takes one window through what the guide tells, in its order."""
 
     def play(self) -> list[Path]:

@@ -67,7 +67,7 @@ class PresetFiles:
         return self._out
 
 
-class Session:
+class OffscreenSession:
     """Plays the steps on one window and takes screenshots."""
 
     def __init__(self, out: Path) -> None:
@@ -186,7 +186,7 @@ class Session:
         self.files.append(path)
 
 
-class PairPictures(Session):
+class PairPictures(OffscreenSession):
     """Pictures the bundled pairs for README and guide: the gallery that the window shows of them."""
 
     def play(self) -> list[Path]:
@@ -251,7 +251,7 @@ def send(widget: QObject, event: QEvent) -> None:
     QApplication.sendEvent(widget, event)
 
 
-def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
+def main(argv: list[str] | None = None, kind: type[OffscreenSession] = OffscreenSession) -> int:
     """Play the session, or another one made like it; 0 when every step succeeded."""
     parser = argparse.ArgumentParser(description="Play one studio session without a display.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for screenshots, DXF and project")
@@ -262,7 +262,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     if chosen.scale != 1.0:
         os.environ["QT_SCALE_FACTOR"] = str(chosen.scale)
-    session: Session | None = None
+    session: OffscreenSession | None = None
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         create_application(["kirigami-studio"])

@@ -23,7 +23,7 @@ from kirigami_studio.export.dxf_reading import DxfContent, read_content
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lab.demonstrations.offscreen_session import (
     DESIGNS,
-    Session,
+    OffscreenSession,
     SessionError,
     click,
     hover,
@@ -84,7 +84,7 @@ class Film:
         self._writer.close()
 
 
-class Screencast(Session):
+class Screencast(OffscreenSession):
     """Plays the session and films it."""
 
     def __init__(self, out: Path) -> None:

@@ -22,7 +22,14 @@ from kirigami_studio.fabricate.coupon import plan_coupon
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.material import FOLDER_VARIABLE, find_material
 from kirigami_studio.gui.make.material_editor import MaterialEditor
-from kirigami_studio.lab.demonstrations.offscreen_session import Session, SessionError, click, main, press, press_key
+from kirigami_studio.lab.demonstrations.offscreen_session import (
+    OffscreenSession,
+    SessionError,
+    click,
+    main,
+    press,
+    press_key,
+)
 from kirigami_studio.outlines.merging import Join
 
 #: The window, and the width of pages, pixels.
@@ -38,7 +45,7 @@ COUPON_SCALE, COUPON_MARGIN = 13.0, 16
 INKS = {Layer.SLITS: "#2f6fb5", Layer.EDGE_SLITS: "#00805f", Layer.OUTLINE: "#1d2733", Layer.RELIEF: "#c2410c"}
 
 
-class TutorialPictures(Session):
+class TutorialPictures(OffscreenSession):
     """Takes one window through the three tutorials."""
 
     def play(self) -> list[Path]:

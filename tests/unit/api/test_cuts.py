@@ -81,10 +81,13 @@ def test_that_a_file_is_checked_alone_and_beside_its_design(cuts: ks.Cuts, desig
     assert not wrong.ok and wrong.problems and repr(wrong).startswith("<CheckedFile other.dxf: not ready to cut: ")
 
 
-def test_that_a_sheet_that_would_fall_apart_is_planned_but_not_written(design: ks.Design, tmp_path: Path) -> None:
+def test_that_a_sheet_that_would_fall_apart_is_written_with_the_verdict_that_it_will_not_work(
+    design: ks.Design, tmp_path: Path
+) -> None:
     apart = design.plan_cuts(removed=range(20))
     assert not apart.report.ok and "cannot be cut" in repr(apart)
     assert not apart.verdict.ok and "Will not work" in apart._repr_html_()
-    with pytest.raises(ks.KirigamiError) as refused:
-        apart.export(tmp_path / "cut.dxf")
-    assert refused.value.code == "export.cannot_be_cut" and not (tmp_path / "cut.dxf").exists()
+    exported = apart.export(tmp_path / "cut.dxf", record=True)
+    assert exported.path.is_file() and not exported.ok and exported.verdict is not None
+    assert exported.verdict.level.value == "will_not_work"
+    assert json.loads((tmp_path / "cut.json").read_text())["verdict"]["level"] == "will_not_work"

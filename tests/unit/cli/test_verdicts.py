@@ -64,7 +64,10 @@ def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str],
     assert main(wish) == 0
     said = capsys.readouterr().out.splitlines()
     assert "  verdict: Cut with care" in said
-    assert [line for line in said if line.startswith("  care: ")] == [f"  care: {told['problems'][0]['text']}"]
+    care = [line for line in said if line.startswith("  care: ")]
+    assert care == [f"  care: {problem['text']}" for problem in told["problems"]]
+    (answers,) = [line for line in said if line.startswith("  answers: ")]
+    assert all(answer["word"] in answers for answer in told["answers"].values())
     assert [line for line in said if line.startswith("  note: ")] == [f"  note: {text}" for text in told["notes"]]
 
 
@@ -130,8 +133,14 @@ def quietly(progress: Progress) -> None:
 @pytest.mark.torch
 def test_that_design_says_whether_the_material_can_be_cut(capsys: pytest.CaptureFixture[str]) -> None:
     wish = ["design", "heart", "--grid", "4x4", "--k", "2", "--no-polish", "--steps", "1"]
-    plain = answer(capsys, *wish, "--json")
-    assert "verdict" not in plain
+    # Without a material it is the one that new projects have, as in the window.
+    plain, named = (answer(capsys, *wish, *more, "--json") for more in ((), ("--material", "film-uv")))
+    assert plain["verdict"] == named["verdict"] and "from" in plain["verdict"]
+    assert [one["index"] for one in plain["candidates"]] == [one["index"] for one in named["candidates"]]
+    assert plain["jam_deg"] == plain["verdict"]["jam_deg"] and plain["jam_from"] == plain["verdict"]["jam_from"]
+    for one in plain["candidates"]:
+        assert 0.0 <= one["as_cut"]["jam_deg"] <= 180.0 and one["as_cut"]["jam_from"] in ("estimate", "simulation")
+    assert plain["candidates"][0]["as_cut"]["jam_deg"] == plain["jam_deg"]
     card = answer(capsys, *wish, "--material", "card-co2", "--width-mm", "250", "--json")
     assert not card["ok"] and card["verdict"]["level"] == "will_not_work"
     assert not any(entry["cuttable"] for entry in card["candidates"])

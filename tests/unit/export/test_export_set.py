@@ -29,7 +29,7 @@ from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation import files
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -69,7 +69,7 @@ def test_that_a_lightburn_project_of_closed_slots_is_refused(job: ExportJob, tmp
 
 
 def test_that_tabs_left_out_of_closed_contours_are_named(make_design: MakeDesign, tmp_path: Path) -> None:
-    plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=CutOptions(tabs=3))
+    plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=replace(STRAIGHT, tabs=3))
     path = export(ExportJob(make_design(4, 5, seed=1), plan=plan, profile="slots"), tmp_path / "sheet.dxf")
     assert any("3 tabs are left out" in warning.text for warning in verify_export(plan, path, "slots").warnings)
 
@@ -144,7 +144,7 @@ def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) ->
 )
 def test_that_the_record_alone_gives_the_same_cut_file_again(sheet: Sheet, tmp_path: Path) -> None:
     design = deploy(sheet)
-    options = CutOptions(hinge_mm=((2, 0.6), (7, 0.9)))
+    options = replace(STRAIGHT, hinge_mm=((2, 0.6), (7, 0.9)))
     plan = plan_cuts(design, 120.0, connector_mm=0.4, kerf_mm=0.05, options=options)
     path = export(ExportJob(design, plan=plan), tmp_path / "sheet.dxf")
     record = json.loads(write_sidecar(ExportJob(design, plan=plan), tmp_path / "sheet.json", [path]).read_text())

@@ -20,7 +20,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.lattice.deployment import Deployment
 
 ORIGIN = {
@@ -46,7 +46,7 @@ TOLD = {f"FROM_{name.upper()}": " ".join(text.split()) for name, text in ORIGIN.
 @pytest.fixture
 def job(make_design: Callable[..., Deployment]) -> ExportJob:
     design = make_design(4, 5, seed=1)
-    plan = plan_cuts(design, 90.0, options=CutOptions(tabs=3))
+    plan = plan_cuts(design, 90.0, options=replace(STRAIGHT, tabs=3))
     return ExportJob(design, plan=plan, provenance=ORIGIN)
 
 
