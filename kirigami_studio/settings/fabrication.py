@@ -334,6 +334,20 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
     return changes
 
 
+def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
+    """The changes that come with a material: its connector and kerf; its usual size for the usual one of the last."""
+    changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
+    known = library().materials
+    before, after = known.get(settings.material), known.get(key)
+    if before is None or after is None:
+        return changes
+    if settings.opened_mm == before.sheet_mm:
+        changes["opened_mm"] = after.sheet_mm
+    elif settings.opened_mm is None and settings.width_mm == before.sheet_mm:
+        changes["width_mm"] = after.sheet_mm
+    return changes
+
+
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     """Settings without a project: the given material, else one that the given machine cuts, at its usual size.
 

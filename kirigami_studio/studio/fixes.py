@@ -437,7 +437,7 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
     """Every other material with its own numbers and centred connectors."""
     for key, material in library().materials.items():
-        if key != settings.material and material.connectors_hold:
+        if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)

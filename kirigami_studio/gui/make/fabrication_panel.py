@@ -40,7 +40,7 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
+from kirigami_studio.settings.fabrication import FabricationSettings, material_changes, stored_material
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -95,6 +95,7 @@ class FabricationPanel(Card):
         self._extent, self._by_hand = Extent.ALL, False
         self._summaries = ("", "")  # with the live numbers in sight, and without
         self._presets = library().materials
+        self._settings = FabricationSettings()
         self.material = ComboBox()
         self.material.setObjectName("material")
         self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -236,26 +237,26 @@ class FabricationPanel(Card):
                 self.material.addItem(tr(material.name), key)
 
     def _take_material(self, index: int) -> None:
-        """A new material brings its own connector and kerf."""
-        self.changed.emit({"material": self.material.itemData(index), "connector_mm": None, "kerf_mm": None})
+        self.changed.emit(dict(material_changes(self._settings, self.material.itemData(index))))
         self.edited.emit()
 
     def show_settings(self, settings: FabricationSettings) -> None:
         """Show the document's numbers, the material's own where it has none."""
+        self._settings = settings
         material = self._presets.get(settings.material) or stored_material(settings)
         with QSignalBlocker(self.material):
             if self.material.findData(settings.material) < 0:
                 self.material.addItem(tr(material.name) if material else settings.material, settings.material)
             self.material.setCurrentIndex(self.material.findData(settings.material))
         if material is not None:
-            self.material.setToolTip(
-                tr(
-                    "{machine}, {thickness_mm:g} mm. {note}",
-                    machine=tr(material.machine),
-                    thickness_mm=material.thickness_mm,
-                    note=tr(material.note),
-                )
+            about = tr(
+                "{machine}, {thickness_mm:g} mm. {note}",
+                machine=tr(material.machine),
+                thickness_mm=material.thickness_mm,
+                note=tr(material.note),
             )
+            limits = material.limits_note
+            self.material.setToolTip(about if limits is None else f"{limits.text}\n{about}")
         shown = {
             "width_mm": settings.width_mm,
             "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),

@@ -198,8 +198,12 @@ class MachineQuestion(QFrame):
             button.clicked.connect(lambda: self.chosen.emit(key))
         else:
             menu = QMenu(button)
-            for key, material in materials.items():
-                menu.addAction(tr(material.name)).triggered.connect(lambda _=False, key=key: self.chosen.emit(key))
+            menu.setToolTipsVisible(True)
+            # What one sheet of cannot close comes last, and says so.
+            for key, material in sorted(materials.items(), key=lambda item: item[1].limits_note is not None):
+                action = menu.addAction(tr(material.name))
+                action.setToolTip(tr(material.note) if material.limits_note is None else material.limits_note.text)
+                action.triggered.connect(lambda _=False, key=key: self.chosen.emit(key))
             button.setMenu(menu)
         button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.buttons[machine] = button

@@ -73,6 +73,8 @@ class FirstStart(QObject):
             wanted = replace(
                 wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
             )
+        elif known is not None:
+            wanted = replace(wanted, size=TypedSize.OPENED, opened_mm=known.sheet_mm)
         preferences.keep(wanted)
         cut = wanted.new_document().fabrication
         changed = replace(session.document, fabrication=cut)
@@ -82,7 +84,9 @@ class FirstStart(QObject):
             session.restart(changed, session.path)
         self._stage.empty.question.hide()
         name = material if known is None else tr(known.name)
-        session.set_status(tr("Cutting {material}. Press Generate (Ctrl+G).", material=name))
+        limits = None if known is None else known.limits_note
+        begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=name)
+        session.set_status(begin if limits is None else limits.text)
 
     def decline(self) -> None:
         """Do not ask again."""

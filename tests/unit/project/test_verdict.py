@@ -97,7 +97,7 @@ def test_that_a_design_says_why_it_cannot_be_cut(design: Candidate) -> None:
     assert good.refusal is None and good.as_cut is not None and good.as_cut.closes
     reasons = {
         "as_cut.jams_while_flat": replace(FILM, options=STRAIGHT),
-        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0),
+        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0, connector_mm=1.0),
         "edge_cut.no_room": replace(FILM, connector_mm=30.0),
     }
     for code, settings in reasons.items():
