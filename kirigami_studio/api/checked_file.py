@@ -1,4 +1,4 @@
-"""Cut files that are read again: what is in them, and whether that is what their design asks for."""
+"""Cut files that are read again: their content, and whether it is that of their design."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from kirigami_studio.studio.verdict import Verdict
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CheckedFile:
-    """What is in a cut file.
+    """Content of a cut file.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class CheckedFile:
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin or a cut SVG of this program: units, duplicates, gaps, pieces, ligaments.
+    """Read a DXF of any origin or a cut SVG of this program: units, duplicates, gaps, ligaments.
 
     Parameters
     ----------

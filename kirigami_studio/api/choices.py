@@ -39,7 +39,7 @@ def keywords_of(*kinds: type) -> dict[str, NamedSetting]:
 
 
 def values_for(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of one dataclass's settings by name, of keywords that were given; what was left open is left out."""
+    """Values of a dataclass's settings by name, of keywords; those left open are left out."""
     own = {one.keyword: one for one in settings_of(kind).values()}
     return {
         one.name: given[word]
@@ -76,7 +76,7 @@ def explicit_signature(
 
 
 def explicit_docstring(function: Callable[..., object], *kinds: type, over: bool = False) -> str:
-    """The docstring of a function with an entry for every keyword in the place of that of ``**choices``.
+    """The docstring of a function, with an entry for every keyword in place of ``**choices``.
 
     An entry is that of the setting's own dataclass, with the words of a choice and, unless ``over``, the default.
     """

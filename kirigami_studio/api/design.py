@@ -1,4 +1,4 @@
-"""Sheets, designs and cuts: a sheet becomes a design for a target, a design is planned in a material.
+"""Sheets, designs and cuts: a design is a sheet for a target, planned in a material.
 
 - A *sheet* is one table of ratios, decoded exactly, at every angle.
 - A *design* is a sheet for a target, with its score and its place.
@@ -83,7 +83,9 @@ LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sheet:
-    """One sheet at every angle phi, from pi (flat) to 0 (closed again); lengths in unit cells, angles in radians.
+    """One sheet at every angle phi, from pi (flat) to 0 (closed again).
+
+    Lengths are in unit cells, angles in radians.
 
     In a notebook it shows itself flat, half open and closed.
 
@@ -146,7 +148,7 @@ class Sheet:
         return Porosity.of(self.deployment).at(phi)
 
     def feasibility(self, phi: float = 0.0) -> Feasibility:
-        """Whether it is ``feasible``: no quad is inverted and nothing touches or overlaps on the way from flat to phi.
+        """Whether no quad is inverted and nothing touches or overlaps on the way from flat to phi.
 
         ``n_invalid``, ``overlap_ratio`` and ``contact`` say why not.
         """
@@ -154,7 +156,7 @@ class Sheet:
         return found
 
     def for_target(self, target: TargetLike | None = None, *, phi: float = 0.0, name: str = "") -> Design:
-        """This sheet as a design: scored, and laid over a target, so that it can be planned, simulated and exported.
+        """This sheet as a design, scored and laid over a target, to be planned and exported.
 
         Parameters
         ----------
@@ -175,7 +177,7 @@ class Sheet:
         return _design_of_sheet(self.deployment, target, phi, name)
 
     def to_json(self) -> dict[str, Any]:
-        """A sheet file's content: ``ratio``, ``rim``, ``start`` and ``cell``; :func:`decode` reads such files."""
+        """Content of a sheet file, for :func:`decode`: ``ratio``, ``rim``, ``start``, ``cell``."""
         return sheet_json(self.deployment.sheet)
 
     def __eq__(self, other: object) -> bool:
@@ -285,7 +287,7 @@ class Design:
 
     @property
     def name(self) -> str:
-        """What it is called, A1 unless it was given a name."""
+        """Its name, A1 unless it was given one."""
         return self.document.name_of(self.candidate)
 
     @property
@@ -295,7 +297,7 @@ class Design:
 
     @property
     def sheet(self) -> Sheet:
-        """The sheet that is cut, in its own frame; of a trimmed design the one that was fitted for that."""
+        """The sheet that is cut, in its own frame; the fitted one of a trimmed design."""
         return Sheet(_deployed(self.candidate.final_sheet))
 
     @property
@@ -361,7 +363,7 @@ class Design:
         return _posed(self.candidate)
 
     def panels(self, phi: float | None = None) -> list[FloatArray]:
-        """What there is of every panel, over the target: (P, 2) each, row by row; at the design's own angle or another.
+        """Remains of every panel, over the target: (P, 2) each, row by row; at any angle.
 
         Of trimmed designs, panels of which nothing stays are left out.
         """
@@ -590,7 +592,7 @@ class Cuts:
 
     @property
     def report(self) -> PlanReport:
-        """What the check of the plan found."""
+        """Findings of the check of the plan."""
         return self._planned.report
 
     @property
@@ -624,7 +626,7 @@ class Cuts:
 
     @property
     def verdict(self) -> Verdict:
-        """Whether it is ready to cut, and why not: ``level``, ``ok``, ``problems``, ``notes``, ``lines``.
+        """Whether it is ready to cut, and why not.
 
         Made of the check of the plan, the simulation and the material; the sheet is closed when first asked for.
         """
@@ -676,7 +678,7 @@ class Cuts:
 
     @property
     def _as_cut(self) -> AsCut | str:
-        """How the sheet does as cut, or why that cannot be told."""
+        """The sheet as cut, or why it is unknown."""
         try:
             return self.simulate().as_cut
         except KirigamiError as error:

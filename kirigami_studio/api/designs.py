@@ -63,7 +63,7 @@ class Designs(Sequence[Design]):
 
     @property
     def target(self) -> Target:
-        """What they are for.
+        """Their target.
 
         Raises
         ------
@@ -170,7 +170,7 @@ def load_project(path: str | os.PathLike[str]) -> Designs:
 
 
 def material_names() -> tuple[str, ...]:
-    """Keys of all materials, bundled and your own, as the command line's ``materials`` lists them.
+    """Keys of all materials, bundled and your own.
 
     Examples
     --------

@@ -121,7 +121,7 @@ def target_picture(points: FloatArray, name: str) -> str:
 
 
 def states_picture(design: PosedDesign, target: FloatArray | None, heading: str, details: str = "") -> str:
-    """A sheet flat, half open and at its angle, over its target (L, 2) if it has one, in one scale."""
+    """A sheet flat, half open and at its angle, over its target (L, 2), in one scale."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
     parts = [design.parts(phi) for phi in angles]
@@ -225,7 +225,7 @@ class AngleCurve:
 
 
 def curves_picture(curves: Sequence[AngleCurve], heading: str, jam_phi: float | None = None) -> str:
-    """Curves beside each other, flat on the left, closed on the right; the angle of a jam is marked."""
+    """Curves beside each other, from flat to closed; the angle of a jam is marked."""
     wide, tall = FIELD
     step = wide + NUMBERS + GAP
     canvas = SvgPicture.of(len(curves) * step + MARGIN, tall + 3 * GAP + LETTERS, heading)

@@ -1,4 +1,4 @@
-"""A sheet that was closed on its elastic connectors: force, energy, stretch, and where it jams."""
+"""A sheet closed on its elastic connectors: force, energy, stretch, and where it jams."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Simulation:
-    """What a sheet does as cut, on its way from flat (phi = pi) towards phi = 0; arrays have one entry a step.
+    """A sheet as cut on its way from flat (phi = pi) to phi = 0; arrays have one entry a step.
 
     In a notebook it shows force and stretch against the angle.
 
@@ -40,7 +40,7 @@ class Simulation:
 
     @property
     def as_cut(self) -> AsCut:
-        """What is expected of the cut sheet."""
+        """Estimates about the cut sheet."""
         return self.simulated.as_cut
 
     @property

@@ -142,7 +142,7 @@ class DesignJob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DesignOutcome:
-    """What came of a job.
+    """The designs of a job.
 
     Attributes
     ----------
@@ -189,6 +189,7 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     except FabricationError as error:
         return DesignOutcome(result, request, refused(error), notes=notes)
     request = replace(request, as_cut=closed(request, made))
+    result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
     return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
 
 
@@ -208,7 +209,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a worker is asked for: a job, or the error with which its target could not even be read."""
+    """Assignment of a worker: a job, or the error with which its target could not be read."""
 
     name: str
     job: DesignJob | None
@@ -216,7 +217,7 @@ class Asked:
 
 
 def designed_there(asked: Asked) -> Answer:
-    """Do a job in this process alone, and read the files that it writes; a worker of a cluster does this."""
+    """Do a job in this process alone, as a worker of a cluster, and read the files it writes."""
     job = asked.job
     if job is None:
         return Answer(None, asked.error)
@@ -272,7 +273,9 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
 
 
 def summary(result: Result) -> dict[str, object]:
-    """The JSON answer of ``design`` without the files; runs with a budget say whether it ended them, and those
+    """The JSON answer of ``design`` without the files.
+
+    Runs with a budget say whether it ended them, and those
     that chose their grid say why."""
     entries = candidates_json(result)
     answer: dict[str, object] = {
@@ -308,7 +311,7 @@ def summary(result: Result) -> dict[str, object]:
 
 
 def candidates_json(result: Result) -> list[dict[str, object]]:
-    """The entries of ``candidates``, best first, each with its rank's reason and the group that it looks like."""
+    """The entries of ``candidates``, best first, each with its rank's reason and its group."""
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
@@ -318,7 +321,7 @@ def candidates_json(result: Result) -> list[dict[str, object]]:
 
 
 def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
-    """One entry of ``candidates``: a sheet file with score and provenance; a trimmed one's other sheet and IoU.
+    """One entry of ``candidates``: a sheet file with score and provenance.
 
     ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
     """
@@ -347,9 +350,9 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
-    """Write the project, the cut file, the layout, a preview and the candidates.
+    """Write project, cut file, layout, preview and candidates.
 
-    Returns the design, judged with what was read back from its cut file, and the paths of all files by role.
+    Returns the design, judged with its cut file as read back, and the paths of all files by role.
 
     The bytes depend on what is given alone: wall time is not written.
 

@@ -60,7 +60,7 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
 
 
 def export(arguments: argparse.Namespace) -> int:
-    """Write cut or picture files from a project, verify the cut files, and report what is in them."""
+    """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
         find_exporter(arguments.out)
     document = load(arguments.project)
@@ -180,7 +180,7 @@ def say_verdict(verdict: Verdict) -> None:
 
 
 def _work(plan: CutPlan, profile: str, output: Output) -> Work:
-    """What cutting the files takes; that of the plan for kinds of file that have no profile."""
+    """Time of cutting the files; of the plan for kinds of file that have no profile."""
     suffix = output.path.suffix.lower()
     if len(plan.copies) > 1 and suffix in (".pdf", ".lbrn2"):
         return work_of(strokes_of(plan, find_profile("any")), plan)
@@ -202,7 +202,7 @@ def _summary(found: Verification) -> dict[str, object]:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Re-read a cut file; exit code 1 when something is wrong with it, or with the sheet of its design."""
+    """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     report = check_file(Path(arguments.file))
     problems = [problem.text for problem in report.problems]
     judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))
@@ -278,7 +278,7 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
 
 
 def _given(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What the command line gives, by the names of settings."""
+    """Values of the command line by the names of settings."""
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())

@@ -1,4 +1,4 @@
-"""What there is: ``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
+"""Commands that list: targets, licences, parts, variants, materials, machines; the coupon."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _machine_row(machine: Machine, own: bool) -> str:
 
 
 def _changes(arguments: argparse.Namespace) -> dict[str, object]:
-    """What ``--set`` changes, by name.
+    """Changes of ``--set`` by name.
 
     Raises
     ------
@@ -176,7 +176,8 @@ def _copied_key(arguments: argparse.Namespace) -> str:
 
 def _copy(arguments: argparse.Namespace) -> int:
     """Save a changed copy under its new key, or under the old one, which it then replaces."""
-    made = changed_copy(arguments.copy, _copied_key(arguments), _changes(arguments))
+    machine = None if arguments.machine is None else find_machine(arguments.machine)
+    made = changed_copy(arguments.copy, _copied_key(arguments), _changes(arguments), machine)
     if arguments.calibrated:
         made = mark_calibrated(made, date.today(), arguments.by)
     else:

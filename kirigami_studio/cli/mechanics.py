@@ -1,4 +1,4 @@
-"""``mechanics``: what a cut sheet, or a given network of panels, does on its elastic connectors."""
+"""``mechanics``: a cut sheet, or a given network of panels, on its elastic connectors."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
 
 
 def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
-    """What the JSON tells of every step, and of the sheet."""
+    """The JSON of every step, and of the sheet."""
     connectors = cut.sheet.connectors
     opening = np.degrees(cut.sheet.opening(found.path.motion))
     return {
@@ -179,7 +179,7 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
 
 
 def _ended_early(found: Closing, tolerated: float) -> bool:
-    """Whether the sheet was not driven as far as it would go, so that nothing is known about where it jams."""
+    """Whether the sheet was not driven as far as it would go, so that its jam is unknown."""
     free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
 

@@ -253,7 +253,7 @@ def name(text: str) -> str:
 
 
 def check_name(wanted: str | None, code: str) -> None:
-    """Refuse a name that reads as another design's code than ``code``, that of the design which is to have it.
+    """Refuse a name that reads as the code of another design than the one that gets it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The table of sub-commands, with the help of every option and examples, and the parser that is built from it."""
+"""The table of sub-commands with help and examples, and the parser that is built from it."""
 
 from __future__ import annotations
 
@@ -316,7 +316,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--by", default=None, metavar="NAME", help="who measured the values"),
         option("--delete", default=None, metavar="KEY",
                help="delete one of your own materials; presets cannot be deleted"),
-        option("--machine", default=None, metavar="KEY", help="list what this machine cuts, with its figures there"),
+        option("--machine", default=None, metavar="KEY",
+               help="list what this machine cuts, or copy with its figures there"),
         JSON,
     ), ("kirigami-studio materials", "kirigami-studio materials --machine glowforge",
         "kirigami-studio materials --copy film-uv --as my-film --set kerf_mm=0.028 --calibrated --by Ada",
@@ -414,7 +415,7 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 
 def open_window(arguments: argparse.Namespace) -> int:
-    """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
+    """Open the studio, with a project or a target if one is named; Qt is loaded here."""
     code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
     return code
 

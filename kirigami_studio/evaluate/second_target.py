@@ -1,4 +1,4 @@
-"""A second target, for an angle between the flat sheet and the one at which the first is shown.
+"""A second target, for an angle between flat and that of the first target.
 
 The flat sheet itself needs none: its outline is the start, and is met exactly.  What a second target asks for has its
 own size, place and rotation, and a weight: the design loses so much worth for each share of match that it lacks there.
@@ -24,7 +24,7 @@ USUAL_PHI, USUAL_WEIGHT = math.radians(45.0), 0.3
 
 @dataclass(frozen=True, slots=True)
 class SecondTarget:
-    """What the sheet should also show, on its way.
+    """Another target of a sheet on its way.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class SecondMatch:
 
     @property
     def price(self) -> float:
-        """What the design lacks there, times the weight: IoU."""
+        """The IoU that the design lacks there, times the weight."""
         return self.target.weight * (1.0 - self.match.iou_exact)
 
 
@@ -139,7 +139,7 @@ def second_matches(deployments: Sequence[Deployment], target: SecondTarget | Non
 
 
 def confirmed_match(deployment: Deployment, read: SecondMatch) -> SecondMatch:
-    """Keep a match from a file that is the design's in the pose that it names; else match the design again."""
+    """Keep a match from a file that is the design's in its pose; else match the design again."""
     target, match = read.target, read.match
     (own,) = matches_in_poses([deployment.outline(target.phi)], target.outline, [match.transform])
     if own is not None and own.is_near(match):

@@ -157,6 +157,7 @@ def sidecar_record(job: ExportJob, cut_files: Sequence[Path] = ()) -> dict[str, 
             "kerf_mm": plan.kerf_mm,
             "overcut_mm": plan.overcut_mm,
             "material": _plain(plan.material),
+            "machine": _plain(plan.machine),
             "options": _plain(plan.options),
             "profile": job.profile,
             "dxf_version": job.dxf_version,
@@ -205,9 +206,9 @@ def engraved_json(engraving: Engraving) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Turn a flat dataclass into what JSON knows."""
+    """Turn a flat dataclass into what JSON knows, without what is not there."""
     entries = {entry.name: getattr(value, entry.name) for entry in fields(value)}
-    return {name: _entry(entry) for name, entry in entries.items()}
+    return {name: _entry(entry) for name, entry in entries.items() if entry is not None}
 
 
 def _entry(value: Any) -> Any:

@@ -92,7 +92,7 @@ def _cut_drawing(
 
 
 def _counted_at(root: ElementTree.Element, width: float, height: float, dpi: float) -> dict[str, str]:
-    """Let a drawing of a frame (mm) count so many units to the inch; what its groups need so that they stay in mm."""
+    """Let a frame (mm) count so many units to the inch; return the scale of groups in mm."""
     if dpi == MM_DPI:
         return {}
     scale = dpi / MM_DPI

@@ -279,7 +279,7 @@ def bed_problems(plan: CutPlan) -> list[Problem]:
 
 
 def machine_problems(plan: CutPlan) -> list[Problem]:
-    """Warn about a material that the chosen machine is not known to cut, or that is too thick for it."""
+    """Warn about a material that is too thick for the chosen machine, or unknown to it."""
     machine, material = plan.machine, plan.material
     if plan.chosen_machine is None or machine.takes(material):
         return []

@@ -1,4 +1,4 @@
-"""Room for centred connectors: the ratios of a design move a little, and its silhouette stays.
+"""Room for centred connectors: ratios of a design move a little, its silhouette stays.
 
 Where the ratio of a void is near 1, the connectors on both sides of its slit face each other and cannot both turn on
 their nodes: a cut takes no material away, so each has to lie beside it, and panels touch while the void is still open
@@ -126,7 +126,7 @@ def _programme(
 
 
 def long_enough(slits: FloatArray, spans: FloatArray) -> BoolArray:
-    """Whether slits (S,), mm, are long enough for two connectors and two ends, all of spans (S,), mm."""
+    """Whether slits (S,), mm, hold two connectors and two ends of spans (S,), mm."""
     needed = FACING_SPANS + 2.0 * (HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0]))
     enough: BoolArray = slits >= needed * spans
     return enough
@@ -196,7 +196,7 @@ class _Programme:
         return float(self._missing(self._design, self._z, 1.0).max(initial=0.0)) <= MET_MM
 
     def changed_share(self, design: Deployment) -> float:
-        """By how much the closed outline differs from the design's after the best similarity, of its area."""
+        """Share of its area by which the closed outline differs after the best similarity."""
         off = self._off(design)
         rest = off - self._similar @ np.linalg.lstsq(self._similar, off, rcond=None)[0]
         x, y = self._outline
@@ -204,7 +204,7 @@ class _Programme:
         return float(np.abs(rest / self._weight) @ self._length) / area
 
     def _off(self, design: Deployment) -> FloatArray:
-        """How far (L,), mm, the closed outline lies off the design's, weighted by the outline's length there."""
+        """Weighted distances (L,), mm, of the closed outline off the design's."""
         off: FloatArray = np.sum((self._closed(design.compact.T) - self._outline) * self._normal, axis=0)
         return off
 
@@ -217,12 +217,12 @@ class _Programme:
         return closed
 
     def _near(self, design: Deployment, share: float) -> Clearances:
-        """What comes too near to what across a panel."""
+        """Clearances across panels that are too small."""
         spans = share * self._hinge_spans
         return clearances(self._scale * design.compact, self._table, spans, self._rim, self._loop, SPARE_MM)
 
     def _missing(self, design: Deployment, z: FloatArray, share: float) -> FloatArray:
-        """What is missing (N,), mm, to the distances that slits need: facing connectors, their ends, their slants."""
+        """Lengths (N,), mm, that slits lack: between facing connectors, at ends, for slants."""
         length = np.linalg.norm(self._run(design), axis=1)
         apart, lean = self._side * np.tanh(0.5 * z), self._lean(design)
         wanted = np.where(self._facing > 0.0, share * self._facing * self._facing_spans(design) + SPARE_MM, -math.inf)
@@ -233,7 +233,7 @@ class _Programme:
         return np.concatenate([wanted - length * apart, room, self._hinge_spans[self._there] * (lean - MOST_SLANTED)])
 
     def _falls(self, design: Deployment, z: FloatArray, share: float) -> tuple[SparseJacobian, FloatArray]:
-        """How what is missing (N,) falls as nodes move, and, of what slits need, as their own ratios grow (2 S,)."""
+        """Derivatives of lacking lengths (N,) by nodes, and of slits by their own ratios (2 S,)."""
         run = self._run(design)
         length = np.linalg.norm(run, axis=1)
         along = self._scale * run / length[:, None]
@@ -257,7 +257,7 @@ class _Programme:
         return run
 
     def _facing_spans(self, design: Deployment) -> FloatArray:
-        """How many spans (S,) facing connectors are apart: more where a slit leans over the other one's bow."""
+        """Spans (S,) between facing connectors: more where a slit leans over the other's bow."""
         table, nodes = self._table, design.compact
         along = directions(nodes[table.ends])
         away = along[table.hinge_cut] * np.where(table.hinge_end == 0, 1.0, -1.0)[:, None]
@@ -269,7 +269,7 @@ class _Programme:
         return np.where(sine > LEANING, spans, FACING_SPANS)
 
     def _worst_ends(self, lean: FloatArray) -> tuple[IntArray, IntArray]:
-        """Slits (P,), and of each the end (P,), among hinges with a connector, whose turn needs more room."""
+        """Slits (P,), and of each the end (P,) with a connector whose turn needs more room."""
         ends = np.flatnonzero(self._table.hinge_cut[self._there] < self._table.slit_count)
         turns = shortest_turn(np.minimum(lean[ends], MOST_SLANTED))
         # Of both ends the one that needs more comes last, and stays.
@@ -341,7 +341,7 @@ def _crossed(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _least(curvature: FloatArray, pull: FloatArray, falls: FloatArray, missing: FloatArray) -> FloatArray:
-    """The y with the least y.curvature.y / 2 + pull.y of those with falls y >= missing, as nearly as that can be."""
+    """The y of least y.curvature.y / 2 + pull.y with falls y >= missing, as nearly as possible."""
     root = cholesky(curvature, lower=True)
     start = solve_triangular(root, pull, lower=True)
     rows = solve_triangular(root, falls.T, lower=True).T

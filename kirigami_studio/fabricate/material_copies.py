@@ -8,6 +8,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+from kirigami_studio.fabricate.machine import Machine, material_on
 from kirigami_studio.fabricate.material import SHELF, Construction, Material, find_material, with_entries_of_now
 from kirigami_studio.foundation.errors import FabricationError
 
@@ -36,7 +37,7 @@ def delete_copy(key: str) -> None:
     SHELF.delete(key)
 
 
-def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Material:
+def changed_copy(source: str, key: str, changes: Mapping[str, object], machine: Machine | None = None) -> Material:
     """An uncalibrated copy of a material under a new key (or the same) with some entries changed; not saved yet.
 
     Parameters
@@ -46,6 +47,8 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
     key : str
     changes : mapping of field name to value
         Text is read as the field's type.
+    machine : Machine, optional
+        Whose kind the copy gets its figures for; those that the material has by itself unless given.
 
     Raises
     ------
@@ -53,6 +56,7 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
         No such material or field, or a value that makes no sense.
     """
     original = find_material(source)
+    original = original if machine is None else material_on(original, machine)
     values = SHELF.typed(with_entries_of_now(changes))
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"

@@ -175,9 +175,9 @@ class CutOptions:
         default=1,
         metadata=Setting(
             about=mark(
-                "Copies of the sheet in one file, in rows (1 to {most}); below 1: as many as fit on the material's bed."
+                "Copies of the sheet in one file, in rows (1 to {most}); below 1: as many as fit on the machine's bed."
             ),
-            help="copies of the sheet in one file, in rows; fit: as many as fit on the material's bed",
+            help="copies of the sheet in one file, in rows; fit: as many as fit on the machine's bed",
             least=AS_MANY_AS_FIT,
             most=MOST_COPIES,
             code="copies.number",

@@ -1,7 +1,7 @@
-"""Values in typed TOML files: bundled ones in a folder of ``resources``, and the user's own in a folder beside them.
+"""Values in typed TOML files, bundled ones and the user's own.
 
-Materials and machines are kept this way.  The stem of a file is the key; an own value with the key of a bundled one
-wins over it.
+Bundled ones lie in a folder of ``resources``, own ones in a folder of the user's settings.  Materials and machines are
+kept this way.  The stem of a file is the key; an own value with the key of a bundled one wins over it.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class Shelf(Generic[Item]):
         return Contents(items, frozenset(own), tuple(faults))
 
     def find(self, name: str) -> Item:
-        """Return the value with this key or full name (capitals do not matter); a key wins over a name.
+        """Return the value with this key, or else with this full name, in any case.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class Shelf(Generic[Item]):
         return key
 
     def save(self, item: Item) -> Path:
-        """Save an own value under its key; one of the same key is replaced, a bundled one stays and is hidden.
+        """Save an own value under its key, in the place of an own one and before a bundled one.
 
         Raises
         ------

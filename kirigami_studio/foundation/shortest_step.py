@@ -1,4 +1,4 @@
-"""Quadratic programmes of many conditions of which few bind: the shortest step that meets them.
+"""The shortest step that meets many conditions of which few bind: a quadratic programme.
 
 Of all steps u with rows u >= asked the shortest is looked for (Lawson and Hanson, Solving Least Squares Problems, 1974,
 ch. 23); any other convex cost is a length in variables that make its second derivative 1.  Where conditions contradict

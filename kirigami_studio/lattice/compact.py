@@ -8,7 +8,7 @@ therefore a convex combination of the two ends of the slit it lies on,
 
 which is the paper's local rule (Eq. 2) with the angles of the parity rule (Eq. 1) at phi = pi.  The nodes on the
 sheet's edge are given: an M-matrix with two entries a row, non-singular for every x > 0.  It replaces the paper's
-marching, see ``marching`` for that reference.
+marching, see ``lab.baselines.marching`` for that reference.
 """
 
 from __future__ import annotations

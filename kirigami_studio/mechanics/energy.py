@@ -58,7 +58,6 @@ class NetworkEnergy:
         self._arms = points - centres[joints.panels]
         span = points[:, 1] - points[:, 0]
         self._slender = np.flatnonzero(joints.slender)
-        self._junction = np.flatnonzero(~joints.slender)
         self._axis = np.where(joints.slender, np.angle(span), joints.axis)
         self.rest: ComplexArray = span * np.exp(-1j * self._axis)
         self.freedoms: IntArray = (3 * joints.panels[:, :, None] + np.arange(3)).reshape(len(joints), SIX)

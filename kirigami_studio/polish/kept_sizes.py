@@ -1,4 +1,4 @@
-"""The last steps of a fit with a least panel size: every edge and neck keeps it, at the least cost of the match.
+"""Last steps of a fit with a least panel size: every edge and neck keeps it.
 
 The penalty in the objective leaves sizes a little below the least one, because the match goes on pulling.  Here each
 step s solves the quadratic problem
@@ -115,7 +115,7 @@ class _SizeDescent:
         return float(self._sizes(self.here).min()) >= self.least + KEPT
 
     def run(self, steps: int, cancel: Callable[[], bool], *, sizes_alone: bool) -> None:
-        """Take at most so many steps, until all sizes are kept and, unless they alone count, no step gains much."""
+        """Take at most so many steps, until all sizes are kept and no step gains much."""
         damping, weight = DAMPING, 0.0
         for _ in range(steps):
             if cancel() or (sizes_alone and self.is_kept):
@@ -142,7 +142,7 @@ class _SizeDescent:
         return slopes
 
     def _taken(self, step: FloatArray, weight: float, sizes_alone: bool) -> bool:
-        """Take as much of a step as lowers the merit and leaves the sheet clear of itself; False where nothing does."""
+        """Take as much of a step as lowers the merit and keeps clear; False where nothing does."""
         before = self._merit(self.here, weight, sizes_alone)
         for part in PARTS:
             trial = self._moved(part * step)
@@ -255,7 +255,7 @@ class _SizeProblem:
         return whole(step), float(multipliers[pushing.number < self.added.size].max(initial=0.0))
 
     def _passed(self, step: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """The limits that a step passes: their numbers (C,), and as conditions (C, V + P) that ask for (C,)."""
+        """Limits that a step passes: their numbers (C,), and as conditions (C, V + P) of (C,)."""
         bounds, basis = self.bounds, self.bounds.basis
         moved = self.shape + basis.moved(step[: basis.size])
         over, under = moved > bounds.high + VIOLATED, moved < bounds.low - VIOLATED

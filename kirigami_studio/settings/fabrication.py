@@ -89,17 +89,6 @@ class FabricationSettings:
             option="--width-mm",
         ).metadata,
     )
-    material: str = field(
-        default=DEFAULT_PRESET,
-        metadata=Setting(
-            help="material, see 'kirigami-studio materials'",
-            code="settings.material_not_a_name",
-            always_written=True,
-            undo=mark("Change the material"),
-            spoken=mark("Material preset"),
-            option="--material",
-        ).metadata,
-    )
     machine: str = field(
         default="",
         metadata=Setting(
@@ -110,6 +99,17 @@ class FabricationSettings:
             undo=mark("Change the machine"),
             spoken=mark("Machine"),
             option="--machine",
+        ).metadata,
+    )
+    material: str = field(
+        default=DEFAULT_PRESET,
+        metadata=Setting(
+            help="material, see 'kirigami-studio materials'",
+            code="settings.material_not_a_name",
+            always_written=True,
+            undo=mark("Change the material"),
+            spoken=mark("Material preset"),
+            option="--material",
         ).metadata,
     )
     connector_mm: float | None = field(
@@ -293,7 +293,7 @@ def stored_material(settings: FabricationSettings) -> Material | None:
 
 
 def material_for(settings: FabricationSettings) -> Material:
-    """Return the material that the settings name, from the library or as the project has it, as their machine cuts it.
+    """Return the material of the settings as their machine cuts it, from library or project.
 
     Raises
     ------
@@ -308,12 +308,12 @@ def material_for(settings: FabricationSettings) -> Material:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine that the settings name; None where they name none, or one that is not there."""
+    """Return the machine of the settings; None where they name none, or an unknown one."""
     return machines().items.get(settings.machine) if settings.machine else None
 
 
 def machine_for(settings: FabricationSettings) -> Machine:
-    """Return the machine that cuts: the one that is named, else the one that the material is for.
+    """Return the machine of the settings, or else the one that their material is for.
 
     Raises
     ------
@@ -324,7 +324,7 @@ def machine_for(settings: FabricationSettings) -> Machine:
 
 
 def machine_changes(settings: FabricationSettings, machine: Machine) -> FabricationChange:
-    """The changes that come with a machine: its profile, and where it does not cut the material, one that it cuts."""
+    """The changes that come with a machine: its profile and, if need be, another material."""
     changes: FabricationChange = {"machine": machine.key, "profile": machine.profile}
     if machine.kind is not machine_for(settings).kind:
         changes |= {"connector_mm": None, "kerf_mm": None}  # those of the material on the other machine
@@ -337,9 +337,9 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
 def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
     """The changes that come with a material: its connector and kerf; its usual size for the usual one of the last."""
     changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
-    known = library().materials
-    before, after = known.get(settings.material), known.get(key)
-    if before is None or after is None:
+    try:
+        before, after = material_for(settings), material_for(replace(settings, material=key))
+    except FabricationError:
         return changes
     if settings.opened_mm == before.sheet_mm:
         changes["opened_mm"] = after.sheet_mm
@@ -349,7 +349,9 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
 
 
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: the given material, else one that the given machine cuts, at its usual size.
+    """Settings without a project: with the given material, or one that the machine cuts.
+
+    The width is the material's usual one unless given.
 
     Raises
     ------

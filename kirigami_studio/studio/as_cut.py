@@ -155,12 +155,12 @@ class AsCut:
         return tr("closes") if self.phi < CLOSE_TO else tr("opens to {phi:.0f}°", phi=math.degrees(self.phi))
 
     def to_json(self) -> dict[str, object]:
-        """For the command line: the jam, the match as cut (null where it is not known) and the largest strain."""
+        """For the command line: jam, match as cut (null where it is not known), largest strain."""
         return {**jam_json(self), "iou": self.iou, "max_strain": self.strain}
 
 
 def jam_json(found: AsCut | None) -> dict[str, object]:
-    """Where a sheet jams and how that is known, for every JSON that tells it; nulls where nothing is known."""
+    """Where a sheet jams and how that is known, for every JSON; nulls where nothing is known."""
     if found is None:
         return {"jam_deg": None, "jam_from": None}
     return {"jam_deg": found.jam_deg, "jam_from": found.source.value}

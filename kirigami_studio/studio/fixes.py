@@ -17,19 +17,21 @@ from types import MappingProxyType
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem
+from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
@@ -91,7 +93,7 @@ class Fix:
 
     @property
     def line(self) -> str:
-        """What to do, and what is then to be expected."""
+        """The change, and the verdict that it leads to."""
         return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
@@ -148,7 +150,7 @@ class Advice:
         return tuple(fix.line for fix in self.fixes)
 
     def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """A verdict with each fix below the worst problem that it solves; fixes that solve none come last."""
+        """A verdict with fixes: each below the worst problem that it solves, others at the end."""
         told: list[str] = [verdict.words]
         left = list(self.fixes)
         for problem in verdict.problems:
@@ -175,6 +177,7 @@ def find_fixes(
     verdict: Verdict,
     others: Mapping[str, Candidate] = MappingProxyType({}),
     coarser: Iterable[tuple[Candidate, ...]] = (),
+    target: Outline | None = None,
 ) -> Generator[None, None, Advice]:
     """Look for changes that help; yields between them, for others to have their turn.
 
@@ -190,19 +193,17 @@ def find_fixes(
         Other designs of the document by their names, best first.
     coarser : iterable of tuple of Candidate
         Designs for the same target on coarser grids, best first; made when they are asked for.
+    target : Outline, optional
+        For the match as cut.
 
     Raises
     ------
     FabricationError
         No such material.
     """
-    search = _Search(verdict, material_for(settings))
+    search = _Search(verdict, material_for(settings), target)
     if not candidate.score.feasible and candidate.trim is None:
         # However it is cut, its panels overlap.
-        yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
-        return search.advice()
-    if not verdict.of_the_sheet:
-        # The sheet is well made; only another design matches better.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
         return search.advice()
     single = _single_changes(candidate, settings, search.material, verdict)
@@ -233,6 +234,7 @@ class _Search:
 
     verdict: Verdict
     material: Material
+    target: Outline | None
     found: list[Fix] = field(default_factory=list)
     jamming: list[_Change] = field(default_factory=list)
     seen: list[tuple[Candidate, FabricationSettings]] = field(default_factory=list)
@@ -242,12 +244,12 @@ class _Search:
 
     @property
     def ready(self) -> list[Fix]:
-        """Fixes after which nothing is wrong with the sheet."""
-        return [fix for fix in self.found if not fix.verdict.of_the_sheet]
+        """Fixes after which the sheet is ready to cut."""
+        return [fix for fix in self.found if fix.verdict.ok]
 
     def advice(self) -> Advice:
         """The best that were found."""
-        fixes = sorted(self.found, key=lambda fix: bool(fix.verdict.of_the_sheet))[:MOST_FIXES]
+        fixes = sorted(self.found, key=lambda fix: not fix.verdict.ok)[:MOST_FIXES]
         cuts = [settings for _, settings in self.seen]
         connectors = [self._connector_mm(settings) for settings in cuts] or [0.0]
         widths = [settings.width_mm for settings in cuts] or [0.0]
@@ -301,10 +303,10 @@ class _Search:
             return
         yield
         self.closed += 1
-        as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
+        as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm, self.target)
         after = judge(candidate, plan, report, as_cut)
         if isinstance(as_cut, AsCut) and after.better_than(self.verdict):
-            if not after.of_the_sheet and change.note.code != "fix.material":
+            if after.ok and change.note.code != "fix.material":
                 self.kinds.add(change.note.code)
             note = _told(change.note, self.verdict, as_cut)
             left = {problem.code for problem in after.problems}
@@ -435,8 +437,9 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors."""
-    for key, material in library().materials.items():
+    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    machine = named_machine(settings)
+    for key, material in (library().materials if machine is None else cuttable(machine)).items():
         if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)

@@ -607,7 +607,7 @@ def fixing(
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
     coarser = () if run is None else coarser_designs(request.candidate, run)
-    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser)
+    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser, request.target)
     yield from in_turns(steps, cancel)
 
 

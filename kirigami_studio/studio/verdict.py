@@ -1,4 +1,4 @@
-"""The verdict on a design: does it match, does it fit the material, does it close as cut, are its files right.
+"""The verdict on a design: does it match, fit the material, close as cut; are its files right.
 
 One value for a design and the settings that it is cut with, made of what reading its files back found, of the check of
 its cut plan, of how the sheet does as cut, and of what the material bears.  Window, report, record, command line and
@@ -74,6 +74,8 @@ LITTLE_LOST = 0.02
 HALF_WAY = 0.5
 #: Of a sheet that comes within a few degrees of its angle, or loses hardly any match.
 NEARLY = "as_cut.nearly"
+#: What a close look lets pass: ranking counts the match that is lost.
+BEARABLE = frozenset({NEARLY, "as_cut.loses_match"})
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
@@ -106,7 +108,7 @@ class Question(Enum):
     FILES = "files"  #: do its files read back as planned
 
 
-class State(Enum):
+class AnswerState(Enum):
     """How a question is answered; the values are the names in JSON."""
 
     GOOD = "good"
@@ -117,25 +119,25 @@ class State(Enum):
 
 #: What each answer is called; how a sheet closes has its own words.
 _ANSWERS = {
-    (Question.MATCHES, State.GOOD): mark("matches"),
-    (Question.MATCHES, State.CARE): mark("matches roughly"),
-    (Question.MATCHES, State.BAD): mark("does not match"),
-    (Question.MATCHES, State.OPEN): mark("match not known"),
-    (Question.FITS, State.GOOD): mark("fits the material"),
-    (Question.FITS, State.CARE): mark("hardly fits the material"),
-    (Question.FITS, State.BAD): mark("does not fit the material"),
-    (Question.FITS, State.OPEN): mark("material not checked"),
-    (Question.CLOSES, State.GOOD): mark("closes"),
-    (Question.CLOSES, State.CARE): mark("closing not known"),
-    (Question.CLOSES, State.BAD): mark("overlaps itself"),
-    (Question.CLOSES, State.OPEN): mark("not closed yet"),
-    (Question.FILES, State.GOOD): mark("files are right"),
-    (Question.FILES, State.CARE): mark("files need a look"),
-    (Question.FILES, State.BAD): mark("files are wrong"),
-    (Question.FILES, State.OPEN): mark("no files read yet"),
+    (Question.MATCHES, AnswerState.GOOD): mark("matches"),
+    (Question.MATCHES, AnswerState.CARE): mark("matches roughly"),
+    (Question.MATCHES, AnswerState.BAD): mark("does not match"),
+    (Question.MATCHES, AnswerState.OPEN): mark("match not known"),
+    (Question.FITS, AnswerState.GOOD): mark("fits the material"),
+    (Question.FITS, AnswerState.CARE): mark("hardly fits the material"),
+    (Question.FITS, AnswerState.BAD): mark("does not fit the material"),
+    (Question.FITS, AnswerState.OPEN): mark("material not checked"),
+    (Question.CLOSES, AnswerState.GOOD): mark("closes"),
+    (Question.CLOSES, AnswerState.CARE): mark("closing not known"),
+    (Question.CLOSES, AnswerState.BAD): mark("overlaps itself"),
+    (Question.CLOSES, AnswerState.OPEN): mark("not closed yet"),
+    (Question.FILES, AnswerState.GOOD): mark("files are right"),
+    (Question.FILES, AnswerState.CARE): mark("files need a look"),
+    (Question.FILES, AnswerState.BAD): mark("files are wrong"),
+    (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
-_MATCH_FINDINGS = frozenset({"as_cut.matches_roughly", "as_cut.does_not_match"})
+_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
 _CLOSING_FINDINGS = frozenset(
     {
         NEARLY,
@@ -162,17 +164,19 @@ def question_of(finding: Note) -> Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class VerdictAnswer:
     """The answer to a question, in a word."""
 
     question: Question
-    state: State
+    state: AnswerState
     word: str
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is to be expected of a design that is cut, and why.
+    """Expectations of a design that is cut, and the reasons.
+
+    A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
 
     Attributes
     ----------
@@ -215,29 +219,32 @@ class Verdict:
 
     @property
     def words(self) -> str:
-        """The level, and that it is an estimate where it is one; nobody expects what was not looked for."""
+        """The level, marked where it is an estimate."""
         if not self.is_estimate:
             return self.level.words
         return tr("{level} (estimate)", level=self.level.words) if self.is_checked else tr("Not checked yet")
 
     @property
     def is_checked(self) -> bool:
-        """Whether there is a verdict at all: a sheet without a problem that nobody has closed has none."""
+        """Whether there is a verdict: a sheet without a problem that nobody has closed has none."""
         return self.as_cut is not None or bool(self.problems) or not self.is_estimate
 
     @property
-    def answers(self) -> tuple[Answer, ...]:
+    def answers(self) -> tuple[VerdictAnswer, ...]:
         """To each question one, in their order."""
         return tuple(self.answer(question) for question in Question)
 
-    def answer(self, question: Question) -> Answer:
+    def answer(self, question: Question) -> VerdictAnswer:
         """The answer to a question: by the worst problem that is about it."""
         found = [problem for problem in self.problems if question_of(problem) is question]
-        state = _STATES[_level_of(found)] if found or self._knows(question) else State.OPEN
+        state = _STATES[_level_of(found)] if found or self._knows(question) else AnswerState.OPEN
+        if question is Question.MATCHES and self.match is not None:
+            own = AnswerState.GOOD if self.match >= MATCHES else AnswerState.CARE
+            state = AnswerState.BAD if self.match < MATCHES_ROUGHLY else max(state, own, key=list(AnswerState).index)
         word = tr(_ANSWERS[question, state])
         if question is Question.CLOSES and self.as_cut is not None and "rank.not_feasible" not in _codes(found):
             word = self.as_cut.word
-        return Answer(question, state, word)
+        return VerdictAnswer(question, state, word)
 
     def _knows(self, question: Question) -> bool:
         """Whether somebody has looked for the answer."""
@@ -249,13 +256,8 @@ class Verdict:
         }[question]
 
     @property
-    def of_the_sheet(self) -> tuple[Problem, ...]:
-        """Problems of making it, however well the design matches."""
-        return tuple(problem for problem in self.problems if question_of(problem) is not Question.MATCHES)
-
-    @property
     def lines(self) -> tuple[str, ...]:
-        """The list that is shown everywhere: its level, then every problem, the answers, and every note."""
+        """The list that is shown everywhere: level, problems, answers, notes."""
         problems, notes = ([note.text for note in part] for part in (self.problems, self.notes))
         return (self.words, *problems, self.summary, *notes)
 
@@ -270,12 +272,8 @@ class Verdict:
         return ", ".join(words.values())
 
     def better_than(self, other: Verdict) -> bool:
-        """Whether less is to be feared: of the sheet, or of a sheet that is as good, of its match."""
-        return self._fears < other._fears
-
-    @property
-    def _fears(self) -> tuple[int, int]:
-        return RANK[_level_of(self.of_the_sheet)], RANK[self.level]
+        """Whether less is to be feared."""
+        return RANK[self.level] < RANK[other.level]
 
     def to_json(self) -> dict[str, object]:
         """For the record and the command line."""
@@ -302,7 +300,7 @@ class Verdict:
         }
 
 
-_STATES = {Level.READY: State.GOOD, Level.CARE: State.CARE, Level.FAILS: State.BAD}
+_STATES = {Level.READY: AnswerState.GOOD, Level.CARE: AnswerState.CARE, Level.FAILS: AnswerState.BAD}
 
 
 def _codes(found: Iterable[Note]) -> set[str]:
@@ -342,7 +340,7 @@ def assess(
     planned: tuple[CutPlan, PlanReport] | None = None,
     verifications: Sequence[Verification] = (),
 ) -> Assessment:
-    """Plan the cuts of a design, check them, close the sheet on its connectors, and judge, all in one go.
+    """Plan the cuts of a design, check them, close the sheet, and judge, all in one go.
 
     Parameters
     ----------
@@ -374,7 +372,7 @@ def assess(
 def closed_as_cut(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
 ) -> AsCut | str:
-    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
+    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that is open."""
     return result_of(closing_as_cut(candidate, deployment, plan, width_mm, target))
 
 
@@ -392,7 +390,7 @@ def closing_as_cut(
 
 @dataclass(frozen=True, slots=True)
 class CloseLook:
-    """What a close look at a design found.
+    """Findings of a close look at a design.
 
     Attributes
     ----------
@@ -408,14 +406,14 @@ class CloseLook:
 
     @property
     def loss(self) -> float:
-        """Worth (IoU) that the design loses by being cut: match, and for the stretch of its connectors."""
+        """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
         return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
-    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors, in one go."""
+    """Plan and check the cuts of a design, and close it on its connectors, in one go."""
     return result_of(looking(candidate, settings, target))
 
 
@@ -425,7 +423,7 @@ def looking(
     target: Outline | None = None,
     cancel: Callable[[], bool] = lambda: False,
 ) -> Generator[None, None, CloseLook]:
-    """Look at a design closely, see :func:`look_at`; yields between the steps, for others to have their turn.
+    """Look at a design closely, see :func:`look_at`; yields between the steps, for other jobs.
 
     Raises
     ------
@@ -441,13 +439,13 @@ def looking(
         return CloseLook(Note(error.code, error.fields))
     yield
     report = check_plan(plan, phi=candidate.final_phi)
-    found = judge(candidate, plan, report, None).of_the_sheet
-    small = next((problem for problem in found if problem.code in TOO_SMALL), None)
-    if _level_of(found) is Level.FAILS or small is not None:
-        return CloseLook(small or found[0])
+    found = judge(candidate, plan, report, None)
+    small = next((problem for problem in found.problems if problem.code in TOO_SMALL), None)
+    if found.level is Level.FAILS or small is not None:
+        return CloseLook(small or found.problems[0])
     as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
-    new = (one for one in judge(candidate, plan, report, as_cut).of_the_sheet if one not in found)
-    refusal = next((problem for problem in new if problem.code != NEARLY), None)
+    new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
+    refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
 
 
@@ -463,7 +461,7 @@ def judge(
     as_cut: AsCut | str | None,
     verifications: Sequence[Verification] = (),
 ) -> Verdict:
-    """Judge a sheet by everything that is known of it.
+    """Judge a sheet by all that is known of it.
 
     Parameters
     ----------
@@ -477,7 +475,6 @@ def judge(
         Of files that were written of it.
     """
     known = as_cut if isinstance(as_cut, AsCut) else None
-    match = match_of(candidate, known)
     problems = [
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
@@ -485,7 +482,7 @@ def judge(
         *_of_wishes(plan),
         *_of_jam(known),
         *_of_strain(plan, report, known),
-        *_of_match(candidate, match),
+        *_of_match(known),
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
@@ -499,7 +496,7 @@ def judge(
         tuple(note for note in _once(notes) if note.text not in told),
         None if isinstance(as_cut, str) else Source.ESTIMATE if known is None else known.source,
         known,
-        match,
+        match_of(candidate, known),
         bool(verifications),
     )
 
@@ -507,7 +504,7 @@ def judge(
 def expected(
     candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None, material: Material | None = None
 ) -> Verdict:
-    """An estimate of the verdict, made in no time for designs that nobody has planned the cuts of.
+    """An estimate of the verdict on a design whose cuts nobody has planned.
 
     Parameters
     ----------
@@ -519,7 +516,6 @@ def expected(
     material : Material, optional
         For the strain that its connectors bear.
     """
-    match = match_of(candidate, as_cut)
     refusal = ranking.refusals.get(candidate)
     problems = [
         *_of_design(candidate),
@@ -527,13 +523,13 @@ def expected(
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
         *([] if as_cut is None or material is None else _of_expected_strain(material, as_cut)),
-        *_of_match(candidate, match),
+        *_of_match(as_cut),
     ]
-    return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match)
+    return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match_of(candidate, as_cut))
 
 
 def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
-    """IoU that the target is shown with: as cut where that is known, else as designed, trimmed if it is."""
+    """IoU with the target: as cut where that is known, else as designed and trimmed."""
     if as_cut is not None and as_cut.iou is not None:
         return as_cut.iou
     return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
@@ -568,7 +564,7 @@ def _of_design(candidate: Candidate) -> list[Problem]:
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
-    """What the check of a plan says of small panels, known from the design's own sizes."""
+    """Panels that are too small, by the design's own sizes."""
     if ranking.wide_enough(candidate):
         return []
     size = candidate.score.evenness.least_feature_mm(ranking.width_mm)
@@ -576,24 +572,24 @@ def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
 
 
 def _of_refusal(refusal: Note) -> list[Problem]:
-    """Why a close look refused a design; ranking alone by an estimate, or not at all, is no finding about it."""
+    """The finding of a close look; a rank by an estimate, or without a look, is none."""
     if refusal.code in ("rank.jams", "rank.not_looked_at"):
         return []
     return [refusal if isinstance(refusal, Problem) else Problem(refusal.code, refusal.fields, Severity.ERROR)]
 
 
-def _of_match(candidate: Candidate, match: float) -> list[Problem]:
-    if match >= MATCHES:
+def _of_match(as_cut: AsCut | None) -> list[Problem]:
+    """Match that is lost by cutting; that of the design itself is an answer, and no problem."""
+    if as_cut is None or as_cut.iou is None or as_cut.ideal_iou is None or (as_cut.lost or 0.0) <= LITTLE_LOST:
         return []
-    designed = match_of(candidate, None)
-    values = {"match_percent": 100.0 * match, "designed_percent": 100.0 * designed}
-    if match >= MATCHES_ROUGHLY:
-        return [Problem.warning("as_cut.matches_roughly", **values, least_percent=100.0 * MATCHES)]
-    return [Problem.error("as_cut.does_not_match", **values, least_percent=100.0 * MATCHES_ROUGHLY)]
+    values = {"match_percent": 100.0 * as_cut.iou, "designed_percent": 100.0 * as_cut.ideal_iou}
+    if as_cut.iou < MATCHES_ROUGHLY <= as_cut.ideal_iou:
+        return [Problem.error("as_cut.does_not_match", **values, least_percent=100.0 * MATCHES_ROUGHLY)]
+    return [Problem.warning("as_cut.loses_match", **values)]
 
 
 def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut | None) -> list[Problem]:
-    """What two readers found in the files, once where several have it, and jams that only a file shows."""
+    """Findings of two readers, once where several files have them, and jams that only a file shows."""
     names: dict[tuple[Severity, str], list[str]] = {}
     jams = []
     for one in verifications:
@@ -630,7 +626,7 @@ def _of_jam(as_cut: AsCut | None) -> list[Problem]:
 
 
 def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
-    """One sentence for connectors that break, by the larger of the plan's estimate and the simulated strain."""
+    """One problem for connectors that break, by the larger of planned and simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
     found = [{name: problem.fields[name] for name in STRAIN_FIELDS} for problem in planned]
     if as_cut is not None and as_cut.survival.breaks:

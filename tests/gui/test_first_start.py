@@ -29,10 +29,10 @@ class Motionless(QProxyStyle):
 @pytest.fixture
 def begun(window: MainWindow, until: Until, tmp_path: Path) -> MainWindow:
     """The first start, with the heart and its sample."""
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    window.controller.start_with("heart")
-    window.connections.first_start.begin()
-    until(lambda: window.stage.empty.ready and window.controller.document.target is not None)
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    window.services.targeting.start_with("heart")
+    window.first_start.begin()
+    until(lambda: window.stage.empty.ready and window.session.document.target is not None)
     return window
 
 
@@ -46,7 +46,7 @@ def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtB
     stood = empty.view.phi
     QApplication.processEvents()
     assert empty.view.phi == stood
-    assert begun.controller.stage is None and begun.controller.document.candidates == ()  # it is no design
+    assert begun.session.stage is None and begun.session.document.candidates == ()  # it is no design
 
 
 def test_that_the_sample_stands_still_where_motion_is_reduced(begun: MainWindow, tmp_path: Path) -> None:
@@ -63,12 +63,12 @@ def test_that_the_sample_gives_way_to_a_design_and_comes_back_without_one(
     begun: MainWindow, project_file: Path, until: Until
 ) -> None:
     stage = begun.stage
-    begun.controller.open_project(project_file)
-    until(lambda: begun.controller.stage is not None)
+    begun.services.project.open(project_file)
+    until(lambda: begun.session.stage is not None)
     assert stage.split.isVisible() and not stage.empty.isVisible() and not stage.empty.moving
     until(lambda: begun.fabrication.export.isEnabled())
-    begun.controller.new_project()
-    until(lambda: begun.controller.stage is None)
+    begun.services.project.new()
+    until(lambda: begun.session.stage is None)
     assert stage.empty.isVisible() and "target" in stage.empty.hint.text().lower() + stage.empty.headline.text()
 
 
@@ -86,34 +86,34 @@ def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     assert not question.isVisible()
     kept = preferences.load(tmp_path / "preferences.toml")
     assert kept.machine_asked and kept.material == key
-    fabrication = begun.controller.document.fabrication
-    assert fabrication.material == key and not begun.controller.history.unsaved
+    fabrication = begun.session.document.fabrication
+    assert fabrication.material == key and not begun.session.history.unsaved
     assert begun.fabrication.material.currentData() == key
     by_hand = key == "paper-hand"
     assert (fabrication.paper in ("a4", "letter")) is by_hand
     assert begun.fabrication.export.text() == ("Export PDF" if by_hand else "Export DXF")
-    begun.controller.new_project()
-    assert begun.controller.document.fabrication.material == key
-    begun.connections.first_start.begin()
+    begun.services.project.new()
+    assert begun.session.document.fabrication.material == key
+    begun.first_start.begin()
     assert not question.isVisible()
 
 
 def test_that_declining_is_an_answer_too(begun: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
     qtbot.mouseClick(begun.stage.empty.question.later, LEFT)
     assert preferences.load(tmp_path / "preferences.toml") == Preferences(machine_asked=True)
-    assert begun.controller.document.fabrication.material == Preferences().material
+    assert begun.session.document.fabrication.material == Preferences().material
 
 
 def test_that_an_answer_after_work_has_begun_is_one_step_back(
     begun: MainWindow, project_file: Path, until: Until
 ) -> None:
-    begun.controller.open_project(project_file)
-    until(lambda: begun.controller.stage is not None)
-    before = begun.controller.document.fabrication.material
-    begun.connections.first_start.choose("drag-knife")
-    assert begun.controller.document.fabrication.material == "drag-knife" and begun.controller.document.candidates
+    begun.services.project.open(project_file)
+    until(lambda: begun.session.stage is not None)
+    before = begun.session.document.fabrication.material
+    begun.first_start.choose("drag-knife")
+    assert begun.session.document.fabrication.material == "drag-knife" and begun.session.document.candidates
     begun.commands["undo"].trigger()
-    assert begun.controller.document.fabrication.material == before
+    assert begun.session.document.fabrication.material == before
 
 
 @pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900)])
@@ -136,4 +136,4 @@ def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot) 
     button = begun.stage.empty.question.buttons["by hand"]
     button.setFocus(Qt.FocusReason.TabFocusReason)
     qtbot.keyClick(button, Qt.Key.Key_Space)
-    assert begun.controller.document.fabrication.material == "paper-hand"
+    assert begun.session.document.fabrication.material == "paper-hand"

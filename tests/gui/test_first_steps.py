@@ -59,7 +59,7 @@ def test_that_the_tour_is_walked_and_left_by_keys(designed: MainWindow, qtbot: Q
 def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
     tour = designed.tour
     tour.start()
-    designed.controller.targeting.open("star")
+    designed.services.targeting.open("star")
     until(lambda: tour.at == 1)
     designed.commands["undo"].trigger()
     until(lambda: designed.gallery.view.model_.rowCount() == 3)
@@ -78,13 +78,13 @@ def test_that_the_tour_goes_on_when_the_user_does_the_thing(designed: MainWindow
 def test_that_a_tour_without_a_design_borrows_the_sample_opens_it_and_gives_it_back(
     window: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    window.controller.start_with("star")
-    until(lambda: window.controller.document.target is not None)
-    before = window.controller.document
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    window.services.targeting.start_with("star")
+    until(lambda: window.session.document.target is not None)
+    before = window.session.document
     tour, bar = window.tour, window.stage.deployment
     tour.start()
-    until(lambda: window.controller.stage is not None)
+    until(lambda: window.session.stage is not None)
     for _ in range(3):
         qtbot.mouseClick(tour.callout.next, LEFT)
     assert tour.at == 3 and bar.playing and bar.slider.phi == pytest.approx(math.pi, abs=0.2)
@@ -92,36 +92,36 @@ def test_that_a_tour_without_a_design_borrows_the_sample_opens_it_and_gives_it_b
     qtbot.mouseClick(tour.callout.next, LEFT)
     assert tour.at == 4 and not bar.playing and bar.slider.phi == pytest.approx(0.0, abs=1e-3)
     tour.end()
-    assert window.controller.document == before and window.controller.stage is None
-    assert not window.controller.history.unsaved
+    assert window.session.document == before and window.session.stage is None
+    assert not window.session.history.unsaved
     assert preferences.load(tmp_path / "preferences.toml").tour_seen
 
 
 def test_that_a_tour_leaves_unsaved_work_and_a_changed_sample_alone(
     heart: MainWindow, until: Until, project_file: Path
 ) -> None:
-    tour, controller = heart.tour, heart.controller
-    assert controller.history.unsaved
+    tour, services = heart.tour, heart.services
+    assert services.session.history.unsaved
     tour.start()
-    assert not controller.queue.busy or controller.stage is None
+    assert not services.session.queue.busy or services.session.stage is None
     tour.end()
-    assert controller.document.target is not None and not controller.document.candidates
-    controller.history.mark_saved()
+    assert services.session.document.target is not None and not services.session.document.candidates
+    services.session.history.mark_saved()
     tour.start()
     until(heart.fabrication.export.isEnabled)
-    controller.fabrication.change(connector_mm=0.3)
+    services.fabrication.change(connector_mm=0.3)
     tour.end()
-    assert controller.document.candidates and controller.document.fabrication.connector_mm == 0.3
+    assert services.session.document.candidates and services.session.document.fabrication.connector_mm == 0.3
 
 
 def test_that_a_tour_ended_at_once_gives_the_sample_back_when_it_has_come(window: MainWindow, until: Until) -> None:
-    window.controller.start_with("star")
-    until(lambda: window.controller.document.target is not None)
-    before = window.controller.document
+    window.services.targeting.start_with("star")
+    until(lambda: window.session.document.target is not None)
+    before = window.session.document
     window.tour.start()
     window.tour.end()
-    until(lambda: not window.controller.queue.busy)
-    assert window.controller.document == before and window.controller.stage is None
+    until(lambda: not window.session.queue.busy)
+    assert window.session.document == before and window.session.stage is None
 
 
 def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: Until) -> None:
@@ -129,11 +129,11 @@ def test_that_esc_stops_a_run_before_it_ends_the_tour(heart: MainWindow, until: 
     tour.start()
     escape, cancel = tour._escape, heart.commands["cancel"]
     assert escape.isEnabled() and not cancel.isEnabled()
-    heart.controller.generation.generate()
+    heart.services.generation.generate()
     assert tour.at == 1 or tour.running
     assert cancel.isEnabled() and not escape.isEnabled()
     cancel.trigger()
-    until(lambda: not heart.controller.running)
+    until(lambda: not heart.services.run.running)
     assert escape.isEnabled()
     tour.end()
 
@@ -158,10 +158,10 @@ def test_that_a_bubble_lies_inside_and_beside_its_control(place: QRect) -> None:
 
 def test_that_the_sample_opens_and_is_saved_elsewhere(window: MainWindow, until: Until, files: object) -> None:
     window.commands["sample"].trigger()
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
-    document = window.controller.document
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
+    document = window.session.document
     assert document.target is not None and len(document.candidates) >= 6 and document.provenance["model_sha256"]
-    assert window.controller.path is None
+    assert window.session.path is None
     bundled = resource("examples", "heart.kiri").read_bytes()
     window.commands["save"].trigger()
     assert files.proposals == ["heart.kiri"]  # type: ignore[attr-defined]
@@ -202,19 +202,19 @@ def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWi
 
 def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     window.commands["theme"].trigger()
-    assert window.palette_ is DARK and preferences.load(kept).theme == "dark"
+    assert window.appearance.palette is DARK and preferences.load(kept).theme == "dark"
     assert not window.commands["theme_system"].isChecked()
     window.commands["theme_system"].trigger()
-    assert window.palette_ is LIGHT and preferences.load(kept).theme == "system"
+    assert window.appearance.palette is LIGHT and preferences.load(kept).theme == "system"
     window.commands["theme_system"].trigger()
     assert preferences.load(kept).theme == "light" and not window.commands["theme_system"].isChecked()
     preferences.save(replace(preferences.load(kept), theme="dark"), kept)
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     window.appearance.refresh()
-    assert window.palette_ is DARK
-    assert window.controller.document == Preferences().new_document()
+    assert window.appearance.palette is DARK
+    assert window.session.document == Preferences().new_document()
 
 
 @pytest.mark.parametrize("entry", ['theme = "pink"', "theme = 3", 'tour_seen = "yes"', "tour_seen = 1"])
@@ -225,7 +225,7 @@ def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
     kept.write_text(f"{entry}\n", encoding="utf-8")
     with pytest.raises(ProjectError, match=entry.split()[0]):
         preferences.load(kept)
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     assert entry.split()[0] in window.messages.messages[-1].sentence
     window.commands["theme"].trigger()
     assert kept.read_text(encoding="utf-8") == f"{entry}\n"
@@ -234,8 +234,8 @@ def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
 def test_that_the_tour_is_noted_beside_the_other_preferences(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
     preferences.save(Preferences("lightburn", theme="light"), kept)
-    window.controller.use_preferences(kept)
-    window.controller.preferences.note_tour()
+    window.services.preferences.use(kept)
+    window.services.preferences.note_tour()
     assert preferences.load(kept) == Preferences("lightburn", theme="light", tour_seen=True)
 
 

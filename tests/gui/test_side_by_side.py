@@ -39,12 +39,12 @@ def test_that_ctrl_click_compares_a_card_with_the_chosen_design(
     designed: MainWindow, designs: Document, qtbot: QtBot
 ) -> None:
     compare(designed, qtbot, 2)
-    assert designed.stage.comparing and designed.controller.document.chosen == 0
+    assert designed.stage.comparing and designed.session.document.chosen == 0
     assert pair(designed) == (designs.candidates[0], designs.candidates[2])
-    page, before = designed.stage.compare, designed.controller.history.undo_label
+    page, before = designed.stage.compare, designed.session.history.undo_label
     assert page.left.title.text().endswith("A1, chosen") and page.right.title.text() == "Design A3"
     assert designed.gallery.bar.compare.isChecked() and designed.commands["compare"].isChecked()
-    assert before is None and not designed.controller.history.unsaved
+    assert before is None and not designed.session.history.unsaved
 
 
 def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
@@ -53,7 +53,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
     compare(designed, qtbot, 1)
     one, other = pair(designed)
     page = designed.stage.compare
-    width = designed.controller.document.fabrication.width_mm
+    width = designed.session.document.fabrication.width_mm
     for side, mine, theirs in ((page.left, one, other), (page.right, other, one)):
         sizes = [width * least_panel_share(deploy(each.sheet.field)) for each in (mine, theirs)]
         values = [label.text() for label in side.values]
@@ -67,7 +67,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
         assert side.gaps[1].text() == f"{apart:+.0f}"
         assert side.gaps[2].text() == f"{sizes[0] - sizes[1]:+.2f}"
         assert side.gaps[4].text() == f"{mine.score.tv - theirs.score.tv:+.2f}"
-    designed.controller.fabrication.change(width_mm=2 * width)
+    designed.services.fabrication.change(width_mm=2 * width)
     assert page.left.values[2].text() == f"{2 * width * least_panel_share(deploy(one.sheet.field)):.2f} mm"
 
 
@@ -117,12 +117,12 @@ def test_that_swapping_chooses_the_other_design_and_undo_swaps_back(
     one, other, third = designs.candidates
     compare(designed, qtbot, 1)
     qtbot.mouseClick(designed.stage.compare.swap, LEFT)
-    assert pair(designed) == (other, one) and designed.controller.document.chosen == 1
+    assert pair(designed) == (other, one) and designed.session.document.chosen == 1
     qtbot.keyClick(designed, Qt.Key.Key_K, Qt.KeyboardModifier.ShiftModifier)
     assert pair(designed) == (one, other)
     designed.commands["undo"].trigger()
     assert pair(designed) == (other, one)
-    designed.controller.choose(third)
+    designed.services.chosen.choose(third)
     assert pair(designed) == (third, one)
 
 
@@ -148,7 +148,7 @@ def test_that_overlays_belong_to_both(designed: MainWindow, qtbot: QtBot) -> Non
 
 def test_that_the_comparison_ends_with_its_design(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
     compare(designed, qtbot, 1)
-    designed.controller.new_project()
+    designed.services.project.new()
     until(lambda: not designed.stage.comparing)
     qtbot.keyClick(designed, Qt.Key.Key_K)
     assert not designed.stage.comparing and not designed.commands["compare"].isChecked()
@@ -184,8 +184,8 @@ def test_that_sizes_are_those_of_the_sheet_that_each_design_is_cut_from(
     designed: MainWindow, designs: Document, qtbot: QtBot, until: Until
 ) -> None:
     """Before, both drawings had lengths of a sheet 100 mm wide, and "Smallest" was that of the chosen one."""
-    designed.controller.fabrication.set_opened_size(230.0)
-    document = designed.controller.document
+    designed.services.fabrication.set_opened_size(230.0)
+    document = designed.session.document
     widths = [cut_for(document, candidate).width_mm for candidate in document.candidates]
     assert len({round(width, 3) for width in widths}) == 3 and 100.0 not in widths
     compare(designed, qtbot, 2)
@@ -195,8 +195,8 @@ def test_that_sizes_are_those_of_the_sheet_that_each_design_is_cut_from(
         width = widths[document.candidates.index(candidate)]
         assert side.view.mm_per_unit == pytest.approx(entry.design.mm_per_world(width))
         assert side.values[2].text() == f"{width * least_panel_share(entry.design.deployment):.2f} mm"
-    designed.connections.all_designs.show(True)
-    table = designed.connections.all_designs.page
+    designed.presenters.all_designs.show(True)
+    table = designed.presenters.all_designs.page
     assert table is not None
     for candidate in document.candidates[:2]:
         table.table.toggle_compared(candidate)

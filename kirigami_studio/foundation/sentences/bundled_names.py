@@ -1,4 +1,4 @@
-"""Names and notes of what comes with the program, for translators: silhouettes, materials and machine profiles.
+"""Names and notes of silhouettes, materials and machine profiles, for translators.
 
 They are data, kept in files and records in English, and translated where they are shown.
 """

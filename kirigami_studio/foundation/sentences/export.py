@@ -1,4 +1,4 @@
-"""Sentences of ``export``, by the code of the problem: files that cannot be written, and what reading back finds."""
+"""Sentences of ``export``, by the code of the problem: files, and reading them back."""
 
 from __future__ import annotations
 

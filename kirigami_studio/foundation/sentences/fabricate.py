@@ -1,4 +1,4 @@
-"""Sentences of ``fabricate``, by the code of the problem: widths, materials, and what a check of a plan finds."""
+"""Sentences of ``fabricate``, by the code of the problem: widths, materials, checks."""
 
 from __future__ import annotations
 
@@ -291,8 +291,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A gap of {gap_mm:g} mm between copies is not wider than the kerf of {kerf_mm:g} mm. Make the gap wider."
     ),
     "copies.no_bed": mark(
-        "As many copies as fit were asked for, but the material does not know the bed of the machine: the file holds "
-        "one. Set the bed of your machine in the material, or ask for a number."
+        "As many copies as fit were asked for, but the bed of the machine is not known: the file holds one. Choose "
+        "your machine or enter its bed, or ask for a number."
     ),
     "copies.none_fits": mark(
         "Not one copy fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm; the file holds one."

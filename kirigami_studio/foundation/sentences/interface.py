@@ -1,4 +1,4 @@
-"""Sentences of the command line and the window, and of files and folders that cannot be used."""
+"""Sentences of command line and window, and of files and folders that cannot be used."""
 
 from __future__ import annotations
 

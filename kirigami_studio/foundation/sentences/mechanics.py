@@ -92,13 +92,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "as_cut.file_jams": mark(
         "The connectors read from {name:.80} lie where the sheet would jam, although the planned ones close."
     ),
-    "as_cut.matches_roughly": mark(
-        "It matches the target by {match_percent:.0f} % (as designed {designed_percent:.0f} %). Below "
-        "{least_percent:.0f} % a silhouette is only roughly that of its target."
+    "as_cut.loses_match": mark(
+        "As cut, it matches the target by {match_percent:.0f} % instead of {designed_percent:.0f} %."
     ),
     "as_cut.does_not_match": mark(
-        "It matches the target by {match_percent:.0f} % (as designed {designed_percent:.0f} %). Below "
-        "{least_percent:.0f} % a silhouette is another shape."
+        "As cut, it matches the target by {match_percent:.0f} % instead of {designed_percent:.0f} %. Below "
+        "{least_percent:.0f} % it is another shape."
     ),
     "as_cut.breaks": mark(
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "

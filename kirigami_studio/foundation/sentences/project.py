@@ -1,4 +1,4 @@
-"""Sentences of ``project``, by the code of the problem: documents, project files, preferences and recovery files."""
+"""Sentences of ``project``, by the code of the problem: documents, files, preferences."""
 
 from __future__ import annotations
 

@@ -159,7 +159,7 @@ class GalleryPresenter(QObject):
         found, verdicts = dict(self._estimates.known), self._estimates.verdicts
         found |= {candidate: one.as_cut for candidate, one in verdicts.items() if one.as_cut is not None}
         jams = {candidate: one.jam_phi for candidate, one in found.items()}
-        well = {candidate for candidate, one in verdicts.items() if not one.of_the_sheet}
+        well = {candidate for candidate, one in verdicts.items() if one.ok}
         refusals = {candidate: why for candidate, why in ranking.refusals.items() if candidate not in well}
         return replace(ranking, jam_phi={**ranking.jam_phi, **jams}, refusals=refusals)
 

@@ -10,21 +10,19 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, SignalInstance
-from PySide6.QtGui import QShortcut
+from PySide6.QtGui import QAction, QShortcut
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.empty_stage import moves
 from kirigami_studio.gui.widgets.callout import Callout, Ring
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.appearance import Appearance
+from kirigami_studio.gui.window.columns import Columns
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.project.document import Document
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
 Anchor = Callable[[], QWidget]
 
@@ -52,36 +50,36 @@ class Step:
     leave: Callable[[], None] | None = None
 
 
-def steps_of(window: MainWindow, controller: Controller) -> tuple[Step, ...]:
+def steps_of(columns: Columns, services: Services) -> tuple[Step, ...]:
     """The tour of one window, in the order of the work."""
-    stage, slider = window.stage, window.stage.deployment.slider
+    stage, slider = columns.stage, columns.stage.deployment.slider
     return (
         Step(
-            lambda: window.target,
+            lambda: columns.target,
             tr("Choose a target"),
             tr(
                 "Draw one (D), open a picture or drawing (Ctrl+O), or choose one from the library (Ctrl+L). Below it, "
                 "type how large the opened shape is to be."
             ),
-            (controller.targeting.replaced,),
+            (services.targeting.replaced,),
         ),
         Step(
-            lambda: window.run.generate,
+            lambda: columns.run.generate,
             tr("Generate designs"),
             tr(
                 "Choose the material, then Generate (Ctrl+G): the model makes several designs and fits each one to the "
                 "target."
             ),
-            (controller.run.started,),
+            (services.run.started,),
         ),
         Step(
-            lambda: window.gallery,
+            lambda: columns.gallery,
             tr("Compare"),
             tr(
                 "Designs arrive best first. Each card shows the match, how even the panels are, and the flat sheet. "
                 "Click one, or press PgDown."
             ),
-            (window.gallery.view.chosen,),
+            (columns.gallery.view.chosen,),
         ),
         Step(
             lambda: stage.deployment,
@@ -91,8 +89,8 @@ def steps_of(window: MainWindow, controller: Controller) -> tuple[Step, ...]:
                 "and pause. Contacts are yellow."
             ),
             (slider.sliderPressed, slider.actionTriggered, stage.deployment.play.toggled),
-            enter=lambda: _open_sheet(window, controller),
-            leave=lambda: _show_opened(window, controller),
+            enter=lambda: _open_sheet(columns, services),
+            leave=lambda: _show_opened(columns, services),
         ),
         Step(
             lambda: stage.cuts_switch,
@@ -101,29 +99,29 @@ def steps_of(window: MainWindow, controller: Controller) -> tuple[Step, ...]:
             (stage.cuts_switch.clicked,),
         ),
         Step(
-            lambda: _shown(window.fabrication.export, window.fabrication),
+            lambda: _shown(columns.fabrication.export, columns.fabrication),
             tr("Export"),
             tr(
                 "Export (Ctrl+E) writes the file for your machine, or a PDF to cut by hand. The file is read back and "
                 "checked."
             ),
-            (controller.cutting.exported,),
+            (services.exporter.exported,),
         ),
     )
 
 
-def _open_sheet(window: MainWindow, controller: Controller) -> None:
+def _open_sheet(columns: Columns, services: Services) -> None:
     """Let the sheet open from flat, or lay it flat where nothing is to move by itself."""
-    bar = window.stage.deployment
-    if controller.stage is not None:
+    bar = columns.stage.deployment
+    if services.session.stage is not None:
         bar.set_phi(math.pi)
-        bar.play.setChecked(moves(controller.preferences.present.motion, window.style()))
+        bar.play.setChecked(moves(services.preferences.present.motion, columns.style()))
 
 
-def _show_opened(window: MainWindow, controller: Controller) -> None:
-    window.stage.deployment.play.setChecked(False)
-    if controller.stage is not None:
-        window.stage.deployment.set_phi(controller.stage.design.phi_target)
+def _show_opened(columns: Columns, services: Services) -> None:
+    columns.stage.deployment.play.setChecked(False)
+    if services.session.stage is not None:
+        columns.stage.deployment.set_phi(services.session.stage.design.phi_target)
 
 
 def _shown(wanted: QWidget, otherwise: QWidget) -> QWidget:
@@ -133,16 +131,17 @@ def _shown(wanted: QWidget, otherwise: QWidget) -> QWidget:
 class Tour(QObject):
     """Shows one step after another; the window stays usable meanwhile."""
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
+    def __init__(self, columns: Columns, services: Services, appearance: Appearance, cancel: QAction) -> None:
+        window = columns.window()
         super().__init__(window)
-        self.window = window
-        self._controller = controller
+        self.window, self._columns, self._appearance = window, columns, appearance
+        self._services = services
         self._borrowing = False
         self._before: tuple[Document, Path | None] | None = None
         self._sample = 0  # number of the project that is the borrowed sample
         self._entering = False
-        controller.opened.connect(self._note_sample)
-        self.steps = steps_of(window, controller)
+        services.project.opened.connect(self._note_sample)
+        self.steps = steps_of(columns, services)
         self.at = -1
         self.ring = Ring(window)
         self.callout = Callout(window)
@@ -153,8 +152,8 @@ class Tour(QObject):
         self._soon.setSingleShot(True)
         self._soon.setInterval(0)
         self._soon.timeout.connect(self._place)
-        window.target.editing_changed.connect(lambda _: self._soon.start() if self.running else None)
-        self._cancel = window.commands["cancel"]
+        columns.target.editing_changed.connect(lambda _: self._soon.start() if self.running else None)
+        self._cancel = cancel
         self._escape = QShortcut(Qt.Key.Key_Escape, window, self.end)
         self._cancel.changed.connect(self._share_escape)
         self._share_escape()
@@ -168,7 +167,7 @@ class Tour(QObject):
 
     def start(self) -> None:
         """Begin with the first step, or go back to it."""
-        self._controller.preferences.note_tour()
+        self._services.preferences.note_tour()
         self.window.installEventFilter(self)
         self._borrow_sample()
         self._go(0)
@@ -185,28 +184,28 @@ class Tour(QObject):
         self.callout.hide()
         self.ring.hide()
         if had_focus:
-            self.window.stage.view.setFocus()
+            self._columns.stage.view.setFocus()
         self._give_back()
 
     def _borrow_sample(self) -> None:
-        controller = self._controller
-        if controller.stage is None and not (controller.history.unsaved or controller.running or self._borrowing):
-            self._borrowing, self._before = True, (controller.document, controller.path)
-            controller.open_project(resource("examples", "heart.kiri"))
+        session, running = self._services.session, self._services.run.running
+        if session.stage is None and not (session.history.unsaved or running or self._borrowing):
+            self._borrowing, self._before = True, (session.document, session.path)
+            self._services.project.open(resource("examples", "heart.kiri"))
 
     def _note_sample(self, path: Path) -> None:
         if self._borrowing:
-            self._borrowing, self._sample = False, self._controller.session.project
+            self._borrowing, self._sample = False, self._services.session.project
             if not self.running:
                 self._give_back()
 
     def _give_back(self) -> None:
         """Take up what there was before the tour, unless the sample was changed or given up."""
-        session = self._controller.session
+        session = self._services.session
         if self._borrowing or self._before is None:
             return
         (document, path), self._before = self._before, None
-        if session.project == self._sample and not session.history.unsaved and not self._controller.running:
+        if session.project == self._sample and not session.history.unsaved and not self._services.run.running:
             session.restart(document, path)
             session.set_status(tr("The sample is put away; this is your project again."))
 
@@ -248,8 +247,8 @@ class Tour(QObject):
         if not self.running:
             return
         anchor = self.steps[self.at].anchor()
-        self.callout.palette_ = self.ring.palette_ = self.window.palette_
-        if self.window.target.editing or not anchor.isVisible():
+        self.callout.palette_ = self.ring.palette_ = self._appearance.palette
+        if self._columns.target.editing or not anchor.isVisible():
             self.callout.hide()
             self.ring.hide()
             return

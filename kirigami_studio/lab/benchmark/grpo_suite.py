@@ -2,7 +2,7 @@
 
 It judges weights that ``train grpo --keep-at`` wrote, by one sample a target and seed as Table 2 does, in eight steps.
 Beside the paper's figures stands what its rule is silent about: the paired difference to the start and to a run without
-any reward, and whether the designs can be made (:mod:`kirigami_studio.studio.fabricability`).
+any reward, and whether the designs can be made (:mod:`kirigami_studio.lab.fabricability`).
 
 A *good first design* can be cut, comes within 10 degrees of being closed, has a CV of panel areas of at most 0.6, and
 lacks no more than 0.005 of the exact IoU that the start's sample from the same noise has.
@@ -32,9 +32,9 @@ from kirigami_studio.lab.benchmark.generator_table import (
 )
 from kirigami_studio.lab.benchmark.match_table import MatchRow, match_figures
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
+from kirigami_studio.lab.fabricability import TRIAL, Fabricability, fabricability
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.studio.fabricability import TRIAL, Fabricability, fabricability
 
 #: Exact IoU that a good first design may lack beside the start's sample.
 MAY_LACK = 0.005

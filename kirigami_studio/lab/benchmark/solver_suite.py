@@ -1,6 +1,6 @@
 """Table 1 of the paper: solvers against the program's own fit, sample, and sample with fit.
 
-A forward evaluation decodes one ratio field and scores it (``evaluate.paper_evaluator``).  Solvers maximise the paper's
+A forward evaluation decodes one ratio field and scores it (``lab.paper_evaluator``).  Solvers maximise the paper's
 reward, sIoU with penalties, on the same sIoU that is reported; of the 12 best feasible candidates the one with the best
 score counts.  A fit's evaluation is a decoding with or without its derivative, so a Jacobian counts as one, as an
 evaluation of a solver does.  A sample counts the decodings that the network is shown, and that of its score.
@@ -21,7 +21,6 @@ import numpy as np
 
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.mask_siou import mask_siou
-from kirigami_studio.evaluate.paper_evaluator import judge
 from kirigami_studio.evaluate.score import Score, evaluate, evaluate_many
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -35,6 +34,7 @@ from kirigami_studio.lab.baselines.solvers import SOLVERS
 from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key, values_of
+from kirigami_studio.lab.paper_evaluator import judge
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

@@ -101,9 +101,9 @@ class Screencast(OffscreenSession):
         """Film every step and return the files."""
         window = self.window
         window.show()
-        window.connections.first_start.begin()  # reads the sample that moves on the empty stage
+        window.first_start.begin()  # reads the sample that moves on the empty stage
         self.until(lambda: window.stage.empty.ready, "the sample did not come")
-        window.connections.first_start.decline()
+        window.first_start.decline()
         self.say("Kirigami Studio: from a silhouette to a cut file, in two minutes")
         self.live(6.0)
         self.choose_target()
@@ -116,7 +116,7 @@ class Screencast(OffscreenSession):
         self.show_file()
         self.film.close()
         self.files += [self.path, self.out / "session.jpg"]
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         window.close()
         return self.files
 
@@ -158,13 +158,13 @@ class Screencast(OffscreenSession):
         self.window.settings.candidates.setValue(DESIGNS)
         self.press_on(self.window.run.generate)
         self.during(lambda: not self.window.gallery.view.model_.entries, 4.0, SHORTER)
-        self.during(lambda: self.window.controller.running, 20.0)
+        self.during(lambda: self.window.services.run.running, 20.0)
         self.say("Best first: match, evenness, and whether it can be cut")
         self.during(self._not_judged, 6.0)
         self.hold(4.5)
 
     def _not_judged(self) -> bool:
-        verdict = self.window.controller.verdict
+        verdict = self.window.services.verdict
         return not self.window.fabrication.export.isEnabled() or verdict.state.verdict is None or verdict.busy
 
     def compare(self) -> None:

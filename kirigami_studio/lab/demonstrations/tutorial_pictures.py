@@ -57,7 +57,7 @@ class TutorialPictures(OffscreenSession):
         self.logo()
         self.material()
         self.coupon()
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         window.close()
         return self.files
 
@@ -82,7 +82,7 @@ class TutorialPictures(OffscreenSession):
         click(window.stage.cuts_switch)
         self.shrunk("cuts", window.stage)
         click(window.stage.cuts_switch)
-        window.controller.export(CUT_FILE)
+        window.services.exporter.export(CUT_FILE)
         self.until(lambda: window.dialogs.report is not None, "no report was shown")
         if window.dialogs.report is not None:
             self.shrunk("report", window.dialogs.report)
@@ -92,9 +92,9 @@ class TutorialPictures(OffscreenSession):
     def logo(self) -> None:
         """Parts of a drawing, and the designs for them."""
         window = self.window
-        window.controller.history.mark_saved()
-        window.controller.new_project()
-        window.controller.targeting.open(str(LOGO))
+        window.session.history.mark_saved()
+        window.services.project.new()
+        window.services.targeting.open(str(LOGO))
         self.until(lambda: window.dialogs.parts is not None and window.dialogs.parts.isVisible(), "no picker opened")
         parts = window.dialogs.parts
         if parts is None:
@@ -158,7 +158,7 @@ class TutorialPictures(OffscreenSession):
         window.settings.candidates.setValue(8)
         click(window.run.generate)
         self.until(lambda: len(window.gallery.view.model_.entries) > 0, "no design arrived")
-        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(lambda: not window.services.run.running, "the run did not end")
         self._judged()
         self.until(lambda: not window.gallery.view.cards.pending, "the cards got no pictures")
 

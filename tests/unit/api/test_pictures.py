@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import kirigami_studio as ks
+from kirigami_studio.api.design import LEVELS
 from kirigami_studio.api.pictures import AngleCurve, curves_picture
 from kirigami_studio.project.document import Document
 
@@ -61,7 +62,7 @@ def test_that_cuts_show_their_lines_and_the_verdict(cuts: ks.Cuts) -> None:
     page = cuts._repr_html_()
     root = drawn(page[page.index("<svg") : page.index("</svg>") + 6])
     assert {"slits", "edge slits", "outline"} <= set(words(root))
-    assert f'<b style="color:#30a46c">{cuts.verdict.lines[0]}</b>' in page
+    assert f'<b style="color:{LEVELS[cuts.verdict.level]}">{cuts.verdict.lines[0]}</b>' in page
     assert page.count("<li>") == len(cuts.verdict.lines) - 1
 
 
