@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -152,6 +153,11 @@ class CutPlan:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
         bed = (self.material.bed_width_mm, self.material.bed_height_mm)
         return lay_out(self.bounds_mm, bed, self.options, self.kerf_mm)
+
+    @cached_property
+    def cut_panels(self) -> CutPanels:
+        """The panels as the cuts leave them."""
+        return cut_panels(self)
 
     @property
     def layers(self) -> tuple[Layer, ...]:

@@ -22,10 +22,14 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 CLOSED = math.radians(2.0)
 #: Steps of a closing unless given.
 STEPS = 31
+#: The last part of a closing (radians), which takes smaller steps.
+NARROWING = math.radians(12.0)
 #: A panel that has lost more than this share of its area was trimmed.
 TRIMMED = 1e-6
 #: Gaps narrower than twice this share of a panel are closed in the silhouette of a sheet that has lost panels.
 BRIDGED = 0.03
+#: Cracks are closed by at least this share of a panel.
+CRACK = 1e-4
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
 TOLERATED_STRETCH = 0.45
 
@@ -157,8 +161,14 @@ def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[
 
 
 def even_closing(sheet: SheetNetwork, end: float = CLOSED, steps: int = STEPS) -> Drive:
-    """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way."""
-    return mean_turn(sheet.network, sheet.connectors.sign, np.linspace(0.0, math.pi - end, steps))
+    """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way.
+
+    A fifth of the steps are for the last :data:`NARROWING`, where panels meet.
+    """
+    last = steps // 5 if end + 2.0 * NARROWING < math.pi else 0
+    turns = np.linspace(0.0, math.pi - end - (NARROWING if last else 0.0), steps - last)
+    more = np.linspace(turns[-1], math.pi - end, last + 1)[1:]
+    return mean_turn(sheet.network, sheet.connectors.sign, np.concatenate([turns, more]))
 
 
 def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float, phi: float) -> FloatArray:
@@ -229,9 +239,12 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     closed_in = whole[:-1, :-1] & whole[:-1, 1:] & whole[1:, :-1] & whole[1:, 1:]
     voids = shapely.polygons(nodes[tables.void_nodes[closed_in]])
     parts = shapely.make_valid(np.concatenate([panels, voids]))
-    # Along notches panels hang together by hinges alone, without voids between them.
-    bridge = 0.0 if network.numbers is None else BRIDGED * network.panel_size
-    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=1e-6 * width_mm)
+    # Beside stretched connectors there are cracks between panels and voids; along notches panels hang together by
+    # hinges alone, without voids between them.
+    grid, crack = 1e-6 * width_mm, float(np.linalg.norm(corners - nodes[table], axis=-1).max())
+    bridge = max(crack, CRACK * network.panel_size) if crack > 0.5 * grid else 0.0
+    bridge = bridge if network.numbers is None else max(bridge, BRIDGED * network.panel_size)
+    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=grid)
     united = shapely.buffer(united, -bridge) if bridge else united
     largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
