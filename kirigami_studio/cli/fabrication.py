@@ -256,8 +256,8 @@ def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
     request = CutRequest.of(document, settings)
     check_connectors(request.candidate, settings.options)
-    width = settings.width_mm
-    return simulated(request.candidate, planned(request).plan, width, request.target, request.deployment).motion(width)
+    made, width = planned(request), settings.width_mm
+    return simulated(request.candidate, made.plan, width, request.target, request.deployment).motion
 
 
 def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:

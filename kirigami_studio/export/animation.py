@@ -121,7 +121,7 @@ def _as_cut(
 ) -> Image.Image:
     """One frame of the sheet as cut: its panels, its connectors, and the caption in the lower left corner."""
     pose = motion.pose(design, phi)
-    image = draw_polygons(pose.panels, box, target)
+    image = draw_polygons(pose.panels, box, target, pose.cuts)
     large = image.resize((SUPERSAMPLING * box.pixels[0], SUPERSAMPLING * box.pixels[1]))
     draw = ImageDraw.Draw(large)
     widths = motion.closing.sheet.connectors.width_mm / design.mm_per_world(motion.width_mm)

@@ -28,8 +28,9 @@ NARROWING = math.radians(12.0)
 TRIMMED = 1e-6
 #: Gaps narrower than twice this share of a panel are closed in the silhouette of a sheet that has lost panels.
 BRIDGED = 0.03
-#: Cracks are closed by at least this share of a panel.
-CRACK = 1e-4
+#: Cracks are closed by at least this share of a panel, unless they are narrower than this share of the grid on which
+#: the parts are united.
+CRACK, ROUNDED = 1e-4, 1e-3
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
 TOLERATED_STRETCH = 0.45
 
@@ -242,7 +243,7 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     # Beside stretched connectors there are cracks between panels and voids; along notches panels hang together by
     # hinges alone, without voids between them.
     grid, crack = 1e-6 * width_mm, float(np.linalg.norm(corners - nodes[table], axis=-1).max())
-    bridge = max(crack, CRACK * network.panel_size) if crack > 0.5 * grid else 0.0
+    bridge = max(crack, CRACK * network.panel_size) if crack > ROUNDED * grid else 0.0
     bridge = bridge if network.numbers is None else max(bridge, BRIDGED * network.panel_size)
     united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=grid)
     united = shapely.buffer(united, -bridge) if bridge else united

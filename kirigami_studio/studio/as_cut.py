@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.cut_panels import CutPanels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.making_room import long_enough
@@ -128,6 +129,10 @@ class SimulatedSheet:
     closing : Closing
     node : (H,) int
         Node of the lattice at which each connector is.
+    width_mm : float
+        Width of the flat sheet.
+    panels : CutPanels
+        As the cuts leave them, in the frame of the closing's network.
     made : Deployment or None
         The sheet that is cut where that is not quite the design.
     """
@@ -135,6 +140,8 @@ class SimulatedSheet:
     as_cut: AsCut
     closing: Closing
     node: IntArray
+    width_mm: float
+    panels: CutPanels
     made: Deployment | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
@@ -148,9 +155,11 @@ class SimulatedSheet:
         found: FloatArray = (1.0 - share) * stretch[before] + share * stretch[after]
         return found
 
-    def motion(self, width_mm: float) -> CutMotion:
-        """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
-        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached, self.made)
+    @property
+    def motion(self) -> CutMotion:
+        """What pictures and animations show of it."""
+        found = self.as_cut
+        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -371,7 +380,8 @@ def simulate(
         lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
-    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, plan.made)
+    panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
+    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, width_mm, panels, plan.made)
 
 
 def simulated(

@@ -528,7 +528,7 @@ def animating(
             raise
         except KirigamiError as error:
             why = str(error)
-    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
     written = export(replace(export_job(request, None), motion=shown), path)
     yield Exported(written, None, motion=shown, not_as_cut=why)
 
