@@ -12,7 +12,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.cut_panels import CutPanels, PanelLines
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion
+from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion, moved_nodes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,6 +27,9 @@ class CutPose:
         Their numbers in the sheet.
     cuts : list of (L, 2) float
         Their edges that were cut; across connectors there are none.
+    nodes : (N, 2) float
+        Nodes of the lattice: halfway between the corners of the panels there, of the ideal motion where trimming left
+        no panel.
     connectors : (H, 2, 2) float
         Where either panel of a connector has it; both places are the same where it is not stretched.
     stretch : (H,) float
@@ -36,6 +39,7 @@ class CutPose:
     panels: list[FloatArray]
     numbers: IntArray
     cuts: list[FloatArray]
+    nodes: FloatArray
     connectors: FloatArray
     stretch: FloatArray
 
@@ -119,5 +123,7 @@ class CutMotion:
             arms = as_plane(part.points - network.centroids[owner]) * np.exp(1j * motion[owner, 2])
             return part.split(placed(as_points(arms + here[owner])))
 
+        found, _, _ = moved_nodes(deployment, network, self.width_mm, motion)
+        nodes = np.where(np.isnan(found), design.nodes(phi), placed(found))
         outlines, stretch = self.panels.outlines, gap / self.closing.sheet.connectors.width_mm
-        return CutPose(lines(outlines), outlines.panel, lines(self.panels.cuts), placed(ends), stretch)
+        return CutPose(lines(outlines), outlines.panel, lines(self.panels.cuts), nodes, placed(ends), stretch)

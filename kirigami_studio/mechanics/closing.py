@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.mechanics.drive import Drive, mean_turn
@@ -164,9 +164,9 @@ def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[
 def even_closing(sheet: SheetNetwork, end: float = CLOSED, steps: int = STEPS) -> Drive:
     """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way.
 
-    A fifth of the steps are for the last :data:`NARROWING`, where panels meet.
+    Where panels run into each other, a fifth of the steps are for the last :data:`NARROWING`.
     """
-    last = steps // 5 if end + 2.0 * NARROWING < math.pi else 0
+    last = steps // 5 if len(sheet.network.stops) and end + 2.0 * NARROWING < math.pi else 0
     turns = np.linspace(0.0, math.pi - end - (NARROWING if last else 0.0), steps - last)
     more = np.linspace(turns[-1], math.pi - end, last + 1)[1:]
     return mean_turn(sheet.network, sheet.connectors.sign, np.concatenate([turns, more]))
@@ -226,17 +226,11 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     are left out, because they may reach beyond it.
     """
     tables = deployment.topology
-    flat, _ = _flat_nodes(deployment, width_mm)
-    numbers = np.arange(network.panel_count) if network.numbers is None else network.numbers
-    table = tables.panel_nodes.reshape(-1, 4)[numbers]
-    corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
-    corners += (network.centroids + motion[:, :2])[:, None]
-    sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
-    nodes = np.stack(sums, axis=1) / np.maximum(np.bincount(table.ravel(), minlength=tables.node_count), 1)[:, None]
+    nodes, corners, table = moved_nodes(deployment, network, width_mm, motion)
     panels = shapely.polygons(network.moved_outlines(motion))
     lost = shapely.area(shapely.polygons(corners)) - shapely.area(panels)
     whole = np.zeros((tables.rows + 1, tables.columns + 1), dtype=np.bool_)
-    whole.flat[numbers] = lost <= TRIMMED * shapely.area(panels)
+    whole.flat[_numbers(network)] = lost <= TRIMMED * shapely.area(panels)
     closed_in = whole[:-1, :-1] & whole[:-1, 1:] & whole[1:, :-1] & whole[1:, 1:]
     voids = shapely.polygons(nodes[tables.void_nodes[closed_in]])
     parts = shapely.make_valid(np.concatenate([panels, voids]))
@@ -249,6 +243,36 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     united = shapely.buffer(united, -bridge) if bridge else united
     largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
+
+
+def moved_nodes(
+    deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Where the nodes of a sheet are after a motion (P, 3).
+
+    Returns
+    -------
+    nodes : (N, 2) float, mm
+        Halfway between the corners that panels have there; not a number where there is no panel left.
+    corners : (P, 4, 2) float, mm
+        Of the panels, before they were trimmed.
+    table : (P, 4) int
+        The nodes that they belong to.
+    """
+    tables = deployment.topology
+    flat, _ = _flat_nodes(deployment, width_mm)
+    table = tables.panel_nodes.reshape(-1, 4)[_numbers(network)]
+    corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
+    corners += (network.centroids + motion[:, :2])[:, None]
+    sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
+    shared = np.bincount(table.ravel(), minlength=tables.node_count)[:, None]
+    nodes = np.divide(np.stack(sums, axis=1), shared, out=np.full((tables.node_count, 2), np.nan), where=shared > 0)
+    return nodes, corners, table
+
+
+def _numbers(network: PanelNetwork) -> IntArray:
+    """Numbers (P,) of the network's panels in their sheet."""
+    return np.arange(network.panel_count) if network.numbers is None else network.numbers
 
 
 def _flat_nodes(deployment: Deployment, width_mm: float) -> tuple[FloatArray, float]:

@@ -101,6 +101,7 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.deployment.as_cut.toggled.connect(self.view.set_as_cut)
         self.ends.phi_wanted.connect(self.deployment.set_phi)
         self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
         self.deployment.phi_changed.connect(self.plots.set_phi)
