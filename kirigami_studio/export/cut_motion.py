@@ -21,6 +21,7 @@ class CutPose:
 
     Attributes
     ----------
+    phi : float, radians
     panels : list of (Q, 2) float
         As the cuts leave them, row by row; those that are not there are left out.
     numbers : (K,) int
@@ -36,6 +37,7 @@ class CutPose:
         Distance of the two in widths of the connector.
     """
 
+    phi: float
     panels: list[FloatArray]
     numbers: IntArray
     cuts: list[FloatArray]
@@ -126,4 +128,4 @@ class CutMotion:
         found, _, _ = moved_nodes(deployment, network, self.width_mm, motion)
         nodes = np.where(np.isnan(found), design.nodes(phi), placed(found))
         outlines, stretch = self.panels.outlines, gap / self.closing.sheet.connectors.width_mm
-        return CutPose(lines(outlines), outlines.panel, lines(self.panels.cuts), nodes, placed(ends), stretch)
+        return CutPose(phi, lines(outlines), outlines.panel, lines(self.panels.cuts), nodes, placed(ends), stretch)

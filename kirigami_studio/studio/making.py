@@ -327,6 +327,7 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
+    picture_phi: float | None = None,
 ) -> Exported:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
@@ -338,9 +339,11 @@ def written(
     as_cut : AsCut, str or None
         As :func:`closed` tells; None where nobody has looked, for the verdict.
     motion : CutMotion, optional
-        What an animation shows.
+        What pictures and animations show instead of the ideal motion.
     on_written : callable, optional
         Gets each path of a whole set once it is there, and may raise to stop.
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
 
     Raises
     ------
@@ -352,7 +355,7 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion), output.path
+    job, path = replace(export_job(request, made), motion=motion, picture_phi=picture_phi), output.path
     if output.name is not None:
         found = export_all(
             job,

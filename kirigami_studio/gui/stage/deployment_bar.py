@@ -71,12 +71,14 @@ class DeploymentBar(QWidget):
         self.as_cut = QAction(tr("As cut"), self)
         self.as_cut.setObjectName("asCutSwitch")
         self.as_cut.setCheckable(True)
+        self.as_cut.setChecked(True)
         self.as_cut.setToolTip(tr("As cut: show the panels with their bows and connectors, as they are cut (Shift+C)."))
-        cut = QToolButton()
-        cut.setDefaultAction(self.as_cut)
-        cut.setObjectName("asCutButton")
-        cut.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        cut.setAccessibleName(tr("As cut"))
+        self.as_cut_button = QToolButton()
+        self.as_cut_button.setDefaultAction(self.as_cut)
+        self.as_cut_button.setObjectName("asCutButton")
+        self.as_cut_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.as_cut_button.setAccessibleName(tr("As cut"))
+        self.as_cut_button.hide()  # shown where a sheet is drawn as it is cut
         self.ideal = QToolButton()
         self.ideal.setText(tr("Ideal"))
         self.ideal.setObjectName("ideal")
@@ -101,7 +103,7 @@ class DeploymentBar(QWidget):
         row.addWidget(self.play)
         row.addWidget(self.options)
         row.addWidget(self.slider, 1)
-        row.addWidget(cut)
+        row.addWidget(self.as_cut_button)
         row.addWidget(self.ideal)
         row.addWidget(self.number)
         self._timer = QTimer(self)
@@ -177,12 +179,14 @@ class DeploymentBar(QWidget):
             self.play.setChecked(False)
 
     def restore(self, settings: QSettings) -> None:
-        """Play as the last time."""
+        """Play as the last time, and show as much of the cuts."""
         self.options.restore(settings)
+        self.as_cut.setChecked(settings.value("asCut") != "no")
 
     def remember(self, settings: QSettings) -> None:
-        """Keep how it is played for the next time."""
+        """Keep how it is played and shown for the next time."""
         self.options.remember(settings)
+        settings.setValue("asCut", "yes" if self.as_cut.isChecked() else "no")
 
 
 class PlayOptions(QToolButton):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,7 +88,7 @@ def paint_cut_panels(
     palette : Palette
     """
     together = _together(painter)
-    panels = [transform.to_pixels(panel) for panel in pose.panels]
+    panels = _in_pixels(pose.panels, transform)
     for left, colour in ((False, palette.panel_even), (True, palette.panel_odd)):
         painter.setPen(QPen(QColor(colour), 0.5))
         painter.setBrush(QColor(colour))
@@ -97,8 +97,14 @@ def paint_cut_panels(
             painter.drawPath(path)
     painter.setPen(_panel_pen(quads, palette))
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    for path in paths_of_lines([transform.to_pixels(cut) for cut in pose.cuts], False, together):
+    for path in paths_of_lines(_in_pixels(pose.cuts, transform), False, together):
         painter.drawPath(path)
+
+
+def _in_pixels(lines: Sequence[FloatArray], transform: ViewTransform) -> list[FloatArray]:
+    """Lines (L, 2) of the world in pixels, all at once."""
+    ends = np.cumsum([len(line) for line in lines])
+    return np.split(transform.to_pixels(np.concatenate(lines)), ends[:-1]) if len(lines) else []
 
 
 def _panel_pen(quads: FloatArray, palette: Palette) -> QPen:

@@ -166,7 +166,7 @@ class LayoutView(Canvas):
         self._width_mm = USUAL_WIDTH_MM
         self._scales: list[ColourScale] = []
         self._cut: SimulatedSheet | None = None
-        self._as_cut = False
+        self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self._artwork: ShownArtwork | None = None
         self._grips = GRIPS_UNKNOWN
@@ -265,11 +265,18 @@ class LayoutView(Canvas):
         self._as_cut = on
         self.update()
 
+    def set_ideal(self, on: bool) -> None:
+        """Go on as the ideal motion does where the sheet as cut jams, or stay there."""
+        self._ideal = on
+        self.update()
+
     @property
     def shown_as_cut(self) -> CutPose | None:
-        """The pose that is drawn; None where the ideal motion is: unless asked for, unless known, beyond the jam."""
+        """The pose that is drawn, at the jam for angles beyond it; None where the ideal motion is drawn."""
         sheet, design = self._cut, self._design
-        if not self._as_cut or sheet is None or design is None or self._phi < sheet.as_cut.reached - SAME_ANGLE:
+        if not self._as_cut or sheet is None or design is None:
+            return None
+        if self._ideal and self._phi < sheet.as_cut.reached - SAME_ANGLE:
             return None
         if self._made is None or self._made[0] is not sheet:
             self._made = (sheet, design if sheet.made is None else design.laid_over(sheet.made))
@@ -412,7 +419,7 @@ class LayoutView(Canvas):
                 "{count} connector stretched too far", "{count} connectors stretched too far", self.overstretched
             )
             found.append(Chip((self.palette_.fault,), words))
-        found += self._grip_chips()
+        found += [*self._jam_chips(), *self._grip_chips()]
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
@@ -445,7 +452,7 @@ class LayoutView(Canvas):
             paint_artwork(painter, artwork, self._phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
-            self._paint_comparison(painter, transform, None if pose is None else nodes)
+            self._paint_comparison(painter, transform, pose)
         self._paint_stretch(painter, transform, nodes)
         self._paint_labels(painter, transform, nodes)
         self._paint_grips(painter, transform)
@@ -494,6 +501,14 @@ class LayoutView(Canvas):
         state = self._grips
         shown = Overlay.GRIPS in self._overlays and self._cut is not None and state.sheet is self._cut
         return state.found if shown else None
+
+    def _jam_chips(self) -> list[Chip]:
+        """Where the sheet as cut stays, at angles that it does not come to."""
+        sheet = self._cut
+        if not self._as_cut or self._ideal or sheet is None or self._phi >= sheet.as_cut.reached - SAME_ANGLE:
+            return []
+        words = tr("as cut, stopped at {angle:.0f}°", angle=math.degrees(sheet.as_cut.reached))
+        return [Chip((self.palette_.fault,), words)]
 
     def _grip_chips(self) -> list[Chip]:
         """What the legend says of grips: how many panels to hold and to pull, or why none are marked."""
@@ -550,17 +565,17 @@ class LayoutView(Canvas):
                 occupied,
             )
 
-    def _paint_comparison(self, painter: QPainter, transform: ViewTransform, cut_nodes: FloatArray | None) -> None:
-        """Sheet against target; of the sheet as cut its nodes (N, 2) tell where it is."""
+    def _paint_comparison(self, painter: QPainter, transform: ViewTransform, pose: CutPose | None) -> None:
+        """Sheet against target, as it is cut or in its ideal motion."""
         self._areas = None
         if self._design is None or self._target is None:
             return
         nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
         if Overlay.MISMATCH in self._overlays and nearness > 0.0:
-            if cut_nodes is None:
+            if pose is None:
                 self._areas = design_mismatch(self._design, self._target, self._phi)
             else:
-                self._areas = mismatch_of_nodes(self._design, self._target, self._phi, cut_nodes)
+                self._areas = mismatch_of_nodes(self._design, self._target, pose.phi, pose.nodes)
             painter.setOpacity(min(1.0, 2.0 * nearness))
             paint_mismatch(painter, self._areas, transform, self.palette_)
             painter.setOpacity(1.0)
