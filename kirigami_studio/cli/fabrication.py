@@ -45,7 +45,6 @@ from kirigami_studio.studio.making import (
 )
 from kirigami_studio.studio.verdict import Verdict, refused
 
-
 #: Angle of the flat sheet.
 FLAT_DEG = 180.0
 

@@ -30,7 +30,9 @@ SEPARATOR = "; "
 CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
 #: Widths (mm) of the lines of a picture, and size and place of its note.
-EDGE_MM, TARGET_MM, NOTE_MM, NOTE_UP_MM = 0.15, 0.5, 2.5, 1.2
+EDGE_MM, TARGET_MM, NOTE_MM, NOTE_UP_MM = 0.15, 0.5, 3.5, 1.2
+#: The note is no larger than that so many letters as high would be as wide as the picture.
+NOTE_LETTERS = 30.0
 #: What a picture says of itself, so that nobody cuts it.
 NO_CUT_FILE = "not a cut file"
 #: What the AutoCAD colours of the profiles look like on white.
@@ -156,9 +158,13 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
             ElementTree.SubElement(group, "path", {"d": data, **look})
             count += 1
     place = {"x": decimals(0.5 * width), "y": decimals(height - NOTE_UP_MM), "text-anchor": "middle"}
-    said = NO_CUT_FILE if job.motion is None else f"{job.motion.caption}, {NO_CUT_FILE}"
-    look = {"font-family": "sans-serif", "font-size": f"{NOTE_MM:g}", "fill": hexadecimal(picture.INK)}
-    ElementTree.SubElement(root, "text", {**place, **look}).text = f"Picture, {said}"
+    said = f"Picture, {NO_CUT_FILE}" + ("" if job.motion is None else f". {job.motion.caption}")
+    look = {
+        "font-family": "sans-serif",
+        "font-size": decimals(min(NOTE_MM, width / NOTE_LETTERS)),
+        "fill": hexadecimal(picture.INK),
+    }
+    ElementTree.SubElement(root, "text", {**place, **look}).text = said
     _write(root, Path(path), count, (width, height))
 
 

@@ -61,10 +61,14 @@ class Meetings:
     def __len__(self) -> int:
         return len(self.panels)
 
+    @classmethod
+    def none(cls) -> Meetings:
+        """Panels that do not run into each other anywhere."""
+        numbers, places = np.zeros(0, dtype=np.intp), np.zeros((0, 2))
+        return cls(np.zeros((0, 2), dtype=np.intp), places, places, places, numbers, np.zeros(0))
 
-def meetings(
-    panels: Sequence[FloatArray], connectors: SheetConnectors, voids: IntArray, kerf_mm: float
-) -> Meetings:
+
+def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: IntArray, kerf_mm: float) -> Meetings:
     """Find where panels run into each other as the sheet closes.
 
     Parameters
@@ -85,10 +89,7 @@ def meetings(
         for corner in pairs.corners(deep)
     ]
     rows = [np.array(column) for column in zip(*found, strict=True)]
-    if not rows:
-        nowhere = np.zeros((0, 2))
-        return Meetings(np.zeros((0, 2), dtype=np.intp), nowhere, nowhere, nowhere, np.zeros(0, dtype=np.intp), np.zeros(0))
-    return Meetings(*rows)
+    return Meetings(*rows) if rows else Meetings.none()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -183,7 +184,8 @@ class _Pairs:
         turn = np.exp(1j * self.sign[pairs] * (math.pi - angle))
         points, owner = shapely.get_coordinates(moving[pairs], return_index=True)
         plane, centre, arm = _plane(points), self.centre[pairs][owner], self.arm[pairs]
-        placed = np.where((arm == 0.0)[owner], centre + (plane - centre) * turn[owner], plane + (arm * (turn - 1.0))[owner])
+        turned, shifted = centre + (plane - centre) * turn[owner], plane + (arm * (turn - 1.0))[owner]
+        placed = np.where((arm == 0.0)[owner], turned, shifted)
         moved = shapely.set_coordinates(moving[pairs].copy(), _points(placed))
         touching: BoolArray = shapely.intersects(still[pairs], moved)
         return touching

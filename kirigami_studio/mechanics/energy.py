@@ -222,7 +222,7 @@ class NetworkEnergy:
         return energy, slope, curvature
 
     def _distances(self, motion: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """g of every stop (T,), mm, and its first and second derivatives (T, 6) and (T, 6, 6) by the freedoms of A and B.
+        """g of every stop (T,), mm, its slopes (T, 6) and its second derivatives (T, 6, 6) by the freedoms of A and B.
 
         Infinite for panels that are not near each other.
         """

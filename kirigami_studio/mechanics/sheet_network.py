@@ -124,9 +124,7 @@ def sheet_network(
     return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy(), kept, stops), connectors, sheet)
 
 
-def _stops(
-    meetings: Meetings, connectors: SheetConnectors, sheet: ElasticSheet, kept: IntArray | None
-) -> Stops:
+def _stops(meetings: Meetings, connectors: SheetConnectors, sheet: ElasticSheet, kept: IntArray | None) -> Stops:
     """Stops of a sheet; an edge resists as the sheet itself does, by E h."""
     at = meetings.connector
     panels = meetings.panels if kept is None else np.searchsorted(kept, meetings.panels)

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.phi_slider import PhiSlider
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.card import TOOL_ICON, ToolButton
+from kirigami_studio.gui.widgets.card import TOOL_ICON, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
@@ -68,17 +68,11 @@ class DeploymentBar(QWidget):
         self.play = ToolButton("play", "play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
-        self.as_cut = QAction(tr("As cut"), self)
-        self.as_cut.setObjectName("asCutSwitch")
-        self.as_cut.setCheckable(True)
-        self.as_cut.setChecked(True)
-        self.as_cut.setToolTip(tr("As cut: show the panels with their bows and connectors, as they are cut (Shift+C)."))
-        self.as_cut_button = QToolButton()
-        self.as_cut_button.setDefaultAction(self.as_cut)
-        self.as_cut_button.setObjectName("asCutButton")
-        self.as_cut_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.as_cut_button.setAccessibleName(tr("As cut"))
+        tip = tr("As cut: show the panels with their bows and connectors, as they are cut (Shift+C).")
+        self.as_cut_button = SwitchButton("asCutSwitch", "connector", tip)
         self.as_cut_button.hide()  # shown where a sheet is drawn as it is cut
+        self.as_cut = self.as_cut_button.switch
+        self.as_cut.setChecked(True)
         self.ideal = QToolButton()
         self.ideal.setText(tr("Ideal"))
         self.ideal.setObjectName("ideal")

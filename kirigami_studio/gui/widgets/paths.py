@@ -82,9 +82,7 @@ def paths_of_lines(lines: Sequence[FloatArray], closed: bool, together: int = DO
     rings = [np.concatenate([line, line[:1]]) for line in drawn] if closed else drawn
     parts = (rings[place : place + together] for place in range(0, len(rings), together))
     return [
-        _path(
-            np.concatenate(part), np.cumsum([0, *(len(ring) for ring in part[:-1])]), Qt.FillRule.WindingFill
-        )
+        _path(np.concatenate(part), np.cumsum([0, *(len(ring) for ring in part[:-1])]), Qt.FillRule.WindingFill)
         for part in parts
     ]
 
