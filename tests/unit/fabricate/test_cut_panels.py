@@ -84,9 +84,8 @@ def test_that_removed_connectors_and_tabs_leave_whole_panels(make_design: MakeDe
 @pytest.mark.parametrize("style", [ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED])
 def test_that_trimmed_panels_end_at_the_outline(make_design: MakeDesign, style: ConnectorStyle) -> None:
     design = make_design(5, 6, seed=3, spread=0.2)
-    middles = [
-        0.5 * (np.array(a) + np.array(b)) for a, b in zip(mouths(design)[::2], mouths(design)[1::2], strict=False)
-    ]
+    ends = np.array(mouths(design))
+    middles = 0.5 * (ends[:-1:2] + ends[1::2])
     kept = bitten(design, [(float(x), float(y)) for x, y in middles], 0.25)
     plan = plan_cuts(design, WIDTH, 0.6, options=CutOptions(style=style), kept=kept)
     areas = areas_of(plan.cut_panels)
@@ -97,10 +96,8 @@ def test_that_trimmed_panels_end_at_the_outline(make_design: MakeDesign, style: 
 def test_that_panels_move_to_another_frame_and_are_found_by_number(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(3, 3), WIDTH, 0.5)
     panels = plan.cut_panels
-    shifted = panels.moved(np.array([3.0, -2.0]))
-    np.testing.assert_allclose(
-        shifted.cuts.points - panels.cuts.points, np.tile([3.0, -2.0], (len(panels.cuts.points), 1))
-    )
+    way = panels.moved(np.array([3.0, -2.0])).cuts.points - panels.cuts.points
+    np.testing.assert_allclose(way, np.broadcast_to([3.0, -2.0], way.shape))
     numbered = panels.numbered(20)
     assert [len(ring) > 0 for ring in numbered] == [number < 16 for number in range(20)]
     assert replace(plan, origin={"a": "b"}).cut_panels.outlines.panel.tolist() == panels.outlines.panel.tolist()

@@ -114,9 +114,8 @@ def test_that_a_stop_pushes_only_what_is_behind_its_edge_and_near() -> None:
     expected = 30.0 * (0.5 * depth**2 - 0.5 * soft * depth + soft**2 / 6.0)
     assert stopped.value(motion) - bare.value(motion) == pytest.approx(expected, rel=1e-9)
     push = (stopped.gradient(motion) - bare.gradient(motion)).reshape(-1, 3)
-    assert push[3, :2] == pytest.approx([-30.0 * (depth - 0.5 * soft), 0.0]) and push[0, :2] == pytest.approx(
-        -push[3, :2]
-    )
+    assert push[3, :2] == pytest.approx([-30.0 * (depth - 0.5 * soft), 0.0])
+    assert push[0, :2] == pytest.approx(-push[3, :2])
     motion[3, 0] = depth + 1e-6  # before the edge
     assert stopped.value(motion) == bare.value(motion)
     motion[3, 0], motion[1, 2] = 0.0, -0.2  # the ligament has turned the other way

@@ -123,7 +123,7 @@ def test_that_the_jam_angle_is_that_of_the_rigid_check(name: str, connector_mm: 
 
 
 def test_that_contacts_of_bows_are_what_a_sheet_jams_by() -> None:
-    plan, deployment, sheet = made(bowed("heart"), ConnectorStyle.CENTRED, 0.5)
+    plan, _, sheet = made(bowed("heart"), ConnectorStyle.CENTRED, 0.5)
     bare, panels = closing(without_stops(sheet)), true_panels(plan, sheet)
     # Without them it closes, with its panels in each other from between 10 and 5 degrees on.
     assert bare.jam_phi() == 0.0
