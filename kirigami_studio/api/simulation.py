@@ -113,7 +113,7 @@ class Simulation:
         phi : float, radians, optional
             Where the sheet comes to unless given; not below that.
         """
-        motion = self.simulated.motion(self.width_mm)
+        motion = self.simulated.motion
         return motion.pose(self.posed, motion.reached if phi is None else max(phi, motion.reached)).panels
 
     def __repr__(self) -> str:
