@@ -41,7 +41,7 @@ from kirigami_studio.mechanics.closing import (
     silhouette,
 )
 from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, flexure_length, junctions
-from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
@@ -322,8 +322,7 @@ def estimate(
     chosen = material_for(settings) if material is None else material
     sheet = _unplanned_sheet(deployment, settings, chosen)
     found = estimate_stretch(deployment, sheet, settings.width_mm)
-    jam = found.jam_phi()
-    jam = 0.0 if jam <= ESTIMATE_CLOSES else jam
+    jam = estimated_jam(found)
     largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
     blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
@@ -332,6 +331,12 @@ def estimate(
     in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
     strain = in_plane if figure is StrainFigure.IN_PLANE else out_of_plane
     return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure, source=Source.ESTIMATE)
+
+
+def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
+    """Angle (radians) at which a sheet is estimated to jam; 0 where its contacts give."""
+    jam = found.jam_phi(tolerated)
+    return 0.0 if jam <= ESTIMATE_CLOSES else jam
 
 
 def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:
