@@ -301,12 +301,12 @@ def _grid(grid: object) -> tuple[int, int] | None:
     return rows, columns
 
 
-def _start(start: TargetLike, given: dict[str, float]) -> StartShape:
+def _start(start: TargetLike, given: dict[str, Any]) -> StartShape:
     shape = start_shape(start) if isinstance(start, str) else outline_start(load_target(start).outline)
     return replace(shape, **given)
 
 
-def _second(also: TargetLike | None, given: dict[str, float]) -> SecondTarget | None:
+def _second(also: TargetLike | None, given: dict[str, Any]) -> SecondTarget | None:
     if also is None:
         if given:
             raise UsageError("api.second_target_not_named")

@@ -91,7 +91,7 @@ class Simulation:
 
     @property
     def jam_deg(self) -> float:
-        """The same in degrees, in [0, 180]: 0 for a sheet that closes fully, 180 for one that stays flat."""
+        """The same in degrees, in [0, 180]: 0 where it closes fully, 180 where it stays flat."""
         return self.as_cut.jam_deg
 
     @property
@@ -113,7 +113,7 @@ class Simulation:
         phi : float, radians, optional
             Where the sheet comes to unless given; not below that.
         """
-        motion = self.simulated.motion(self.width_mm)
+        motion = self.simulated.motion
         return motion.pose(self.posed, motion.reached if phi is None else max(phi, motion.reached)).panels
 
     def __repr__(self) -> str:

@@ -40,7 +40,6 @@ from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio.as_cut import AsCut, jam_json
-from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
     CutRequest,
@@ -373,17 +372,16 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     save(document, paths["project"])
     listing = {"candidates": candidates_json(design.result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
-    made, refusal = None, None
+    made, refusal = None, ""
     try:
         made = planned(request)
-        refuse_errors(made.report)
     except FabricationError as error:
-        refusal = error
-    job = export_job(request, None if refusal else made)
+        refusal = str(error)
+    job = export_job(request, made)
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])
-    if made is None or refusal is not None:
-        raise FabricationError("design.not_cut", project=paths["project"], reason=str(refusal))
+    if made is None:
+        raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
     verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
     assert verdict is not None  # planned sheets are judged
     return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}

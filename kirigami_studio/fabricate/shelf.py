@@ -165,7 +165,8 @@ class Shelf(Generic[Item]):
         if unknown := entries.keys() - expected.keys():
             names = ", ".join(sorted(unknown))
             raise FabricationError(self.codes["not_known"], path=path, names=names, count=len(unknown))
-        return self.kind(key=plain_line(path.stem), **entries)
+        make: Callable[..., Item] = self.kind
+        return make(key=plain_line(path.stem), **entries)
 
     def check_key(self, key: str) -> str:
         """Return a key that can be a file's name, or refuse it.

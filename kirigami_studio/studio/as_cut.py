@@ -17,8 +17,9 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.fabricate.centres import bending_lengths
+from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.cut_panels import CutPanels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.making_room import long_enough
@@ -32,6 +33,8 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
+from kirigami_studio.mechanics.bow_contacts import NONE as NO_CONNECTOR
+from kirigami_studio.mechanics.bow_contacts import Meetings, meetings
 from kirigami_studio.mechanics.closing import (
     CLOSED,
     TOLERATED_STRETCH,
@@ -41,7 +44,13 @@ from kirigami_studio.mechanics.closing import (
     ideal_motion,
     silhouette,
 )
-from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, flexure_length, junctions
+from kirigami_studio.mechanics.connectors import (
+    ElasticSheet,
+    SheetConnectors,
+    cut_connectors,
+    flexure_length,
+    junctions,
+)
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -176,6 +185,10 @@ class SimulatedSheet:
     closing : Closing
     node : (H,) int
         Node of the lattice at which each connector is.
+    width_mm : float
+        Width of the flat sheet.
+    panels : CutPanels
+        As the cuts leave them, in the frame of the closing's network.
     made : Deployment or None
         The sheet that is cut where that is not quite the design.
     """
@@ -183,6 +196,8 @@ class SimulatedSheet:
     as_cut: AsCut
     closing: Closing
     node: IntArray
+    width_mm: float
+    panels: CutPanels
     made: Deployment | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
@@ -196,9 +211,11 @@ class SimulatedSheet:
         found: FloatArray = (1.0 - share) * stretch[before] + share * stretch[after]
         return found
 
-    def motion(self, width_mm: float) -> CutMotion:
-        """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
-        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached, self.made)
+    @property
+    def motion(self) -> CutMotion:
+        """What pictures and animations show of it."""
+        found = self.as_cut
+        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -248,12 +265,11 @@ def planned_sheet(
         # A straight slit's connector bends over a span; arcs and bars make it longer.
         longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
     polygons = panels_in_mm(deployment, () if kept is None else kept, width_mm, np.zeros(2))
+    shift = _shift_of(plan, polygons)
     centres = None
     if on_nodes:
         centres = found.place
     elif plan.centres is not None:
-        # The plan has its own origin.
-        shift = next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
         centres = plan.centres + shift
     connectors = cut_connectors(
         found,
@@ -262,9 +278,25 @@ def planned_sheet(
         centres,
         np.where(longer > LONGER_MM, longer, 0.0),
     )
+    bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
     young = plan.material.young_gpa if young_gpa is None else young_gpa
     elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
-    return sheet_network(polygons_as_rows(polygons), connectors, elastic)
+    return sheet_network(polygons_as_rows(polygons), connectors, elastic, bows)
+
+
+def _shift_of(plan: CutPlan, polygons: Sequence[FloatArray]) -> FloatArray:
+    """From the frame of a plan to that of the flat sheet's panels (2,), mm: the plan has an origin of its own."""
+    return next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
+
+
+def _meetings(connectors: SheetConnectors, plan: CutPlan, deployment: Deployment, shift: FloatArray) -> Meetings:
+    """Where panels with the bows of a plan run into each other."""
+    table = cut_table(*deployment.sheet.grid)
+    there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
+    number = np.full(table.hinge_count + 1, NO_CONNECTOR)  # the last one for corners without a hinge
+    number[there] = np.arange(len(there))
+    panels = plan.cut_panels.moved(shift).numbered(len(plan.panels))
+    return meetings(panels, connectors, number[void_hinges(table)], plan.kerf_mm)
 
 
 def _longer_by_bows(flexure_mm: FloatArray, width_mm: FloatArray, kerf_mm: float) -> FloatArray:
@@ -419,7 +451,9 @@ def simulate(
         lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
-    return SimulatedSheet(_simulated(plan.material, found, jam, phi, lap), found, node, plan.made)
+    panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
+    found_as_cut = _simulated(plan.material, found, jam, phi, lap)
+    return SimulatedSheet(found_as_cut, found, node, width_mm, panels, plan.made)
 
 
 def simulated(

@@ -437,7 +437,7 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    """All other materials with centred connectors; of a chosen machine, those that it cuts."""
     machine = named_machine(settings)
     for key, material in (library().materials if machine is None else cuttable(machine)).items():
         if key != settings.material and material.limits_note is None:

@@ -64,7 +64,7 @@ STRETCH = 0.05
 #: Match (IoU) from which a silhouette counts as that of its target.  For a disc it means an edge that is 5 % of the
 #: radius off all round: 2.5 mm on a shape 100 mm wide, which is about what an eye forgives.
 MATCHES = 0.90
-#: Below this it is another shape: the best square on a disc, or a rectangle on a heart, come to 0.75 to 0.84.
+#: Below this it is another shape: a plain square comes to 0.66 on a star and to 0.70 on a butterfly.
 MATCHES_ROUGHLY = 0.75
 #: A jam that costs no more match (IoU) than this is no more than nearly a jam: being forced shut costs film as much.
 LITTLE_LOST = 0.02

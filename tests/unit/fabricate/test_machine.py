@@ -7,11 +7,12 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.machine import (
@@ -51,7 +52,7 @@ def test_that_every_bundled_machine_names_a_profile_a_file_and_where_its_numbers
     found = machines()
     assert not found.faults and not found.own and next(iter(found.items)) == "uv-laser"
     for machine in found.items.values():
-        assert machine.profile in PROFILES and machine.file in exporters(), machine.key
+        assert machine.profile in PROFILES and machine.file in WRITERS, machine.key
         assert min(machine.reach_mm) > 150.0 and machine.note, machine.key
     kinds = {machine.kind for machine in found.items.values()}
     assert kinds == set(MachineKind) - {MachineKind.OTHER} == set(USUAL)
@@ -107,9 +108,9 @@ def test_that_a_machine_is_of_a_kind_by_what_it_is_called(words: str, kind: Mach
 
 
 def test_that_an_own_material_from_before_keeps_its_bed_speeds_and_delays(own_materials: Path) -> None:
-    older = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
-    bed = {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
-    path = save_copy(replace(find_material("card-co2"), key="mine", **older, **bed))
+    older: dict[str, Any] = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
+    older |= {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
+    path = save_copy(replace(find_material("card-co2"), key="mine", **older))
     assert "travel_mm_s = 321.0" in path.read_text(encoding="utf-8")
     material = read_preset(path)
     machine = machine_of(material)
