@@ -164,3 +164,13 @@ def test_that_a_preset_cannot_be_changed_in_place() -> None:
 def test_that_every_laser_knows_its_power() -> None:
     for material in presets().values():
         assert (material.power_percent > 0.0) == ("laser" in material.machine)
+
+
+def test_that_the_page_of_materials_has_the_figures_and_sources_of_the_presets(repository: Path) -> None:
+    page = (repository / "docs" / "materials.md").read_text(encoding="utf-8")
+    for key, one in presets().items():
+        yields = f"{100 * one.yield_strain:g}" if one.yield_strain else "-"
+        strains = f"{yields} | {100 * one.break_strain:g} | {100 * one.bend_strain:g} | {one.young_gpa:g}"
+        widths = f"{one.connector_mm:g} | {one.min_ligament_mm:g} | {one.sheet_mm:g}"
+        assert f"| `{key}` | {one.thickness_mm:g} | {strains} | {widths} |" in page
+        assert all(text in page for text in one.sources.values()), key
