@@ -1,11 +1,11 @@
-"""A sheet that was closed on its elastic connectors: force, energy, stretch, and where it jams."""
+"""A sheet closed on its elastic connectors: force, energy, stretch, and where it jams."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from kirigami_studio.api.pictures import Curve, curves_picture
+from kirigami_studio.api.pictures import AngleCurve, curves_picture
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
@@ -14,7 +14,7 @@ from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Simulation:
-    """What a sheet does as cut, on its way from flat (phi = pi) towards phi = 0; arrays have one entry a step.
+    """A sheet as cut on its way from flat (phi = pi) to phi = 0; arrays have one entry a step.
 
     In a notebook it shows force and stretch against the angle.
 
@@ -39,7 +39,7 @@ class Simulation:
 
     @property
     def as_cut(self) -> AsCut:
-        """What is expected of the cut sheet."""
+        """Estimates about the cut sheet."""
         return self.simulated.as_cut
 
     @property
@@ -49,7 +49,7 @@ class Simulation:
 
     @property
     def force_n(self) -> FloatArray:
-        """What a lever of one panel's size needs at its end: (S,), N."""
+        """Force (S,), N, at the end of a lever of one panel's size."""
         return self.closing.lever_force
 
     @property
@@ -72,6 +72,11 @@ class Simulation:
     def jam_phi(self) -> float | None:
         """Angle (radians) at which it jams; None for a sheet that closes."""
         return None if self.closes else self.as_cut.jam_phi
+
+    @property
+    def jam_deg(self) -> float:
+        """The same in degrees, in [0, 180]: 0 where it closes fully, 180 where it stays flat."""
+        return self.as_cut.jam_deg
 
     @property
     def strain(self) -> float:
@@ -100,8 +105,8 @@ class Simulation:
 
     def _repr_svg_(self) -> str:
         curves = (
-            Curve(self.phi, self.force_n, "force (N)"),
-            Curve(self.phi, self.stretch, "largest stretch (connector widths)", TOLERATED_STRETCH),
+            AngleCurve(self.phi, self.force_n, "force (N)"),
+            AngleCurve(self.phi, self.stretch, "largest stretch (connector widths)", TOLERATED_STRETCH),
         )
         return curves_picture(curves, f"As cut: {self._ends}  ·  IoU {self.iou:.3f}", self.jam_phi)
 

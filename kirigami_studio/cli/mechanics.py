@@ -1,4 +1,4 @@
-"""``mechanics``: what a cut sheet, or a given network of panels, does on its elastic connectors."""
+"""``mechanics``: a cut sheet, or a given network of panels, on its elastic connectors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, believed_figure, overlap, planned_sheet
+from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, Source, believed_figure, overlap, planned_sheet
 from kirigami_studio.studio.cutting import plan_sheet
 
 FLAT_DEG = 180.0
@@ -87,8 +87,10 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     else:
         found = closing(cut.sheet, even_closing(cut.sheet, end, arguments.steps))
     gripped, tolerated = arguments.hold is not None or arguments.find_grips, arguments.tolerance
-    jam = None if _ended_early(found, tolerated) else math.degrees(found.jam_phi(tolerated))
-    estimate = math.degrees(estimate_stretch(cut.deployment, cut.sheet, width).jam_phi(tolerated))
+    jam, source = math.degrees(found.jam_phi(tolerated)), Source.SIMULATION
+    if _ended_early(found, tolerated):
+        beyond = estimate_stretch(cut.deployment, cut.sheet, width)
+        jam, source = math.degrees(beyond.jam_phi(tolerated)), Source.ESTIMATE
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
@@ -96,13 +98,13 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     force = found.path.force if gripped else found.lever_force
     if arguments.json:
         answer = _steps(cut, found, gripped) | {"force_n": force, "tolerated_stretch_widths": tolerated}
-        answer |= {"jam_deg": jam, "estimated_jam_deg": estimate}
+        answer |= {"jam_deg": jam, "jam_from": source.value}
         if gripping is not None:
             answer |= {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
         print_json(answer if lap is None else answer | _overlap_json(lap))
         return 0
     _tell_steps(found, force)
-    _tell_jam(jam, estimate, tolerated)
+    _tell_jam(jam, source, tolerated)
     stable = ", ".join(f"{angle:.0f}" for angle in np.degrees(found.stable_phi))
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
     if gripping is not None:
@@ -141,7 +143,7 @@ def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
 
 
 def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
-    """What the JSON tells of every step, and of the sheet."""
+    """The JSON of every step, and of the sheet."""
     connectors = cut.sheet.connectors
     opening = np.degrees(cut.sheet.opening(found.path.motion))
     return {
@@ -168,7 +170,7 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
 
 
 def _ended_early(found: Closing, tolerated: float) -> bool:
-    """Whether the sheet was not driven as far as it would go, so that nothing is known about where it jams."""
+    """Whether the sheet was not driven as far as it would go, so that its jam is unknown."""
     free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
 
@@ -185,9 +187,11 @@ def _tell_steps(found: Closing, force: FloatArray) -> None:
         )
 
 
-def _tell_jam(jam: float | None, estimate: float, tolerated: float) -> None:
-    if jam is None:
+def _tell_jam(jam: float, source: Source, tolerated: float) -> None:
+    if source is Source.ESTIMATE:
         say(tr("As far as it was driven no connector is stretched by more than {w:g} of its width.", w=tolerated))
+        jams = tr("It jams at {jam:.0f} degrees (estimate).", jam=jam)
+        say(jams if jam > 0.0 else tr("Beyond that it closes (estimate)."))
     elif jam == 0.0:
         say(tr("Closes: no connector is stretched by more than {w:g} of its width.", w=tolerated))
     else:
@@ -199,7 +203,6 @@ def _tell_jam(jam: float | None, estimate: float, tolerated: float) -> None:
                 w=tolerated,
             )
         )
-    say(tr("Fast estimate of the same angle: {jam:.0f} degrees.", jam=estimate))
 
 
 def _tell_grips(gripping: Gripping) -> None:

@@ -7,7 +7,6 @@ says so in a caption.  The file's comment names the motion.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
@@ -36,18 +35,6 @@ PALETTE_COLOURS = 64
 DOT, OVERSTRETCHED, NEARLY = 1.2, (213, 0, 50), 0.95
 #: Height (pixels) of the caption's letters and its distance from the picture's corner, for a longest side of 480.
 LETTERS, INSET = 15, 7
-
-
-@dataclass(frozen=True, slots=True)
-class GifExporter:
-    """Deployment as GIF."""
-
-    extension: str = ".gif"
-    name: str = "GIF animation of the deployment"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the motion from phi = pi to the job's angle, or as far as the sheet as cut comes."""
-        write_animation(job, path)
 
 
 def frame_angles(phi: float, frames: int) -> FloatArray:

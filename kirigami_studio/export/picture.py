@@ -45,18 +45,6 @@ LONGEST_SIDE = 900
 SAME_DPI = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class PngExporter:
-    """Preview as PNG."""
-
-    extension: str = ".png"
-    name: str = "PNG picture of the deployed layout"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the layout at the job's angle."""
-        write_png(job, path)
-
-
 def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> None:
     """Write the layout at the target angle over the target.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
@@ -11,12 +10,13 @@ from xml.etree import ElementTree
 import numpy as np
 import shapely
 
+from kirigami_studio import __version__
 from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import drawn_panels, hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE, Profile, find_profile
-from kirigami_studio.export.provenance import facts_of, origin_facts
+from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
@@ -37,18 +37,6 @@ NOTE_LETTERS = 30.0
 NO_CUT_FILE = "not a cut file"
 #: What the AutoCAD colours of the profiles look like on white.
 ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
-
-
-@dataclass(frozen=True, slots=True)
-class SvgExporter:
-    """Cut plan as SVG."""
-
-    extension: str = ".svg"
-    name: str = "SVG cut file"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan."""
-        write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:
@@ -82,6 +70,7 @@ def _cut_drawing(
     strokes = file_strokes(plan, profile)
     width, height = extent(strokes)
     root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
+    turned = _counted_at(root, width, height, profile.svg_dpi)
     facts = facts_of(plan, profile)
     _describe(root, facts)
     if record:
@@ -89,12 +78,21 @@ def _cut_drawing(
     for number, ((name, colour), run) in enumerate(groupby(strokes, lambda stroke: (stroke.layer, stroke.colour))):
         # A layer that comes back later in the cutting order needs a name of its own.
         again = any(element.get("id") == name for element in root)
-        group = ElementTree.SubElement(root, "g", {"id": f"{name}.{number}" if again else name})
+        group = ElementTree.SubElement(root, "g", {"id": f"{name}.{number}" if again else name, **turned})
         # On every path: MeerK40t takes a path that inherits its stroke for a second operation too, and burns it twice.
         look = {"fill": "none", "stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
         for stroke in run:
             ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height), **look})
     return root, len(strokes), (width, height)
+
+
+def _counted_at(root: ElementTree.Element, width: float, height: float, dpi: float) -> dict[str, str]:
+    """Let a frame (mm) count so many units to the inch; return the scale of groups in mm."""
+    if dpi == MM_DPI:
+        return {}
+    scale = dpi / MM_DPI
+    root.set("viewBox", f"0 0 {decimals(scale * width)} {decimals(scale * height)}")
+    return {"transform": f"scale({scale:.10f})"}
 
 
 def _stroke_data(stroke: Stroke, height: float) -> str:
@@ -140,7 +138,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
     root = root_element(width, height, f"Picture of a kirigami layout at {np.degrees(phi):g} degrees, {NO_CUT_FILE}")
     root.set("id", "PICTURE")
-    _describe(root, {"PICTURE": NO_CUT_FILE, **origin_facts(job.provenance)})
+    _describe(root, {PROGRAM: __version__, "PURPOSE": f"picture, {NO_CUT_FILE}", **origin_facts(job.provenance)})
     rims = [np.concatenate([loop, loop[:1]]) for loop in target]
     groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
         ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target]),

@@ -25,6 +25,7 @@ from kirigami_studio.fabricate.finished_sheet import (
     smallest_ligament,
 )
 from kirigami_studio.fabricate.joints import joined_pairs
+from kirigami_studio.fabricate.machine import kinds_for
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import SmallPlace, smallest_edge, smallest_neck, trimmed_neck_below
 from kirigami_studio.foundation.arrays import FloatArray
@@ -93,6 +94,7 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
         *bed_problems(plan),
+        *machine_problems(plan),
         *([] if phi is None or plan.material.connectors_hold else [_breaking(plan)]),
         *([] if bent is None else strain_problems(plan, bent, plan.material.strain_limit)),
     ]
@@ -253,8 +255,7 @@ def _breaking(plan: CutPlan) -> Problem:
 
 def bed_problems(plan: CutPlan) -> list[Problem]:
     """Warn about a sheet that the machine cannot reach all of, whichever way round it lies."""
-    material = plan.material
-    bed = (material.bed_width_mm, material.bed_height_mm)
+    bed = plan.machine.reach_mm
     width, height = plan.bounds_mm
     fits = any(width <= across and height <= along for across, along in (bed, bed[::-1]))
     if min(bed) == 0.0 or fits:
@@ -268,6 +269,24 @@ def bed_problems(plan: CutPlan) -> list[Problem]:
             bed_width_mm=bed[0],
             bed_height_mm=bed[1],
             largest_mm=largest,
+        )
+    ]
+
+
+def machine_problems(plan: CutPlan) -> list[Problem]:
+    """Warn about a material that is too thick for the chosen machine, or unknown to it."""
+    machine, material = plan.machine, plan.material
+    if plan.chosen_machine is None or machine.takes(material):
+        return []
+    if machine.kind not in kinds_for(material):
+        return [Problem.warning("plan.machine_does_not_cut", machine=machine.name, material=material.name)]
+    return [
+        Problem.warning(
+            "plan.too_thick_for_machine",
+            machine=machine.name,
+            material=material.name,
+            thickest_mm=machine.thickest_mm,
+            thickness_mm=material.thickness_mm,
         )
     ]
 

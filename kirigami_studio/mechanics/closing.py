@@ -103,7 +103,7 @@ class Closing:
 
 
 def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_end: bool) -> float:
-    """Where a growing stretch passes what is tolerated.
+    """Where a growing stretch passes what is tolerated, from 0 to pi.
 
     Parameters
     ----------
@@ -118,8 +118,9 @@ def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_en
     Returns
     -------
     phi : float, radians
-        0 for a sheet that closes.
+        0 for a sheet that closes, pi for one that jams at once.
     """
+    phi = np.clip(phi, 0.0, math.pi)  # mean turns of a sheet at rest are 0 but for rounding
     over = np.flatnonzero(stretch > tolerated)
     if not over.size:
         closed = reached_end and phi[-1] <= CLOSED + 1e-9

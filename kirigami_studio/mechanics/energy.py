@@ -65,7 +65,6 @@ class NetworkEnergy:
         self._arms = points - centres[joints.panels]
         span = points[:, 1] - points[:, 0]
         self._slender = np.flatnonzero(joints.slender)
-        self._junction = np.flatnonzero(~joints.slender)
         self._axis = np.where(joints.slender, np.angle(span), joints.axis)
         self.rest: ComplexArray = span * np.exp(-1j * self._axis)
         self.freedoms = _freedoms(joints.panels)

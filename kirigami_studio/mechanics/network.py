@@ -272,14 +272,6 @@ class PanelNetwork:
         found: FloatArray = self.contacts.rest + self.contacts.sign * self.turns(motion)[..., self.contacts.ligament]
         return found
 
-    def moved_points(self, panel: int, points: npt.ArrayLike, motion: FloatArray) -> FloatArray:
-        """Points (K, 2), mm, of one panel at rest, after the motion (P, 3)."""
-        dx, dy, theta = motion[panel]
-        cos, sin = math.cos(theta), math.sin(theta)
-        arm = np.asarray(points, dtype=np.float64) - self.centroids[panel]
-        moved: FloatArray = arm @ np.array([[cos, sin], [-sin, cos]]) + self.centroids[panel] + (dx, dy)
-        return moved
-
     def moved_outlines(self, motion: FloatArray) -> FloatArray:
         """Corners (P, Q, 2) of the panels, mm, after the motion (P, 3)."""
         arms = self.outlines - self.centroids[:, None]

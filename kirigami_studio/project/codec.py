@@ -18,6 +18,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, co
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
+from kirigami_studio.fabricate.machine import OLDER_ENTRIES
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
@@ -259,7 +260,7 @@ def _nodes(record: Record) -> Nodes:
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
     lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
-    own = None if settings.own is None else asdict(settings.own)
+    own = None if settings.own is None else {name: one for name, one in asdict(settings.own).items() if one is not None}
     return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
 
 
@@ -272,8 +273,14 @@ def _fabrication(record: Record) -> FabricationSettings:
             hinge_mm=tuple(_hinge_width(entry) for entry in options.list("hinge_mm")),
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
         ),
-        own=Material(**_plain_fields(record.record("own"), Material)) if record.holds("own") else None,
+        own=_own_material(record.record("own")) if record.holds("own") else None,
     )
+
+
+def _own_material(record: Record) -> Material:
+    """The numbers of a material; those of its machine stand in older files."""
+    older = {name: record.number(name) for name in OLDER_ENTRIES if record.holds(name)}
+    return Material(**_plain_fields(record, Material) | older)
 
 
 def _hinge(entry: object) -> int:

@@ -10,6 +10,7 @@ import tomli_w
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.fabricate.machine import machines
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.files import read_toml, write_atomically
@@ -34,14 +35,17 @@ class TypedSize(StrEnum):
     FLAT = "flat"  #: width of the flat sheet
 
 
-class Motion(StrEnum):
+class MotionPreference(StrEnum):
     """Whether moving parts follow the desktop's setting for animations, or stand still."""
 
     SYSTEM = "system"
     STILL = "still"
 
 
+#: Entries of earlier versions that mean nothing now.
+RETIRED = ("tour_seen",)
 _NAME = Setting(code="preferences.not_a_name", error=ProjectError).metadata
+_NAME_OR_NONE = Setting(may_be_empty=True, code="preferences.not_a_name", error=ProjectError).metadata
 _CHOICE = Setting(code="preferences.unknown_choice", error=ProjectError).metadata
 _FLAG = Setting(code="preferences.not_true_or_false", error=ProjectError).metadata
 
@@ -59,10 +63,10 @@ class Preferences:
     theme : Theme
     language : str
         Code of the window's language, or "system" for the desktop's.
-    tour_seen : bool
-        Whether the guided tour was taken before.
     material : str
         Key of the material that was chosen last.
+    machine : str
+        Key of the machine that was chosen last; "" for the one that the material is for.
     paper : Paper
         That PDFs are spread over.
     size : TypedSize
@@ -70,25 +74,25 @@ class Preferences:
         Longer side of the opened shape, and width of the flat sheet.
     machine_asked : bool
         Whether the question for machine and material was answered, or declined.
-    motion : Motion
+    motion : MotionPreference
     """
 
     profile: str = field(default="any", metadata=_NAME)
     dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)
     theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
     language: str = field(default="system", metadata=_NAME)
-    tour_seen: bool = field(default=False, metadata=_FLAG)
     material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
+    machine: str = field(default="", metadata=_NAME_OR_NONE)
     paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
     size: TypedSize = field(default=TypedSize.OPENED, metadata=_CHOICE)
     opened_mm: float = 100.0
     width_mm: float = 100.0
     machine_asked: bool = field(default=False, metadata=_FLAG)
-    motion: Motion = field(default=Motion.SYSTEM, metadata=_CHOICE)
+    motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
 
     def __post_init__(self) -> None:
         check(self)
-        for name in ("profile", "language", "material"):
+        for name in ("profile", "language", "material", "machine"):
             object.__setattr__(self, name, plain_line(getattr(self, name)))
         try:
             FabricationSettings(width_mm=self.width_mm, opened_mm=self.opened_mm)
@@ -101,6 +105,7 @@ class Preferences:
         machine = replace(
             empty.fabrication,
             material=self.material if self.material in library().materials else DEFAULT_PRESET,
+            machine=self.machine if self.machine in machines().items else "",
             profile=self.profile,
             dxf_version=self.dxf_version,
             paper=self.paper,
@@ -112,7 +117,14 @@ class Preferences:
     def on_machine_of(self, document: Document) -> Preferences:
         """The same with what a document says about the machine that it is cut on, and the material."""
         cut = document.fabrication
-        return replace(self, profile=cut.profile, dxf_version=cut.dxf_version, material=cut.material, paper=cut.paper)
+        return replace(
+            self,
+            profile=cut.profile,
+            dxf_version=cut.dxf_version,
+            material=cut.material,
+            machine=cut.machine,
+            paper=cut.paper,
+        )
 
     def with_size_of(self, document: Document) -> Preferences:
         """The same with the length that was typed for a document."""
@@ -136,6 +148,8 @@ def load(path: Path) -> Preferences:
         return Preferences()
     except (OSError, ValueError) as error:
         raise ProjectError("preferences.not_readable", path=path, reason=str(error)) from error
+    for name in RETIRED:
+        entries.pop(name, None)
     if unknown := entries.keys() - asdict(Preferences()).keys():
         raise ProjectError("preferences.unknown_entries", path=path, names=", ".join(sorted(unknown)))
     return Preferences(**entries)

@@ -70,13 +70,27 @@ def set_opened_size(document: Document, longer_mm: float) -> Edit:
     if target is not None:
         width, height = np.ptp(target.points, axis=0).tolist()
         scale = longer_mm / max(width, height)
-        if drawing:
-            placed = Placed.on_board(target)
-            objects = (Placed.on_board(each).enlarged(scale / placed.scale, placed.centre) for each in drawing)
-            drawing = tuple(each.outline for each in objects)
-        target = replace(target, size=(scale * width, scale * height), unit="mm")
+        target, drawing = _resized(target, drawing, (scale * width, scale * height))
     changed = replace(document, target=target, fabrication=cut, drawing=drawing)
     return Edit(tr("Change the size of the opened shape"), sized(changed), merge_key="fabrication:opened_mm")
+
+
+def target_as_cut(document: Document) -> tuple[Outline | None, tuple[Outline, ...]]:
+    """The target and its objects, as large as the sheet shows them once it is cut."""
+    target, size = document.target, size_of(document)
+    if target is None or size is None or size.agrees:
+        return target, document.drawing
+    return _resized(target, document.drawing, size.opened)
+
+
+def _resized(
+    target: Outline, drawing: tuple[Outline, ...], size: tuple[float, float]
+) -> tuple[Outline, tuple[Outline, ...]]:
+    """A target of another width and height, mm, with the objects it was drawn of around it."""
+    placed = Placed.on_board(target)
+    factor = size[0] / placed.size[0]
+    objects = (Placed.on_board(each).enlarged(factor, placed.centre) for each in drawing)
+    return replace(target, size=size, unit="mm"), tuple(each.outline for each in objects)
 
 
 def flat_width(target: Outline, settings: DesignSettings, candidate: Candidate | None) -> float:

@@ -30,7 +30,8 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.mechanics.bow_contacts import NONE as NO_CONNECTOR
 from kirigami_studio.mechanics.bow_contacts import Meetings, meetings
 from kirigami_studio.mechanics.closing import (
@@ -71,6 +72,13 @@ class Outcome(Enum):
     TOUCHING = "touching"  #: panels run into each other
 
 
+class Source(Enum):
+    """How something is known of a sheet as cut; the values are the names in JSON."""
+
+    ESTIMATE = "estimate"  #: from the design, the material and the widths
+    SIMULATION = "simulation"  #: closed step by step on the connectors of its planned cuts
+
+
 class StrainFigure(Enum):
     """Which of the two figures of a connector's strain is believed."""
 
@@ -85,7 +93,7 @@ class AsCut:
     Attributes
     ----------
     jam_phi : float, radians
-        Angle at which it jams; 0 for a sheet that closes.
+        Angle at which it jams, from 0 for a sheet that closes to pi for one that stays flat.
     phi : float, radians
         At which it is meant to show the target.
     outcome : Outcome
@@ -97,6 +105,12 @@ class AsCut:
     iou, ideal_iou : float or None
         Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
         and without a target.
+    source : Source
+
+    Raises
+    ------
+    AngleError
+        A jam outside of 0 to pi.
     """
 
     jam_phi: float
@@ -107,6 +121,10 @@ class AsCut:
     figure: StrainFigure
     iou: float | None = None
     ideal_iou: float | None = None
+    source: Source = Source.SIMULATION
+
+    def __post_init__(self) -> None:
+        check_phi(self.jam_phi)
 
     @property
     def closes(self) -> bool:
@@ -117,6 +135,39 @@ class AsCut:
     def reached(self) -> float:
         """The angle (radians) nearest to ``phi`` that the sheet comes to."""
         return self.phi if self.closes else max(self.jam_phi, self.phi)
+
+    @property
+    def jam_deg(self) -> float:
+        """The angle at which it jams, degrees in [0, 180]: the one figure that everything shows."""
+        return math.degrees(self.jam_phi)
+
+    @property
+    def opened(self) -> float:
+        """Share (0..1) of its way from flat to its angle that the sheet comes."""
+        return 1.0 if self.closes else min((math.pi - self.jam_phi) / (math.pi - self.phi), 1.0)
+
+    @property
+    def lost(self) -> float | None:
+        """Match (IoU) that is lost by being cut; None where that is not known."""
+        return None if self.iou is None or self.ideal_iou is None else max(0.0, self.ideal_iou - self.iou)
+
+    @property
+    def word(self) -> str:
+        """Whether it comes to its angle, in the words that everything shows."""
+        if not self.closes:
+            return tr("jams at {jam:.0f}°", jam=self.jam_deg)
+        return tr("closes") if self.phi < CLOSE_TO else tr("opens to {phi:.0f}°", phi=math.degrees(self.phi))
+
+    def to_json(self) -> dict[str, object]:
+        """For the command line: jam, match as cut (null where it is not known), largest strain."""
+        return {**jam_json(self), "iou": self.iou, "max_strain": self.strain}
+
+
+def jam_json(found: AsCut | None) -> dict[str, object]:
+    """Where a sheet jams and how that is known, for every JSON; nulls where nothing is known."""
+    if found is None:
+        return {"jam_deg": None, "jam_from": None}
+    return {"jam_deg": found.jam_deg, "jam_from": found.source.value}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -312,7 +363,7 @@ def estimate(
     turn = np.full(len(sheet.connectors), math.pi - (phi if outcome is Outcome.CLOSES else max(jam, phi)))
     in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
     strain = in_plane if figure is StrainFigure.IN_PLANE else out_of_plane
-    return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure)
+    return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure, source=Source.ESTIMATE)
 
 
 def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:
@@ -323,8 +374,8 @@ def least_strain(deployment: Deployment, settings: FabricationSettings, phi: flo
     return float((in_plane if believed_figure(sheet) is StrainFigure.IN_PLANE else out_of_plane).min())
 
 
-def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, float]:
-    """Estimate where designs jam (radians, 0 for those that close); those that cannot be cut at all are left out.
+def estimates(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, AsCut]:
+    """Estimate where designs jam; those that cannot be cut at all are left out.
 
     Raises
     ------
@@ -334,10 +385,9 @@ def jam_angles(candidates: Iterable[Candidate], settings: FabricationSettings) -
     material, found = material_for(settings), {}
     for candidate in candidates:
         try:
-            as_cut = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
+            found[candidate] = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
         except KirigamiError:
             continue  # widths that make no sense on this sheet, which planning its cuts explains
-        found[candidate] = as_cut.jam_phi
     return found
 
 

@@ -265,11 +265,10 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     person: Person, window: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
 ) -> None:
     window.resize(*SIZE)
-    first = window.connections.first_start
-    first.begin()
-    until(lambda: window.stage.empty.ready)
+    window.presenters.welcome.begin()
+    until(lambda: window.stage.welcome.ready)
     QApplication.processEvents()
-    scissors = middle(window.stage.empty.question.buttons["by hand"], window)
+    scissors = middle(window.stage.welcome.question.buttons["by hand"], window)
     generate = middle(window.run.generate, window)
     cut, actions = tmp_path / "heart.pdf", []
     with started(person, tmp_path / "log.txt") as program:

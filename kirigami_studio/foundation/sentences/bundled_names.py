@@ -1,4 +1,4 @@
-"""Names and notes of what comes with the program, for translators: silhouettes, materials and machine profiles.
+"""Names and notes of silhouettes, materials and machine profiles, for translators.
 
 They are data, kept in files and records in English, and translated where they are shown.
 """
@@ -95,9 +95,12 @@ NOTES = (
         "and speed: starting values. Cut the coupon before trusting it."
     ),
     mark(  # film-uv
-        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speeds and acceleration are typical values. Cut the "
-        "coupon before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its general "
-        "specifications (typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5 GPa)."
+        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speed and passes: 0.2 mm of polycarbonate "
+        "takes 15 cuts at 40 mm/s of a UV laser (abstract of a study of thermal ablation of PC "
+        "film), so 50 \N{MICRO SIGN}m take 4; the paper's parts then take the 5 minutes that it tells. Cut the "
+        "coupon before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its "
+        "general specifications (typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5"
+        " GPa)."
     ),
     mark(  # foil-uv
         "Expect connectors to fail: the aluminium sheet that the paper tried could be cut, but its connectors "

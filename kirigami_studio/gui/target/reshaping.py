@@ -56,7 +56,9 @@ class TargetReshaper(QObject):
         objects = tuple(each.outline for each in drawing.objects) if len(drawing.objects) > 1 else ()
         if target is None:
             return Edit(change.gesture, without_designs(document, None))
-        document = as_drawn(document, target.outline)
+        shown = self._context.placed
+        before = document if shown is None else replace(document, target=shown.outline)  # in the size that is drawn on
+        document = replace(as_drawn(before, target.outline), target=document.target)
         same = target.outline == document.target  # of another size or elsewhere: its designs are still right
         changed = document if same else without_designs(document, target.outline)
         return Edit(change.gesture, replace(changed, target=target.outline, drawing=objects), change.merge_key)

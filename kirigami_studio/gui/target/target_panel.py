@@ -158,9 +158,16 @@ class TargetPanel(Card):
         self.view.update()
 
     def show_target(
-        self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()
+        self,
+        outline: Outline | None,
+        picture: Picture | None = None,
+        objects: tuple[Outline, ...] = (),
+        source: Outline | None = None,
     ) -> None:
-        """Show the document's target, and the threshold when it was traced from a picture."""
+        """Show the target in the size it is cut in, and the threshold of a traced picture.
+
+        ``source`` is the same target as it was read, if its size was in pixels or unknown.
+        """
         self.threshold.setVisible(picture is not None)
         if picture is not None:
             self.threshold.show_levels(picture.threshold, picture.automatic)
@@ -184,7 +191,7 @@ class TargetPanel(Card):
         self.notes.setVisible(bool(notes))
         if outline is not None:
             self.facts.setText(tr(outline.name))
-            self.size_.setText(measured(outline))
+            self.size_.setText(measured(outline if source is None or source.unit == "mm" else source))
 
     def arrangements(self) -> frozenset[str]:
         """What can be done with the selected objects while the board is open."""

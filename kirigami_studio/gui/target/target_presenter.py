@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.second_target_row import SecondTargetRow
+from kirigami_studio.gui.run.settings_editor import SettingsEditor
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.run.start_tile import StartTile
 from kirigami_studio.gui.session.collection import DiscardedDesigns
@@ -27,6 +28,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.sheet_size import size_of, target_as_cut
 from kirigami_studio.studio.two_states import flat_size, starts_as
 
 
@@ -59,6 +61,7 @@ class TargetPresenter(QObject):
         self._asked_in = 0  # which project the question is about
         self._offered: Outline | None = None
         self._shown = Document()
+        self._size = size_of(self._shown)
         self.reshaping = TargetReshaper(panel.view.context, session, self)
         self.discarded = DiscardedDesigns(session, self)
         self.discarded.undo_wanted.connect(undo)
@@ -76,6 +79,7 @@ class TargetPresenter(QObject):
         targeting.reader.failed.connect(self._note_unread)
         targeting.source_read.connect(self._drop_errors)
         targeting.question_wanted.connect(self._ask)
+        targeting.on_board = self._on_board
 
     def _connect_board(self) -> None:
         panel, reshaping = self._panel, self.reshaping
@@ -91,6 +95,11 @@ class TargetPresenter(QObject):
         reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(panel.view.show_preview)
         reshaping.restarted.connect(panel.refine.restart)
+
+    def _on_board(self, outline: Outline) -> Outline:
+        """Lay a contour at another threshold on its picture, which lies still meanwhile."""
+        picture = self._targeting.tracer.picture_of(outline)
+        return self._panel.view.on_picture(outline, None if picture is None else picture.traced)
 
     def _take_guides(self, gesture: str) -> None:
         session = self._session
@@ -171,7 +180,8 @@ class TargetPresenter(QObject):
                 name = tr(self._offered.name)
                 sentence = tr("{name} was not taken. Open it again to use it.", name=name)
                 self._session.post(Message(sentence, Tone.HINT))
-        if document.target is not before.target or document.drawing != before.drawing or _moved(document, before):
+        drawn = document.target is not before.target or document.drawing != before.drawing or _moved(document, before)
+        if drawn or size_of(document) != self._size:
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:
             self._panel.show_reach(document.settings.grid)
@@ -181,7 +191,9 @@ class TargetPresenter(QObject):
     def _show_target(self, document: Document) -> None:
         panel = self._panel
         picture = self._targeting.tracer.picture_of(document.target)
-        panel.show_target(document.target, picture, document.drawing)
+        target, drawing = target_as_cut(document)
+        self._size = size_of(document)
+        panel.show_target(target, picture, drawing, document.target)
         self.reshaping.follow()
         panel.show_reach(document.settings.grid)
 
@@ -206,8 +218,7 @@ class StartPresenter(QObject):
     session : Session
     reader : StartReader
     openers : mapping of str to callable
-    choose : callable
-        Takes a start from the tile.
+    editor : SettingsEditor
     """
 
     def __init__(
@@ -218,11 +229,11 @@ class StartPresenter(QObject):
         *,
         reader: StartReader,
         openers: Openers,
-        choose: Callable[[StartShape], None],
+        editor: SettingsEditor,
     ) -> None:
         super().__init__(tile)
         self._tile, self._settings, self._session = tile, settings, session
-        self._openers, self._choose_start = openers, choose
+        self._openers, self._editor = openers, editor
         tile.chosen.connect(self._choose)
         tile.file_dropped.connect(reader.open)
         tile.other_wanted.connect(self.open_other)
@@ -234,7 +245,7 @@ class StartPresenter(QObject):
         self._openers[kind]()
 
     def _choose(self, start: StartShape) -> None:
-        self._choose_start(start)
+        self._editor.change(start=start)
         self._session.history.end_drag()
 
     def show(self) -> None:

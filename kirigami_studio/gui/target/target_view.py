@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from enum import Enum
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QMimeData, QPointF, QRectF, QSize, Qt, Signal
@@ -44,8 +47,13 @@ from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.reach import Reach
 from kirigami_studio.studio.targets import Picture
 
+if TYPE_CHECKING:
+    from kirigami_studio.outlines.read_image import Traced
+
 #: Room around the target on the board while it is edited, as a share of its size.
 ROOM = 0.2
+#: Scales this near (relative) are one scale.
+SAME_SCALE = 1e-6
 #: Millimetres of an inch.
 INCH = 25.4
 
@@ -116,16 +124,20 @@ class TargetView(Canvas):
         """Show another target; an unfinished sketch is dropped.
 
         ``objects`` are those that it was made of, if they are several.  A target that was drawn here, or traced from
-        the picture that lies here, stays where it is, with the board as it is seen; another one is fitted.
+        the picture that lies here, stays where it is, with the board as it is seen; another one is fitted.  All have
+        the size in mm that they are shown in; a picture lies under its contour.
         """
         drawn = None if outline is None else self.context.recall(outline)
         traced = None if picture is None else picture.traced
         under = self.underlay
-        if under is not None and picture is not None and traced is not None and under.path == picture.path:
-            if drawn is not None:  # it was moved or enlarged, and the picture with it
-                under = under.laid_under(drawn, traced)
+        same = under is not None and picture is not None and under.path == picture.path
+        if outline is not None and under is not None and same and traced is not None:
+            there, here = under.place(traced), Placed.on_board(outline)
+            if drawn is None and math.isclose(here.scale, there.scale, rel_tol=SAME_SCALE):
+                drawn = there  # the picture lies still
             else:
-                drawn = under.place(traced)
+                drawn = drawn or (here if outline.place is not None else replace(here, centre=there.centre))
+                under = under.laid_under(drawn, traced)
         elif drawn is None:
             under = None
         self._outline, self._preview, self.reach = outline, None, None
@@ -144,6 +156,13 @@ class TargetView(Canvas):
 
     def _placed(self, outline: Outline) -> Placed:
         return self.context.recall(outline) or Placed.on_board(outline)
+
+    def on_picture(self, outline: Outline, traced: Traced | None) -> Outline:
+        """Give a contour its size and place on the picture that lies on the open board."""
+        if not self._editing or self.underlay is None or traced is None:
+            return outline
+        placed = self.underlay.place(traced)
+        return replace(outline, size=placed.size, unit="mm", place=placed.centre)
 
     def show_reach(self, reach: Reach | None) -> None:
         """Mark what the chosen grid can hardly show of this target."""
@@ -395,10 +414,6 @@ class TargetView(Canvas):
             self.tool_left.emit()
         else:
             self.editing_left.emit()
-
-
-#: Tools that make a new shape.
-DRAWING = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE}
 
 
 def _tools(context: SketchContext) -> dict[Tool, SketchTool]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
@@ -16,7 +17,7 @@ from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -39,7 +40,7 @@ def project(tmp_path: Path) -> Path:
         settings=DesignSettings((4, 5)),
         candidates=(Candidate(Sheet(field), evaluate(deploy(field), target), seed=0, index=0),),
         chosen=0,
-        fabrication=FabricationSettings(width_mm=120.0, options=CutOptions(hinge_mm=((1, 0.4),)), profile="k40"),
+        fabrication=FabricationSettings(width_mm=120.0, options=replace(STRAIGHT, hinge_mm=((1, 0.4),)), profile="k40"),
         provenance={"model": "balanced"},
     )
     path = tmp_path / "own.kiri"

@@ -26,15 +26,15 @@ def test_that_the_presets_are_bundled_and_none_claims_to_be_calibrated() -> None
 
 
 def test_that_files_from_before_the_newer_entries_still_load_with_their_defaults(tmp_path: Path) -> None:
-    newer = ("strain_limit", "on_delay_s", "off_delay_s", "passes", "min_slit_mm", "young_gpa", "power_percent", "bed_")
+    newer = ("strain_limit", "passes", "min_slit_mm", "young_gpa", "power_percent")
     lines = resource("materials", "drag-knife.toml").read_text(encoding="utf-8").splitlines()
     old = [line for line in lines if not line.startswith(newer)]
-    assert len(old) == len(lines) - len(newer) - 1  # the bed has two sides
+    assert len(old) == len(lines) - len(newer)
     (tmp_path / "old.toml").write_text("\n".join(old), encoding="utf-8")
     material = read_preset(tmp_path / "old.toml")
-    assert (material.strain_limit, material.on_delay_s, material.off_delay_s) == (0.05, 0.0, 0.0)
+    assert material.strain_limit == 0.05
     assert (material.passes, material.min_slit_mm, material.young_gpa) == (1, 0.1, 3.0)
-    assert (material.power_percent, material.bed_width_mm, material.bed_height_mm) == (0.0, 0.0, 0.0)
+    assert material.power_percent == 0.0
     assert (material.min_panel_mm, material.connectors_hold) == (0.0, True)
     assert material.speed_mm_s == presets()["drag-knife"].speed_mm_s
 
@@ -54,17 +54,17 @@ def test_that_an_unknown_material_is_refused_with_the_known_ones() -> None:
     [
         (("kerf_mm = 0.02", "kerf_mm = -0.02"), "kerf_mm must be a number of 0 or more, got -0.02"),
         (("kerf_mm = 0.02", "kerf_mm = nan"), "kerf_mm must be a number"),
-        (("speed_mm_s = 100.0", "speed_mm_s = 0"), "speed_mm_s must be a number above 0"),
+        (("speed_mm_s = 40.0", "speed_mm_s = 0"), "speed_mm_s must be a number above 0"),
         (("calibrated = false", 'calibrated = "no"'), "calibrated must be of type bool"),
         (("strain_limit = 0.45", "strain_limit = 0.0"), "strain_limit must be a number above 0"),
-        (("on_delay_s = 0.0", "on_delay_s = -1.0"), "on_delay_s must be a number of 0 or more"),
+        (("passes = 4", "passes = 4\non_delay_s = -1.0"), "on_delay_s must be a number of 0 or more"),
         (("power_percent = 30.0", "power_percent = 101.0"), "power_percent must be 0 to 100, got 101"),
-        (("bed_width_mm = 305.0", "bed_width_mm = -1.0"), "bed_width_mm must be a number of 0 or more"),
-        (("passes = 1", "passes = 0"), "passes must be 1 or more, got 0"),
-        (("passes = 1", "passes = 1.5"), "passes must be of type int, got 1.5"),
-        (("passes = 1", "passes = true"), "passes must be of type int, got True"),
+        (("passes = 4", "passes = 4\nbed_width_mm = -1.0"), "bed_width_mm must be a number of 0 or more"),
+        (("passes = 4", "passes = 0"), "passes must be 1 or more, got 0"),
+        (("passes = 4", "passes = 1.5"), "passes must be of type int, got 1.5"),
+        (("passes = 4", "passes = true"), "passes must be of type int, got True"),
         (("min_slit_mm = 0.1", "min_slit_mm = inf"), "min_slit_mm must be a number above 0"),
-        (("passes = 1", 'passes = 1\nmeasured_on = "yesterday"'), "a day such as 2026-11-21, got 'yesterday'"),
+        (("passes = 4", 'passes = 4\nmeasured_on = "yesterday"'), "a day such as 2026-11-21, got 'yesterday'"),
         (("calibrated = false", ""), "lacks the entry calibrated"),
         (("calibrated = false", "calibrated = false\nkerf = 1.0"), "unknown entry: kerf"),
         (("calibrated = false", "calibrated = ="), "Cannot read the material file"),
@@ -89,7 +89,6 @@ def test_that_a_preset_cannot_be_changed_in_place() -> None:
         default_material().kerf_mm = 1.0  # type: ignore[misc]
 
 
-def test_that_every_preset_knows_its_bed_and_every_laser_its_power() -> None:
+def test_that_every_laser_knows_its_power() -> None:
     for material in presets().values():
-        assert min(material.bed_width_mm, material.bed_height_mm) > 200.0
         assert (material.power_percent > 0.0) == ("laser" in material.machine)
