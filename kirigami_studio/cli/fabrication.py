@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, new_settings, with_choices
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
 from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.cutting import check_connectors
@@ -49,8 +50,15 @@ FLAT_DEG = 180.0
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings of the width options; unknown materials are refused before any work."""
-    return new_settings(_given(arguments))
+    """Fabrication settings from the width options, else the material's; warns of what it cannot do.
+
+    Unknown materials are refused here, before any work.
+    """
+    settings = new_settings(_given(arguments))
+    limits = material_for(settings).limits_note
+    if limits is not None:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
+    return settings
 
 
 def export(arguments: argparse.Namespace) -> int:

@@ -68,15 +68,6 @@ class Closing:
         return widths
 
     @property
-    def lever_force(self) -> FloatArray:
-        """What a lever of one panel's size needs at its end (S,), N, where the mean angle is driven.
-
-        Against an angle the slope of the energy is a moment.
-        """
-        force: FloatArray = self.path.force / self.sheet.network.panel_size
-        return force
-
-    @property
     def stable_phi(self) -> FloatArray:
         """Angles (radians) at which the sheet rests if it is let go."""
         at = self.path.drive.displacement
