@@ -457,8 +457,8 @@ def simulate(
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
-    found_as_cut = _simulated(plan.material, found, jam, phi, lap)
-    return SimulatedSheet(found_as_cut, found, node, width_mm, panels, plan.made)
+    as_cut = _simulated(plan.material, found, jam, phi, lap)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
 
 
 def simulated(
