@@ -20,6 +20,7 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.designs import Designs as Designs
     from kirigami_studio.api.designs import design as design
     from kirigami_studio.api.designs import load_project as load_project
+    from kirigami_studio.api.designs import machine_names as machine_names
     from kirigami_studio.api.designs import material_names as material_names
     from kirigami_studio.api.simulation import Simulation as Simulation
     from kirigami_studio.api.target import Target as Target

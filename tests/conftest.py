@@ -78,6 +78,14 @@ def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.
     return folder
 
 
+@pytest.fixture(autouse=True)
+def own_machines(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder of own machines, too."""
+    folder = tmp_path_factory.mktemp("machines")
+    monkeypatch.setenv("KIRIGAMI_STUDIO_MACHINES", str(folder))
+    return folder
+
+
 @pytest.fixture(scope="module")
 def workers() -> Iterator[Workers]:
     """A Dask cluster of two processes on this machine."""

@@ -60,7 +60,7 @@ def drag(
 
 
 def chosen(window: MainWindow) -> Candidate:
-    candidate = window.controller.document.candidate
+    candidate = window.session.document.candidate
     assert candidate is not None
     return candidate
 
@@ -70,4 +70,4 @@ def ratio(window: MainWindow, void: Void) -> float:
 
 
 def settle(window: MainWindow, until: Until) -> None:
-    until(lambda: not window.controller.hand.busy)
+    until(lambda: not window.services.hand.busy)

@@ -16,7 +16,7 @@ def shown(made: StateSheet, qtbot: QtBot) -> Iterator[StateSheet]:
     with qtbot.waitExposed(made.window):
         made.window.show()
     yield made
-    made.window.controller.history.mark_saved()
+    made.window.session.history.mark_saved()
     assert made.window.close()
     made.window.deleteLater()
     # Outside an event loop nothing is deleted later: every change of theme would style this window as well.

@@ -71,33 +71,33 @@ def _parent_of(entry: Path) -> int:
 
 def generations(application: QApplication, window: MainWindow, draw: random.Random) -> None:
     """One run, cancelled while it loads, samples, fits or just after."""
-    controller = window.controller
-    controller.generation.generate()
+    services = window.services
+    services.generation.generate()
     end = time.monotonic() + draw.uniform(0.0, LONGEST_RUN)
     wait(application, lambda: time.monotonic() > end)
-    controller.cancel()
-    wait(application, lambda: not controller.running and not controller.queue.busy)
+    services.chosen.cancel()
+    wait(application, lambda: not services.run.running and not services.session.queue.busy)
     for message in tuple(window.messages.messages):
         window.messages.drop(message)
 
 
 def edits(application: QApplication, window: MainWindow, draw: random.Random) -> None:
     """One change of settings, size or choice, shown, then undone."""
-    controller = window.controller
+    services = window.services
     kind = draw.randrange(4)
     if kind == 0:
-        controller.fabrication.change(width_mm=draw.uniform(80.0, 160.0))
+        services.fabrication.change(width_mm=draw.uniform(80.0, 160.0))
     elif kind == 1:
-        controller.change_settings(k=draw.randrange(9, 60))
+        services.settings.change(k=draw.randrange(9, 60))
     elif kind == 2:
         window.commands["next"].trigger()
     else:
-        controller.targeting.open(draw.choice(("star", "drop", "hexagon")))
-    controller.end_drag()
-    wait(application, lambda: not controller.queue.busy)
+        services.targeting.open(draw.choice(("star", "drop", "hexagon")))
+    services.session.history.end_drag()
+    wait(application, lambda: not services.session.queue.busy)
     window.grab()
-    controller.undo()
-    wait(application, lambda: not controller.queue.busy)
+    services.project.undo()
+    wait(application, lambda: not services.session.queue.busy)
 
 
 def soaked(generation_count: int, edit_count: int, seed: int) -> None:
@@ -105,9 +105,9 @@ def soaked(generation_count: int, edit_count: int, seed: int) -> None:
     application = create_application(["kirigami-studio"])
     window = create_window(LIGHT)
     window.show()
-    controller = window.controller
-    controller.open_project(EXAMPLE)
-    wait(application, lambda: controller.stage is not None and not controller.queue.busy)
+    services = window.services
+    services.project.open(EXAMPLE)
+    wait(application, lambda: services.session.stage is not None and not services.session.queue.busy)
     draw = random.Random(seed)
     for name, cycle, count in (
         ("generate and cancel", generations, generation_count),
@@ -121,7 +121,7 @@ def soaked(generation_count: int, edit_count: int, seed: int) -> None:
             cycle(application, window, draw)
             if done % part == 0:
                 _tell(name, done, time.monotonic() - begun, window)
-    controller.history.mark_saved()
+    services.session.history.mark_saved()
     window.close()
 
 

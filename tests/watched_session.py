@@ -91,9 +91,8 @@ class WatchedSession:
 
     def __init__(self, folder: Path) -> None:
         self.places = Places(folder)
-        self.window: MainWindow = create_window(LIGHT)
+        self.window: MainWindow = create_window(LIGHT, file_dialogs=self.places)
         self.window.resize(FIRST)
-        self.window.file_dialogs = self.places
         self.watch = ThreadWatch()
         self.longest: dict[str, tuple[float, float]] = {}
 
@@ -122,9 +121,9 @@ class WatchedSession:
 
     def play(self) -> None:
         """Run every step: from the target to the files, one after the other as one works."""
-        controller = self.window.controller
+        services = self.window.services
         self.step(
-            "choose a target", lambda: controller.targeting.open("heart"), lambda: self.window.run.generate.isEnabled()
+            "choose a target", lambda: services.targeting.open("heart"), lambda: self.window.run.generate.isEnabled()
         )
         if not self.brief:
             for step in ("generate 16, loading the generator", "generate 16 again"):
@@ -133,7 +132,7 @@ class WatchedSession:
         self.set_up(4, FULL_POLISH, search=False)
         self.step("generate 4 and polish fully", self.generate, self.generated)
         self.step("choose another design", lambda: self.press("next"), self.planned)
-        self.step("trim", lambda: self.press("trim"), lambda: not controller.trimming.busy and self.planned())
+        self.step("trim", lambda: self.press("trim"), lambda: not services.chosen.trimming.busy and self.planned())
         for command in ("undo", "redo"):
             for number in range(1 if self.brief else 3):  # every press is a gesture of its own
                 self.step(f"{command} step {number + 1}", lambda command=command: self.press(command), self.planned)
@@ -143,7 +142,7 @@ class WatchedSession:
         else:
             self.set_up(2, 5, search=True, grid=(6, 6))  # the fits are other processes' work, whatever their size
             self.step("generate 2 and search", self.generate, self.generated)
-        controller.history.mark_saved()
+        services.session.history.mark_saved()
         self.open("open a large project", "large.kiri", MANY)
         self.step("choose in the large project", lambda: self.press("next"), self.planned)
         self.step("move the balance over it", self.balance)
@@ -157,7 +156,7 @@ class WatchedSession:
         self.step("export everything", lambda: self.press("export_all"), self.told)
         if self.brief:
             return
-        controller.history.mark_saved()
+        services.session.history.mark_saved()
         self.open(f"open {MOST} designs", "many.kiri", MOST)
         self.all_designs(MOST)
         self.step(THEME, lambda: self.press("theme"))
@@ -172,7 +171,7 @@ class WatchedSession:
         press = self.press
         assert self.window.gallery.view.model_.rowCount() == designs
         self.step(f"show all {designs} designs at once", lambda: press("all_designs"), self.pictured)
-        page = self.window.connections.all_designs.page
+        page = self.window.presenters.all_designs.page
         assert page is not None
         table, stage = page.table, self.window.stage
         self.step(
@@ -193,7 +192,7 @@ class WatchedSession:
         self.step(
             f"leave the table of {designs}",
             lambda: press("all_designs"),
-            lambda: not self.window.connections.all_designs.shown,
+            lambda: not self.window.presenters.all_designs.shown,
         )
         page.card_size.setValue(1)  # as it was, for the next time
         stage.compare.bar.slider.setValue(0)
@@ -207,12 +206,12 @@ class WatchedSession:
 
     def pictured(self) -> bool:
         """Whether all cards in sight have their pictures."""
-        page = self.window.connections.all_designs.page
+        page = self.window.presenters.all_designs.page
         return page is not None and page.isVisible() and not page.table.cards.pending
 
     def scroll_all(self) -> None:
         """Scroll through the table, page by page."""
-        page = self.window.connections.all_designs.page
+        page = self.window.presenters.all_designs.page
         assert page is not None
         bar = page.table.verticalScrollBar()
         for value in range(0, bar.maximum() + 1, max(1, bar.pageStep())):
@@ -264,25 +263,25 @@ class WatchedSession:
         settings = self.window.settings
         settings.candidates.setValue(designs)
         settings.search.setChecked(search)
-        self.window.controller.change_settings(polish=polish, grid=grid)
+        self.window.services.settings.change(polish=polish, grid=grid)
         self.let_live(0.1)
 
     def generate(self) -> None:
         QTest.mouseClick(self.window.run.generate, Qt.MouseButton.LeftButton)
 
     def generated(self) -> bool:
-        controller = self.window.controller
-        return not controller.running and self.planned()
+        services = self.window.services
+        return not services.run.running and self.planned()
 
     def planned(self) -> bool:
-        return self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy
+        return self.window.fabrication.export.isEnabled() and not self.window.session.queue.busy
 
     def shown(self, designs: int) -> bool:
         return len(self.window.gallery.view.model_.all_entries) == designs
 
     def told(self) -> bool:
         """An export has said how it went."""
-        return bool(self.window.messages.messages) and not self.window.controller.queue.busy
+        return bool(self.window.messages.messages) and not self.window.session.queue.busy
 
     def scrub(self) -> None:
         """Move the slider all the way, one step in each turn."""
@@ -362,7 +361,7 @@ def main(kind: type[WatchedSession]) -> int:
     finally:
         session.watch.close()
         window: QWidget = session.window
-        session.window.controller.history.mark_saved()
+        session.window.session.history.mark_saved()
         window.close()
     sys.stdout.write(json.dumps(session.longest))
     return 0

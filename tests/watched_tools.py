@@ -44,7 +44,7 @@ class WatchedTools(WatchedSession):
         super().__init__(folder)
         self.folder = folder
         self.window.resize(*WINDOW)
-        self.window.controller.filing.recovery.use(folder / "recovery")
+        self.window.services.project.recovery.use(folder / "recovery")
 
     def play(self) -> None:
         self.large_gallery()
@@ -66,18 +66,18 @@ class WatchedTools(WatchedSession):
         self.step("widen the gallery to see all its cards", self.widen, lambda: not view.cards.pending)
         self.step("scroll through the wide gallery", self.look_through, lambda: not view.cards.pending)
         self.window.columns.setSizes([560, 1400, 600])
-        self.window.controller.history.mark_saved()
+        self.window.session.history.mark_saved()
 
     def widen(self) -> None:
         self.window.columns.setSizes([340, WINDOW[0] - 340 - ALL_CARDS, ALL_CARDS])
 
     def many_designs(self) -> None:
         """128 designs, undone and redone."""
-        self.step("choose a target in a large window", lambda: self.window.controller.targeting.open("star"))
-        self.until(lambda: self.window.run.generate.isEnabled() and not self.window.controller.queue.busy)
-        controller, row = self.window.controller, self.window.settings.second
-        self.step("choose a second target", lambda: controller.second.open("hexagon"))
-        self.until(lambda: controller.document.settings.second is not None and not controller.queue.busy)
+        self.step("choose a target in a large window", lambda: self.window.services.targeting.open("star"))
+        self.until(lambda: self.window.run.generate.isEnabled() and not self.window.session.queue.busy)
+        services, row = self.window.services, self.window.settings.second
+        self.step("choose a second target", lambda: services.second.open("hexagon"))
+        self.until(lambda: services.session.document.settings.second is not None and not services.session.queue.busy)
         self.step("do without it", row.remove.click)
         self.set_up(DESIGNS, 0, search=False)
         self.step(f"generate {DESIGNS} designs", self.generate, self.generated)
@@ -102,7 +102,7 @@ class WatchedTools(WatchedSession):
 
     def hand(self) -> None:
         """The wheel on a void, and a void pulled."""
-        view, hand = self.window.stage.view, self.window.controller.hand
+        view, hand = self.window.stage.view, self.window.services.hand
         self.window.stage.hand.click()
         self.window.stage.deployment.set_phi(OPEN)
         self.let_live(0.1)
@@ -134,7 +134,7 @@ class WatchedTools(WatchedSession):
 
     def drawing_board(self) -> None:
         """A stroke on the board."""
-        target, controller = self.window.target, self.window.controller
+        target, session = self.window.target, self.window.session
         self.step("open the drawing board", lambda: self.press("edit_target"), lambda: target.editing)
         self.press("freehand")
         self.let_live(0.1)
@@ -142,19 +142,19 @@ class WatchedTools(WatchedSession):
         turns = np.linspace(0.0, 2.0 * math.pi, STROKE)
         radius = 0.35 * height * (1.0 + 0.2 * np.cos(5 * turns))
         places = np.stack([0.5 * width + radius * np.cos(turns), 0.5 * height + radius * np.sin(turns)], axis=1)
-        stroke, before = [QPoint(round(x), round(y)) for x, y in places], controller.document.target
+        stroke, before = [QPoint(round(x), round(y)) for x, y in places], session.document.target
         self.step(
-            "draw a stroke", lambda: self.drag(target.view, stroke), lambda: controller.document.target is not before
+            "draw a stroke", lambda: self.drag(target.view, stroke), lambda: session.document.target is not before
         )
-        self.step("undo the stroke", lambda: self.press("undo"), lambda: controller.document.target == before)
+        self.step("undo the stroke", lambda: self.press("undo"), lambda: session.document.target == before)
         self.step("leave the drawing board", lambda: self.press("edit_target"), lambda: not target.editing)
 
     def photo(self) -> None:
         """A large photo and its threshold."""
-        bar, controller = self.window.target.threshold, self.window.controller
-        opened = lambda: controller.targeting.open(str(self.folder / "photo.png"))  # noqa: E731
-        self.step("open a large photo", opened, lambda: bar.isVisible() and not controller.queue.busy)
-        self.step("move its threshold", self.move_threshold, lambda: not controller.queue.busy)
+        bar, services = self.window.target.threshold, self.window.services
+        opened = lambda: services.targeting.open(str(self.folder / "photo.png"))  # noqa: E731
+        self.step("open a large photo", opened, lambda: bar.isVisible() and not services.session.queue.busy)
+        self.step("move its threshold", self.move_threshold, lambda: not services.session.queue.busy)
         self.step("lay it on the drawing board", lambda: self.press("edit_target"))
         self.press("edit_target")
 
@@ -168,15 +168,15 @@ class WatchedTools(WatchedSession):
 
     def many_saved(self) -> None:
         """256 designs: opened, changed, kept for a recovery, saved."""
-        recovering = self.window.controller.filing.recovery
-        self.window.controller.history.mark_saved()
+        recovering = self.window.services.project.recovery
+        self.window.session.history.mark_saved()
         self.open(f"open {MOST} designs", "many.kiri", MOST)
         recovering.quiet_ms = 0
         kept: list[object] = []
         recovering.kept.connect(kept.append)
         self.step("pin one, which is kept for a recovery", lambda: self.press("pin"), lambda: bool(kept))
         self.places.saved.unlink(missing_ok=True)
-        saved = lambda: not self.window.controller.history.unsaved  # noqa: E731
+        saved = lambda: not self.window.session.history.unsaved  # noqa: E731
         self.step(f"save {MOST} designs", lambda: self.press("save_as"), saved)
         orders = range(self.window.gallery.bar.order.count())
         self.step(
@@ -198,7 +198,7 @@ class WatchedTools(WatchedSession):
         self.window.dialogs.close()
 
     def settled(self) -> bool:
-        return not self.window.controller.hand.busy and self.planned()
+        return not self.window.services.hand.busy and self.planned()
 
     def in_turns(self, acts: Sequence[Callable[[], object]]) -> None:
         """Act once in each turn of the event loop."""

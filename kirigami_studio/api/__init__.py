@@ -1,4 +1,4 @@
-"""The Python API: targets, sheets, designs, their cuts and simulations, for notebooks and scripts.
+"""The Python API: targets, sheets, designs, cuts and simulations, for notebooks and scripts.
 
 Its names are those of ``import kirigami_studio as ks``, which loads these modules when a name is first asked for;
 ``docs/python-api.md`` lists them.

@@ -3,30 +3,49 @@
 from __future__ import annotations
 
 import math
+import re
 import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
-from inspect import Parameter, Signature, signature
+from inspect import Parameter, Signature, cleandoc, signature
 from typing import Any
 
 import numpy as np
 
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.settings import NamedSetting, settings_of
-from kirigami_studio.settings.design import DesignChoices
+from kirigami_studio.outlines.starts import StartShape
+from kirigami_studio.settings.design import DesignChange, DesignChoices
 from kirigami_studio.settings.fabrication import FabricationSettings
 
+#: What the keywords of a search, and those of a sheet and its cuts, are settings of.
+SEARCH = (DesignChoices, StartShape, SecondTarget)
+CUTS = (FabricationSettings, CutOptions)
 
-def design_choices() -> dict[str, NamedSetting]:
-    """The settings of a search that are keywords, by name."""
-    return {name: one for name, one in settings_of(DesignChoices).items() if one.setting.option}
+
+class SearchKeywords(DesignChange, total=False):
+    """Types of the keywords of a search."""
+
+    start_weight: float
+    also_phi: float | None
+    also_weight: float | None
 
 
-def cut_choices() -> dict[str, NamedSetting]:
-    """The settings of a sheet and of its cuts that are keywords, by name."""
-    both = {**settings_of(FabricationSettings), **settings_of(CutOptions)}
-    return {name: one for name, one in both.items() if one.setting.option}
+def keywords_of(*kinds: type) -> dict[str, NamedSetting]:
+    """The settings of dataclasses that are keywords, by keyword."""
+    return {one.keyword: one for kind in kinds for one in settings_of(kind).values() if one.setting.option}
+
+
+def values_for(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of a dataclass's settings by name, of keywords; those left open are left out."""
+    own = {one.keyword: one for one in settings_of(kind).values()}
+    return {
+        one.name: given[word]
+        for word, one in own.items()
+        if word in given and not (given[word] is None and one.setting.open_unless_given)
+    }
 
 
 def explicit_signature(
@@ -54,6 +73,45 @@ def explicit_signature(
         for name, one in choices.items()
     ]
     return plain.replace(parameters=[first, *keywords, *others])
+
+
+def explicit_docstring(function: Callable[..., object], *kinds: type, over: bool = False) -> str:
+    """The docstring of a function, with an entry for every keyword in place of ``**choices``.
+
+    An entry is that of the setting's own dataclass, with the words of a choice and, unless ``over``, the default.
+    """
+    entries = []
+    for kind in kinds:
+        about = _attributes(kind)
+        for one in settings_of(kind).values():
+            if one.setting.option:
+                head, *lines = about.get(one.name, [one.kind.__name__])
+                words = ", ".join(f"``{choice.value}``" for choice in one.kind) if issubclass(one.kind, Enum) else ""
+                kind_of = f"str, {words}" if words else f"bool or {head}" if one.setting.switched else head
+                entries += [f"{one.keyword} : {kind_of}{'' if over else _default(one)}", *lines]
+    return re.sub(r"(?m)^\*\*choices.*\n(?:    .*\n)*", "\n".join(entries) + "\n", cleandoc(function.__doc__ or ""))
+
+
+def _default(one: NamedSetting) -> str:
+    usual = one.word(one.default)
+    return "" if usual is None else f", default {usual:.4g}" if isinstance(usual, float) else f", default {usual!r}"
+
+
+def _attributes(kind: type) -> dict[str, list[str]]:
+    """Type and indented lines of a dataclass's attributes by name, of its numpydoc."""
+    found: dict[str, list[str]] = {}
+    names: list[str] = []
+    for line in cleandoc(kind.__doc__ or "").partition("----------\n")[2].splitlines():
+        if not line:
+            break
+        if line.startswith(" "):
+            for name in names:
+                found[name].append(line)
+        else:
+            given, _, head = line.partition(" : ")
+            names = given.split(", ")
+            found |= {name: [head] for name in names}
+    return found
 
 
 def checked_choices(given: Mapping[str, Any], known: Mapping[str, NamedSetting], function: str) -> dict[str, Any]:

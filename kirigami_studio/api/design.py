@@ -1,4 +1,4 @@
-"""Sheets, designs and cuts: a sheet becomes a design for a target, a design is planned in a material.
+"""Sheets, designs and cuts: a design is a sheet for a target, planned in a material.
 
 - A *sheet* is one table of ratios, decoded exactly, at every angle.
 - A *design* is a sheet for a target, with its score and its place.
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import html
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,11 +21,13 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.api.choices import (
+    CUTS,
     checked_choices,
     connector_widths,
     connectors,
-    cut_choices,
+    explicit_docstring,
     explicit_signature,
+    keywords_of,
 )
 from kirigami_studio.api.pictures import cuts_picture, states_picture
 from kirigami_studio.api.simulation import Simulation
@@ -39,7 +41,7 @@ from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.registry import export, find_exporter
+from kirigami_studio.export.registry import export, find_writer
 from kirigami_studio.export.verification import Verification
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -58,7 +60,7 @@ from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
-from kirigami_studio.studio.cutting import check_connectors, refuse_errors
+from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -81,7 +83,9 @@ LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sheet:
-    """One sheet at every angle phi, from pi (flat) to 0 (closed again); lengths in unit cells, angles in radians.
+    """One sheet at every angle phi, from pi (flat) to 0 (closed again).
+
+    Lengths are in unit cells, angles in radians.
 
     In a notebook it shows itself flat, half open and closed.
 
@@ -144,7 +148,7 @@ class Sheet:
         return Porosity.of(self.deployment).at(phi)
 
     def feasibility(self, phi: float = 0.0) -> Feasibility:
-        """Whether it is ``feasible``: no quad is inverted and nothing touches or overlaps on the way from flat to phi.
+        """Whether no quad is inverted and nothing touches or overlaps on the way from flat to phi.
 
         ``n_invalid``, ``overlap_ratio`` and ``contact`` say why not.
         """
@@ -152,7 +156,7 @@ class Sheet:
         return found
 
     def for_target(self, target: TargetLike | None = None, *, phi: float = 0.0, name: str = "") -> Design:
-        """This sheet as a design: scored, and laid over a target, so that it can be planned, simulated and exported.
+        """This sheet as a design, scored and laid over a target, to be planned and exported.
 
         Parameters
         ----------
@@ -173,7 +177,7 @@ class Sheet:
         return _design_of_sheet(self.deployment, target, phi, name)
 
     def to_json(self) -> dict[str, Any]:
-        """A sheet file's content: ``ratio``, ``rim``, ``start`` and ``cell``; :func:`decode` reads such files."""
+        """Content of a sheet file, for :func:`decode`: ``ratio``, ``rim``, ``start``, ``cell``."""
         return sheet_json(self.deployment.sheet)
 
     def __eq__(self, other: object) -> bool:
@@ -283,7 +287,7 @@ class Design:
 
     @property
     def name(self) -> str:
-        """What it is called, A1 unless it was given a name."""
+        """Its name, A1 unless it was given one."""
         return self.document.name_of(self.candidate)
 
     @property
@@ -293,7 +297,7 @@ class Design:
 
     @property
     def sheet(self) -> Sheet:
-        """The sheet that is cut, in its own frame; of a trimmed design the one that was fitted for that."""
+        """The sheet that is cut, in its own frame; the fitted one of a trimmed design."""
         return Sheet(_deployed(self.candidate.final_sheet))
 
     @property
@@ -359,7 +363,7 @@ class Design:
         return _posed(self.candidate)
 
     def panels(self, phi: float | None = None) -> list[FloatArray]:
-        """What there is of every panel, over the target: (P, 2) each, row by row; at the design's own angle or another.
+        """Remains of every panel, over the target: (P, 2) each, row by row; at any angle.
 
         Of trimmed designs, panels of which nothing stays are left out.
         """
@@ -392,34 +396,13 @@ class Design:
 
         Parameters
         ----------
-        material : str
-            One of :func:`material_names`.
-        width_mm : float
-            Width of the flat sheet (100 in new projects).
-        connector_mm, kerf_mm : float
-            Finished width of the connectors, width of a cut; the material's own unless given.
-        style : str
-            How slits end at their connectors: ``centred``, ``straight``, ``round``, ``teardrop``, ``arc``, ``double``.
-        order : str
-            ``shortest``, ``rows``, ``inside-out`` or ``spread``.
-        tabs, tab_mm : int, float
-            Uncut places of the outline, and their finished width.
-        copies, copy_gap_mm : int, float
-            Sheets in one file (0: as many as fit on the bed), and the gap between them.
         hinge_mm : mapping of int to float
             Widths of single connectors by their numbers.
         removed : sequence of int
             Connectors to cut through.
-        engrave : bool
-            Whether the design's name is engraved.
-        profile : str
-            What machine files are for: ``any``, ``lightburn``, ``k40``, ``single``, ``layers``, ``slots``.
-        dxf_version : str
-            ``R2010`` or ``R12``.
-        paper : str
-            ``none``, ``a4`` or ``letter``, over whose pages PDFs are spread.
-        markers : bool
-            Whether LightBurn projects mark the connectors.
+        **choices : settings of a sheet and its cuts
+            Those of :class:`kirigami_studio.settings.fabrication.FabricationSettings` and
+            :class:`kirigami_studio.fabricate.options.CutOptions`; ``material`` is one of :func:`material_names`.
 
         Raises
         ------
@@ -434,14 +417,15 @@ class Design:
         >>> design.plan_cuts(material="film-uv", width_mm=60).size_mm
         (60.0, 60.0)
         """
-        given = checked_choices({**choices}, cut_choices(), "plan_cuts")
+        given = checked_choices({**choices}, keywords_of(*CUTS), "plan_cuts")
         if hinge_mm is not None:
             given["hinge_mm"] = connector_widths(hinge_mm)
         if removed is not None:
             given["removed"] = connectors(removed)
         return _plan_cuts(self, {name: value for name, value in given.items() if value is not None})
 
-    plan_cuts.__signature__ = explicit_signature(plan_cuts, cut_choices(), over=True)  # type: ignore[attr-defined]
+    plan_cuts.__signature__ = explicit_signature(plan_cuts, keywords_of(*CUTS), over=True)  # type: ignore[attr-defined]
+    plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
@@ -466,7 +450,7 @@ class Design:
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
         goal = Path(path)
-        find_exporter(goal)
+        find_writer(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
         return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
@@ -608,7 +592,7 @@ class Cuts:
 
     @property
     def report(self) -> PlanReport:
-        """What the check of the plan found."""
+        """Findings of the check of the plan."""
         return self._planned.report
 
     @property
@@ -642,7 +626,7 @@ class Cuts:
 
     @property
     def verdict(self) -> Verdict:
-        """Whether it is ready to cut, and why not: ``level``, ``ok``, ``problems``, ``notes``, ``lines``.
+        """Whether it is ready to cut, and why not.
 
         Made of the check of the plan, the simulation and the material; the sheet is closed when first asked for.
         """
@@ -658,8 +642,15 @@ class Cuts:
         """
         return _simulated(self)
 
-    def export(self, path: str | os.PathLike[str], *, record: bool = False) -> Exported:
-        """Write one file, by its extension; a GIF shows the sheet as cut.
+    def export(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        record: bool = False,
+        phi: float | None = None,
+        as_cut: bool | None = None,
+    ) -> Exported:
+        """Write one file, by its extension.
 
         Parameters
         ----------
@@ -667,37 +658,37 @@ class Cuts:
             ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.png`` or ``.gif``.
         record : bool
             Whether all settings are written as .json beside it.
+        phi : float, radians, optional
+            Angle that a picture shows; the target angle unless given.
+        as_cut : bool, optional
+            Whether pictures show the sheet on its connectors, as far as it comes; only a GIF does unless given.
 
         Raises
         ------
-        FabricationError
-            The sheet would not survive these cuts.
         ExportError
             An unknown extension, or a place that cannot be written.
         """
         goal = Path(path)
-        moving = goal.suffix.lower() == ".gif"
-        return self._written(Output(goal, record=record), self.simulate().simulated.motion if moving else None)
+        cut = goal.suffix.lower() == ".gif" if as_cut is None else as_cut
+        return self._written(Output(goal, record=record), self.simulate().simulated.motion if cut else None, phi)
 
     def export_all(self, folder: str | os.PathLike[str]) -> Exported:
         """Write every kind of file and the record of all settings to a folder, cut files verified.
 
         Raises
         ------
-        FabricationError, ExportError
+        ExportError
             As :meth:`export`.
         """
         return self._written(Output(Path(folder), "cut", record=True))
 
-    def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
-        refuse_errors(self.report)
-        shown = None if motion is None else motion(self.settings.width_mm)
-        found = written(self._request, self._planned, output, self._as_cut, shown)
+    def _written(self, output: Output, motion: CutMotion | None = None, phi: float | None = None) -> Exported:
+        found = written(self._request, self._planned, output, self._as_cut, motion, picture_phi=phi)
         return Exported(found.files, found.verifications, self)
 
     @property
     def _as_cut(self) -> AsCut | str:
-        """How the sheet does as cut, or why that cannot be told."""
+        """The sheet as cut, or why it is unknown."""
         try:
             return self.simulate().as_cut
         except KirigamiError as error:

@@ -13,21 +13,31 @@ from typing import Any, Unpack, overload
 
 import numpy as np
 
-from kirigami_studio.api.choices import checked_choices, cut_choices, design_choices, explicit_signature, number
+from kirigami_studio.api.choices import (
+    CUTS,
+    SEARCH,
+    SearchKeywords,
+    checked_choices,
+    explicit_docstring,
+    explicit_signature,
+    keywords_of,
+    number,
+    values_for,
+)
 from kirigami_studio.api.design import Design, save_project
-from kirigami_studio.api.pictures import Card, contact_sheet
+from kirigami_studio.api.pictures import Thumbnail, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
-from kirigami_studio.fabricate.material import default_material, library
+from kirigami_studio.evaluate.second_target import SecondTarget
+from kirigami_studio.fabricate.machine import machines
+from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import GridError, ProjectError, UsageError
-from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
 from kirigami_studio.outlines.starts import StartShape, outline_start, start_shape
 from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.design import DesignChange, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, with_choices
+from kirigami_studio.settings.design import DesignChoices, chosen_settings
+from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
@@ -53,7 +63,7 @@ class Designs(Sequence[Design]):
 
     @property
     def target(self) -> Target:
-        """What they are for.
+        """Their target.
 
         Raises
         ------
@@ -144,7 +154,7 @@ class Designs(Sequence[Design]):
 
     def _repr_svg_(self) -> str:
         heading = repr(self).strip("<>") if not len(self) else f"{len(self)} designs for {self.target.name}"
-        cards = [Card(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
+        cards = [Thumbnail(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
         return contact_sheet(cards, heading)
 
 
@@ -160,7 +170,7 @@ def load_project(path: str | os.PathLike[str]) -> Designs:
 
 
 def material_names() -> tuple[str, ...]:
-    """Keys of all materials, bundled and your own, as the command line's ``materials`` lists them.
+    """Keys of all materials, bundled and your own.
 
     Examples
     --------
@@ -171,25 +181,35 @@ def material_names() -> tuple[str, ...]:
     return tuple(library().materials)
 
 
+def machine_names() -> tuple[str, ...]:
+    """Keys of all machines, bundled and your own, as the command line's ``machines`` lists them.
+
+    Examples
+    --------
+    >>> import kirigami_studio as ks
+    >>> "glowforge" in ks.machine_names()
+    True
+    """
+    return tuple(machines().items)
+
+
 def design(
     target: TargetLike,
     *,
     grid: str | tuple[int, int] = "auto",
     start: TargetLike = "rectangle",
-    start_weight: float = USUAL_START_WEIGHT,
     also: TargetLike | None = None,
-    also_phi: float | None = None,
-    also_weight: float | None = None,
     trim: bool = False,
     budget_seconds: float | None = None,
     material: str | None = None,
-    width_mm: float = 100.0,
+    machine: str | None = None,
+    width_mm: float | None = None,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     style: str | None = None,
     least_panel_mm: float = 0.0,
     progress: bool | Callable[[Progress], object] = False,
-    **choices: Unpack[DesignChange],
+    **choices: Unpack[SearchKeywords],
 ) -> Designs:
     """Design sheets that open into a target: sampled, fitted, ranked, best first.
 
@@ -198,48 +218,30 @@ def design(
     Parameters
     ----------
     target : whatever :func:`load_target` reads
-    k : int
-        Number of designs.
     grid : (rows, columns) or "auto"
         Voids; ``"auto"`` takes as coarse a grid as the shape allows.
-    phi : float, radians
-        Angle at which the sheet shows the target: 0 is fully turned.
-    seed : int
-    symmetry : str
-        ``auto`` (the target's own), ``none``, ``mirror`` or ``turn``.
-    regular : float, 0..1
-        What ranking and fits prefer, from the best match (0) to even panels (1); 0.5 unless given.
-    rim : str
-        ``free`` moves cuts along the rim, ``even`` spaces them as in the paper.
     start : str, or whatever :func:`load_target` reads
         The flat sheet: ``rectangle``, ``square``, ``rectangle:3:2``, ``circle``, ``ellipse:3:2``, ``triangle``,
         ``hexagon``, ``polygon:N``, or any shape.
-    start_weight : float
-        How firmly a round or hollow start is held.
-    also, also_phi, also_weight : target, radians, float
-        A second target on the way, its angle (45 degrees) and its weight (0.3).
-    variant : str
-        Generator that samples.
-    steps : int
-        Sampling steps.
-    polish : bool or int
-        Whether every design is fitted on the exact geometry, or in how many steps.
-    prefer : str
-        ``accuracy``, ``balanced``, ``regularity`` or ``calm``, among nearly equal matches.
-    search : int
-        Effort (0 to 8) of a search for a better design.
+    also : whatever :func:`load_target` reads, optional
+        A second target, which the sheet shows on its way.
     trim : bool
         Whether edge panels are trimmed to the target.
     budget_seconds : float, optional
         Time after which the best so far are returned.
     material : str, optional
         One of :func:`material_names`: designs that can be cut in it come first.
+    machine : str, optional
+        One of :func:`machine_names`; without a material, one that it cuts is taken.
     width_mm, connector_mm, kerf_mm, style : optional
-        Size and cuts, as in :meth:`Design.plan_cuts`.
+        Size and cuts, as in :meth:`Design.plan_cuts`; the material's usual ones unless given.
     least_panel_mm : float
         Least panel edge and neck that fits keep.
     progress : bool or callable
         True prints one line that changes; a callable gets every :class:`Progress` (``done``, ``total``, ``message``).
+    **choices : settings of a search
+        Those of :class:`kirigami_studio.settings.design.DesignChoices`, ``start_weight``, and ``also_phi`` and
+        ``also_weight``, angle and weight of the second target.
 
     Raises
     ------
@@ -249,33 +251,38 @@ def design(
     outline = load_target(target).outline
     cuts = {
         "material": material,
+        "machine": machine,
         "width_mm": width_mm,
         "connector_mm": connector_mm,
         "kerf_mm": kerf_mm,
         "style": style,
     }
-    given = {name: value for name, value in checked_choices(cuts, cut_choices(), "design").items() if value is not None}
-    fabrication = with_choices(FabricationSettings(material=default_material().key), given)
+    given = {
+        name: value for name, value in checked_choices(cuts, keywords_of(*CUTS), "design").items() if value is not None
+    }
+    fabrication = new_settings(given)
     least = number("least_panel_mm", least_panel_mm)
+    chosen = checked_choices({**choices}, keywords_of(*SEARCH), "design")
     wanted = chosen_settings(
         _grid(grid),
-        checked_choices({**choices}, design_choices(), "design"),
-        start=_start(start, number("start_weight", start_weight)),
-        second=_second(also, also_phi, also_weight),
+        values_for(DesignChoices, chosen),
+        start=_start(start, values_for(StartShape, chosen)),
+        second=_second(also, values_for(SecondTarget, chosen)),
     )
     budget = None if budget_seconds is None else number("budget_seconds", budget_seconds)
     request = request_for(outline, wanted, fabrication, least_panel_mm=least, trim=trim, budget_seconds=budget)
     line = _Line()
     tell: Tell = progress if callable(progress) else line.show if progress else _quietly
     try:
-        run = run_design(request, fabrication, as_cut=material is not None, least_panel_mm=least)
+        run = run_design(request, fabrication, least_panel_mm=least)
         result = completed(run, tell)
     finally:
         line.end()
     return Designs(document_of(result, fabrication), result)
 
 
-design.__signature__ = explicit_signature(design, design_choices())  # type: ignore[attr-defined]
+design.__signature__ = explicit_signature(design, keywords_of(*SEARCH))  # type: ignore[attr-defined]
+design.__doc__ = explicit_docstring(design, *SEARCH)
 
 
 def _grid(grid: object) -> tuple[int, int] | None:
@@ -294,19 +301,17 @@ def _grid(grid: object) -> tuple[int, int] | None:
     return rows, columns
 
 
-def _start(start: TargetLike, weight: float) -> StartShape:
+def _start(start: TargetLike, given: dict[str, Any]) -> StartShape:
     shape = start_shape(start) if isinstance(start, str) else outline_start(load_target(start).outline)
-    return replace(shape, weight=weight)
+    return replace(shape, **given)
 
 
-def _second(also: TargetLike | None, phi: float | None, weight: float | None) -> SecondTarget | None:
+def _second(also: TargetLike | None, given: dict[str, Any]) -> SecondTarget | None:
     if also is None:
-        if phi is not None or weight is not None:
+        if given:
             raise UsageError("api.second_target_not_named")
         return None
-    angle = USUAL_PHI if phi is None else number("also_phi", phi)
-    share = USUAL_WEIGHT if weight is None else number("also_weight", weight)
-    return SecondTarget(load_target(also).outline, angle, share)
+    return SecondTarget(load_target(also).outline, **given)
 
 
 def _quietly(progress: Progress) -> None:

@@ -34,7 +34,7 @@ FIELD, NUMBERS = (250, 150), 44
 
 
 @dataclass(frozen=True, slots=True)
-class Canvas:
+class SvgPicture:
     """A drawing in pixels, y down.
 
     Attributes
@@ -45,7 +45,7 @@ class Canvas:
     root: ElementTree.Element
 
     @classmethod
-    def of(cls, width: float, height: float, title: str) -> Canvas:
+    def of(cls, width: float, height: float, title: str) -> SvgPicture:
         """An empty one; the title is what screen readers say."""
         size = {"width": decimals(width), "height": decimals(height)}
         view = {"viewBox": f"0 0 {decimals(width)} {decimals(height)}", "role": "img"}
@@ -88,7 +88,7 @@ class Placing:
     scale : float, pixels per unit
     middle : (x, y), in the drawing
     place : (x, y), pixels
-        Of that middle on the canvas; :meth:`Canvas.rings` turns y over.
+        Of that middle on the canvas; :meth:`SvgPicture.rings` turns y over.
     """
 
     scale: float
@@ -113,7 +113,7 @@ def target_picture(points: FloatArray, name: str) -> str:
     extent = np.ptp(points, axis=0)
     scale = CARD / float(extent.max())
     height = float(extent[1]) * scale
-    canvas = Canvas.of(CARD + 2 * MARGIN, height + 2 * MARGIN + GAP, name)
+    canvas = SvgPicture.of(CARD + 2 * MARGIN, height + 2 * MARGIN + GAP, name)
     placing = Placing.of(points, scale, (CARD / 2 + MARGIN, height / 2 + MARGIN))
     _target(canvas, placing(points), 2.0, filled="0.28")
     canvas.text(CARD / 2 + MARGIN, height + MARGIN + 17, _short(name, 22), "middle")
@@ -121,7 +121,7 @@ def target_picture(points: FloatArray, name: str) -> str:
 
 
 def states_picture(design: PosedDesign, target: FloatArray | None, heading: str, details: str = "") -> str:
-    """A sheet flat, half open and at its angle, over its target (L, 2) if it has one, in one scale."""
+    """A sheet flat, half open and at its angle, over its target (L, 2), in one scale."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
     parts = [design.parts(phi) for phi in angles]
@@ -132,7 +132,7 @@ def states_picture(design: PosedDesign, target: FloatArray | None, heading: str,
     scale = STATE / float(sizes.max())
     widths, height = sizes[:, 0] * scale, float(sizes[:, 1].max()) * scale
     total = max(float(widths.sum()) + 2 * (GAP + MARGIN), _room(heading) + 6.2 * len(details))
-    canvas = Canvas.of(total, height + 2 * MARGIN + 2 * GAP, f"{heading} {details}".strip())
+    canvas = SvgPicture.of(total, height + 2 * MARGIN + 2 * GAP, f"{heading} {details}".strip())
     canvas.text(MARGIN, MARGIN + LETTERS, heading, size=LETTERS, bold=True)
     if details:
         canvas.text(total - MARGIN, MARGIN + LETTERS, details, "end")
@@ -148,7 +148,7 @@ def states_picture(design: PosedDesign, target: FloatArray | None, heading: str,
 
 
 @dataclass(frozen=True, slots=True)
-class Card:
+class Thumbnail:
     """One design on a contact sheet: its motion, the target, and two lines of text."""
 
     design: PosedDesign
@@ -157,7 +157,7 @@ class Card:
     details: str
 
 
-def contact_sheet(cards: Sequence[Card], heading: str) -> str:
+def contact_sheet(cards: Sequence[Thumbnail], heading: str) -> str:
     """Designs at their angles in rows; of many the first, and how many more there are."""
     panels = len(cards[0].design.parts(cards[0].design.phi_target)) if cards else 1
     shown = cards[: max(min(MOST_CARDS, MOST_PANELS // panels), LEAST_CARDS)]
@@ -166,7 +166,7 @@ def contact_sheet(cards: Sequence[Card], heading: str) -> str:
     cell, tall = CARD + GAP, CARD + 2 * GAP
     width = max(columns * cell - GAP + 2 * MARGIN, _room(heading))
     rest = len(cards) - len(shown)
-    canvas = Canvas.of(width, rows * tall + GAP + MARGIN + (GAP if rest else 0), heading)
+    canvas = SvgPicture.of(width, rows * tall + GAP + MARGIN + (GAP if rest else 0), heading)
     canvas.text(MARGIN, MARGIN + LETTERS, heading, size=LETTERS, bold=True)
     for number, card in enumerate(shown):
         row, column = divmod(number, columns)
@@ -188,7 +188,7 @@ def cuts_picture(plan: CutPlan, heading: str) -> str:
     width, height = plan.bounds_mm
     scale = 1.5 * STATE / max(width, height)
     w, h = width * scale, height * scale
-    canvas = Canvas.of(max(w + 2 * MARGIN, _room(heading)), h + 3 * GAP, heading)
+    canvas = SvgPicture.of(max(w + 2 * MARGIN, _room(heading)), h + 3 * GAP, heading)
     canvas.text(MARGIN, MARGIN + LETTERS, heading, size=LETTERS, bold=True)
     placing = Placing(scale, (0.0, 0.0), (MARGIN, MARGIN + GAP + h))
     left = float(MARGIN)
@@ -205,7 +205,7 @@ def cuts_picture(plan: CutPlan, heading: str) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Curve:
+class AngleCurve:
     """Values against the angle.
 
     Attributes
@@ -224,11 +224,11 @@ class Curve:
     limit: float | None = None
 
 
-def curves_picture(curves: Sequence[Curve], heading: str, jam_phi: float | None = None) -> str:
-    """Curves beside each other, flat on the left, closed on the right; the angle of a jam is marked."""
+def curves_picture(curves: Sequence[AngleCurve], heading: str, jam_phi: float | None = None) -> str:
+    """Curves beside each other, from flat to closed; the angle of a jam is marked."""
     wide, tall = FIELD
     step = wide + NUMBERS + GAP
-    canvas = Canvas.of(len(curves) * step + MARGIN, tall + 3 * GAP + LETTERS, heading)
+    canvas = SvgPicture.of(len(curves) * step + MARGIN, tall + 3 * GAP + LETTERS, heading)
     canvas.text(MARGIN, MARGIN + LETTERS, heading, size=LETTERS, bold=True)
     for number, curve in enumerate(curves):
         left, top = MARGIN + number * step + NUMBERS, MARGIN + 2 * GAP
@@ -236,7 +236,7 @@ def curves_picture(curves: Sequence[Curve], heading: str, jam_phi: float | None 
     return canvas.svg
 
 
-def _curve(canvas: Canvas, curve: Curve, corner: tuple[float, float], jam_phi: float | None) -> None:
+def _curve(canvas: SvgPicture, curve: AngleCurve, corner: tuple[float, float], jam_phi: float | None) -> None:
     (left, top), (wide, tall) = corner, FIELD
     ticks = _ticks(curve.values if curve.limit is None else np.append(curve.values, curve.limit))
     low, high = ticks[0], ticks[-1]
@@ -273,7 +273,7 @@ def _ticks(values: FloatArray) -> list[float]:
     return [round(number * step, 12) for number in range(first, last + 1)]
 
 
-def _sheet(canvas: Canvas, placing: Placing, rings: Sequence[FloatArray], target: FloatArray | None) -> None:
+def _sheet(canvas: SvgPicture, placing: Placing, rings: Sequence[FloatArray], target: FloatArray | None) -> None:
     """Panels over a target, whose outline is repeated on top."""
     if target is not None:
         canvas.rings([placing(target)], fill=TARGET, fill_opacity="0.22")
@@ -286,7 +286,7 @@ def _sheet(canvas: Canvas, placing: Placing, rings: Sequence[FloatArray], target
         _target(canvas, placing(target), 1.6)
 
 
-def _target(canvas: Canvas, ring: FloatArray, width: float, filled: str = "0") -> None:
+def _target(canvas: SvgPicture, ring: FloatArray, width: float, filled: str = "0") -> None:
     canvas.rings([ring], fill=TARGET, fill_opacity=filled, stroke=TARGET, stroke_width=f"{width:g}")
 
 

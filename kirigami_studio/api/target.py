@@ -1,4 +1,4 @@
-"""Targets out of whatever holds a shape: library names, files, points, masks, Shapely geometry."""
+"""Targets of anything that holds a shape: names, files, points, masks, Shapely geometry."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Target:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was left out or changed on the way from the source, one sentence each."""
+        """Sentences about all that was left out or changed on the way from the source."""
         return self.outline.notes
 
     def mask(self, size: int = MASK_SIZE) -> BoolArray:

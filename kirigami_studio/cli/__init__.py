@@ -24,7 +24,7 @@ INTERRUPTED = 128 + signal.SIGINT
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one sub-command; returns the exit code (argparse itself exits with 2 on unknown words)."""
+    """Run one sub-command; return the exit code (argparse itself exits with 2)."""
     _replace_missing_streams()
     if argv is None:
         quiet_libraries()
@@ -63,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _replace_missing_streams() -> None:
-    """Programs that Windows starts without a console have no standard output and error; what is written is dropped."""
+    """Give a program without a console, as Windows starts it, streams that drop all output."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - as long as the program

@@ -27,7 +27,7 @@ BARE_SHARE = 0.005
 
 
 def artwork(arguments: argparse.Namespace) -> int:
-    """Write SVG, PDF and PNG of the printed sheet of a project's chosen design, and a picture of it opened."""
+    """Write the printed sheet of a project's chosen design as SVG, PDF, PNG, and as it opens."""
     document = load(arguments.project)
     request = CutRequest.of(document, overridden(document.fabrication, arguments))
     printed = _artwork(arguments, document)

@@ -1,4 +1,4 @@
-"""What the commands print: JSON on standard output, sentences for people, progress on a terminal's standard error."""
+"""Output of the commands: JSON on standard output, sentences, progress on standard error."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 
 def plain(value: object) -> object:
-    """Turn arrays, tuples and NumPy numbers into what ``json`` writes; non-finite numbers become null."""
+    """Turn arrays, tuples and NumPy numbers into JSON; non-finite numbers become null."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
@@ -31,12 +31,12 @@ def print_json(value: object) -> None:
 
 
 def say(sentence: str) -> None:
-    """One line for a person, on standard output."""
+    """Print one line for people on standard output."""
     sys.stdout.write(sentence + "\n")
 
 
 class ProgressLine:
-    """A line on standard error that is rewritten in place; silent when standard error is not a terminal."""
+    """A line on standard error that is rewritten in place; silent where that is no terminal."""
 
     def __init__(self) -> None:
         self.active = sys.stderr.isatty()

@@ -15,9 +15,10 @@ from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
@@ -37,16 +38,26 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.cutting import refuse_errors
-from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
-from kirigami_studio.studio.making import CutRequest, Output, closed, export_job, judged, planned, written
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.studio.as_cut import AsCut, jam_json
+from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
+from kirigami_studio.studio.making import (
+    CutRequest,
+    Output,
+    closed,
+    export_job,
+    judged,
+    planned,
+    with_cuttable_chosen,
+    written,
+)
 from kirigami_studio.studio.verdict import Verdict, refused
 
 
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     fabrication = material_settings(arguments)
+    limits = material_for(fabrication).limits_note
     check_name(arguments.name, run_labels(0, 1)[0].code)
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
@@ -61,35 +72,37 @@ def design(arguments: argparse.Namespace) -> int:
         second=second_target(arguments),
     )
 
-    def job_for(target: Outline) -> Job:
+    def job_for(target: Outline) -> DesignJob:
         least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
         request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
-        as_cut, files = arguments.material is not None, arguments.out is not None
-        return Job(request, fabrication, least, as_cut, files, arguments.name or "")
+        return DesignJob(request, fabrication, least, arguments.out is not None, arguments.name or "")
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
 
-    def tell(name: str, design: Design, files: dict[str, str]) -> None:
-        warnings = warn(name, design.result.request.target)
+    def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
+        warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
         answer = summary(design.result) | {"files": files, "warnings": warnings}
-        if design.verdict is not None:
-            answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json()}
+        if limits is not None:
+            answer["material_note"] = limits.text
+        answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
         if batch:
             print_json({"source": name} | answer)
         elif arguments.json:
             print_json(answer)
         else:
             _say_result(design.result.request.target, design.result, files, design.verdict)
+            for note in design.notes:
+                say("  " + tr("note: {text}", text=note.text))
 
     def one(name: str, target: Outline) -> None:
         design = designed(job_for(target), line)
         files: dict[str, str] = {}
         if arguments.out:
-            files = write_files(design, folder_for(name))
+            design, files = write_files(design, folder_for(name))
         tell(name, design, files)
 
-    def one_from_cluster(name: str, design: Design) -> None:
+    def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
     inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
@@ -104,7 +117,7 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class DesignJob:
     """One target to design.
 
     Attributes
@@ -113,8 +126,6 @@ class Job:
         Its grid may be open.
     fabrication : FabricationSettings
     least_panel_mm : float
-    as_cut : bool
-        Whether designs are ranked as cut in the material, and get a verdict.
     files : bool
         Whether the design comes with its files.
     name : str
@@ -124,29 +135,31 @@ class Job:
     request: Request
     fabrication: FabricationSettings
     least_panel_mm: float
-    as_cut: bool
     files: bool
     name: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Design:
-    """What came of a job.
+class DesignOutcome:
+    """The designs of a job.
 
     Attributes
     ----------
     result : Result
     request : CutRequest
-        The best design in its project, and how it is cut.
-    verdict : Verdict or None
+        The best design that can be cut in its project, and how it is cut.
+    verdict : Verdict
     files : mapping of str to (str, bytes)
         Name and content by role, of a design from elsewhere that was asked for with its files.
+    notes : tuple of Note
+        What is not as it was asked for: no design is trimmed, or another one than the best is cut.
     """
 
     result: Result
     request: CutRequest
-    verdict: Verdict | None
+    verdict: Verdict
     files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
+    notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:
         """Write the files; returns their paths by role."""
@@ -155,39 +168,38 @@ class Design:
         return {role: str(folder / name) for role, (name, _) in self.files.items()}
 
 
-def designed(job: Job, line: ProgressLine, pool: Pool | None = None) -> Design:
-    """Do a job, its fits in ``pool``, by default the program's own.
-
-    Raises
-    ------
-    FabricationError
-        Designs were to be trimmed and none could be.
-    """
-    run = run_design(job.request, job.fabrication, as_cut=job.as_cut, least_panel_mm=job.least_panel_mm, pool=pool)
+def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> DesignOutcome:
+    """Do a job, its fits in ``pool``, by default the program's own."""
+    run = run_design(job.request, job.fabrication, least_panel_mm=job.least_panel_mm, pool=pool)
     result = completed(run, lambda progress: line.show(progress.message))
     line.clear()
     document = document_of(result, job.fabrication)
+    untrimmed = why_untrimmed(result)
+    notes: tuple[Note, ...] = () if untrimmed is None else (untrimmed,)
+    if job.files:
+        document, refusal = with_cuttable_chosen(document)
+        if refusal is not None and document.chosen and document.label is not None:
+            notes += (Note.of("design.other_is_cut", name=document.label.code, reason=str(refusal)),)
     if job.name:
-        document = set_label(document, 0, job.name, "").document
+        document = set_label(document, document.chosen or 0, job.name, "").document
     request = CutRequest.of(document)
-    if not job.as_cut:
-        return Design(result, request, None)
     try:
         made = planned(request)
     except FabricationError as error:
-        return Design(result, request, refused(error))
+        return DesignOutcome(result, request, refused(error), notes=notes)
     request = replace(request, as_cut=closed(request, made))
-    return Design(result, request, judged(request, made, request.as_cut))
+    result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
+    return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
     """A worker's answer: a design, or the error of this one target."""
 
-    design: Design | None
+    design: DesignOutcome | None
     error: KirigamiError | None
 
-    def get(self) -> Design:
+    def get(self) -> DesignOutcome:
         """The design; raises the error."""
         if self.design is None:
             raise self.error or Cancelled("run.no_result")
@@ -196,15 +208,15 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a worker is asked for: a job, or the error with which its target could not even be read."""
+    """Assignment of a worker: a job, or the error with which its target could not be read."""
 
     name: str
-    job: Job | None
+    job: DesignJob | None
     error: KirigamiError | None
 
 
 def designed_there(asked: Asked) -> Answer:
-    """Do a job in this process alone, and read the files that it writes; a worker of a cluster does this."""
+    """Do a job in this process alone, as a worker of a cluster, and read the files it writes."""
     job = asked.job
     if job is None:
         return Answer(None, asked.error)
@@ -215,7 +227,7 @@ def designed_there(asked: Asked) -> Answer:
         if not job.files:
             return Answer(design, None)
         with TemporaryDirectory() as folder:
-            paths = write_files(design, Path(folder))
+            design, paths = write_files(design, Path(folder))
             files = {role: (Path(path).name, Path(path).read_bytes()) for role, path in paths.items()}
         return Answer(replace(design, files=files), None)
     except KirigamiError as error:
@@ -223,14 +235,14 @@ def designed_there(asked: Asked) -> Answer:
 
 
 def _from_cluster(
-    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job], workers: Workers
-) -> Iterator[Named[Design]]:
+    inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob], workers: Workers
+) -> Iterator[Named[DesignOutcome]]:
     """Designs of all inputs, in order, as if they were read from somewhere."""
     for asked, answer in ordered_results_of(designed_there, _asked(inputs, job_for), workers):
         yield Named(asked.name, answer.get)
 
 
-def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], Job]) -> Iterator[Asked]:
+def _asked(inputs: Iterable[Named[Outline]], job_for: Callable[[Outline], DesignJob]) -> Iterator[Asked]:
     """The jobs of all inputs.  Targets are read here: workers may not have their files."""
     for named in inputs:
         try:
@@ -251,17 +263,18 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     TargetError
         The target cannot be read.
     """
+    given = {name: value for name, value in setting_values(arguments, SecondTarget).items() if value is not None}
     if arguments.also is None:
-        if arguments.at_deg is not None or arguments.weight is not None:
+        if given:
             raise UsageError("second_target.not_named")
         return None
-    phi = USUAL_PHI if arguments.at_deg is None else math.radians(arguments.at_deg)
-    weight = USUAL_WEIGHT if arguments.weight is None else arguments.weight
-    return SecondTarget(read_target(arguments.also), phi, weight)
+    return SecondTarget(read_target(arguments.also), **given)
 
 
 def summary(result: Result) -> dict[str, object]:
-    """The JSON answer of ``design`` without the files; runs with a budget say whether it ended them, and those
+    """The JSON answer of ``design`` without the files.
+
+    Runs with a budget say whether it ended them, and those
     that chose their grid say why."""
     entries = candidates_json(result)
     answer: dict[str, object] = {
@@ -297,17 +310,20 @@ def summary(result: Result) -> dict[str, object]:
 
 
 def candidates_json(result: Result) -> list[dict[str, object]]:
-    """The entries of ``candidates``, best first, each with its rank's reason and the group that it looks like."""
+    """The entries of ``candidates``, best first, each with its rank's reason and its group."""
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, ranking) | {"rank_reason": reason.text, "group": group}
+        candidate_json(candidate, ranking, result.as_cut.get(candidate)) | {"rank_reason": reason.text, "group": group}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
 
-def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
-    """One entry of ``candidates``: a sheet file with score and provenance; a trimmed one's other sheet and IoU."""
+def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
+    """One entry of ``candidates``: a sheet file with score and provenance.
+
+    ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
+    """
     even = candidate.score.evenness
     entry: dict[str, object] = {
         **sheet_json(candidate.sheet),
@@ -321,6 +337,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
         "least_feature_mm": even.least_feature_mm(ranking.width_mm),
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
+        "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -331,19 +348,19 @@ def candidate_json(candidate: Candidate, ranking: Ranking) -> dict[str, object]:
     return entry
 
 
-def write_files(design: Design, folder: Path) -> dict[str, str]:
-    """Write the project, the cut file, the layout, a preview and the candidates; returns their paths by role.
+def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
+    """Write project, cut file, layout, preview and candidates.
+
+    Returns the design, judged with its cut file as read back, and the paths of all files by role.
 
     The bytes depend on what is given alone: wall time is not written.
 
     Raises
     ------
     FabricationError
-        The sheet would not survive its cuts.
+        No design can be cut; everything but the cut file is there.
     """
     request, document = design.request, design.request.document
-    made = planned(request)
-    refuse_errors(made.report)
     paths = {
         "project": folder / "design.kiri",
         "cut": folder / "cut.dxf",
@@ -353,13 +370,21 @@ def write_files(design: Design, folder: Path) -> dict[str, str]:
     }
     assert document is not None  # a design that was just made has a project
     save(document, paths["project"])
-    written(request, made, Output(paths["cut"]), request.as_cut)
+    listing = {"candidates": candidates_json(design.result)}
+    write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
+    made, refusal = None, ""
+    try:
+        made = planned(request)
+    except FabricationError as error:
+        refusal = str(error)
     job = export_job(request, made)
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])
-    listing = {"candidates": candidates_json(design.result)}
-    write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
-    return {role: str(path) for role, path in paths.items()}
+    if made is None:
+        raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
+    verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
+    assert verdict is not None  # planned sheets are judged
+    return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
 
 
 def _folder_name(name: str, used: set[str]) -> str:
@@ -373,8 +398,8 @@ def _folder_name(name: str, used: set[str]) -> str:
     return unique
 
 
-def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict | None) -> None:
-    score, trim, angle = result.best.score, result.best.trim, math.degrees(result.request.phi)
+def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict) -> None:
+    score, trim = result.best.score, result.best.trim
     if result.request.grid_chosen:
         say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(
@@ -411,11 +436,8 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 iou=shown.match.iou_exact,
             )
         )
-    feasible = tr("It is feasible at {angle:.0f} degrees.", angle=angle)
-    if not score.feasible:
-        feasible = tr("It is not feasible at {angle:.0f} degrees.", angle=angle)
     ended = [tr("The budget ended the run.")] if result.budget_ended else []
-    say(" ".join((best, feasible, *ended)))
+    say(" ".join((best, *ended)))
     if result.request.trim and trim is None and result.ranking.cuttable(result.best):
         say(
             tr(
@@ -434,9 +456,8 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 percent=100 * trim.removed_share,
             )
         )
-    if verdict is not None:
-        if not result.ranking.cuttable(result.best):
-            say(tr("{name}: no design can be cut in this material, width and style.", name=target.name))
-        say_verdict(verdict)
+    if not result.ranking.cuttable(result.best):
+        say(tr("{name}: no design can be cut in this material, width and style.", name=target.name))
+    say_verdict(verdict)
     for path in files.values():
         say(f"  {path}")

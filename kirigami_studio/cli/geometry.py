@@ -82,7 +82,7 @@ def decoded(sheet: Sheet, phi: float) -> dict[str, object]:
 
 
 def porosity(arguments: argparse.Namespace) -> int:
-    """Print area and porosity of each sheet at even angles, and the angles of a porosity that is asked for."""
+    """Print area and porosity of each sheet at even angles, and the angles of one porosity."""
     batch = is_batch(arguments.sheets)
     degrees = [float(value) for value in np.linspace(180.0, 0.0, arguments.angles)]
 
@@ -101,7 +101,7 @@ def porosity(arguments: argparse.Namespace) -> int:
 
 
 def areas(sheet: Sheet, degrees: list[float], width_mm: float | None, wanted: float | None) -> dict[str, object]:
-    """The JSON answer of ``porosity`` for one sheet: in square mm where its width is given, else in square unit cells.
+    """The JSON answer of ``porosity`` for one sheet: square mm with its width, else unit cells.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Targets and sheets from whatever the command line names: files, folders, archives, library names.
+"""Targets and sheets that a command line names: files, folders, archives, library names.
 
 Sub-commands take one input or a batch: in a batch, an input that fails is reported in its place and the others still
 get their answer.
@@ -66,7 +66,7 @@ def is_batch(sources: Sequence[str]) -> bool:
 
 
 def are_many_targets(sources: Sequence[str]) -> bool:
-    """``is_batch`` for targets: the name of a library silhouette wins over a folder of that name."""
+    """``is_batch`` for targets: a library silhouette wins over a folder of its name."""
     return is_batch(sources) and not (len(sources) == 1 and sources[0] in names())
 
 
@@ -109,12 +109,12 @@ def for_each(
 
 
 def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
-    """What the options say about parts; None where they say nothing."""
+    """The choice of parts that the options make; None where they make none."""
     return PartChoice.of(arguments.parts, arguments.join, arguments.bridge, arguments.stroke_outline)
 
 
 def warn(name: str, target: Outline) -> list[str]:
-    """Say on standard error what was left out of a target or changed; returns it for the answer in JSON."""
+    """Print on standard error all that was changed in a target; return it for JSON."""
     for note in target.notes:
         sys.stderr.write(f"kirigami-studio: {tr('warning')}: {name}: {note}\n")
     return list(target.notes)
@@ -181,7 +181,7 @@ def read_chosen_sheet(path: Path) -> Sheet:
 
 
 def read_mask(path: Path) -> BoolArray:
-    """Read a mask image as a bool array; what is brighter than half of its brightest pixel is inside.
+    """Read a mask image as a bool array; inside is brighter than half of its brightest pixel.
 
     Files with the values 0 and 1, 0 and 255, or 16 bits all say the same.
 

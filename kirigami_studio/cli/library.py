@@ -1,16 +1,19 @@
-"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``coupon``: what there is, and own materials."""
+"""Commands that list: targets, licences, parts, variants, materials, machines; the coupon."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import date
 from pathlib import Path
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
+from kirigami_studio.fabricate.machine import SHELF as MACHINES
+from kirigami_studio.fabricate.machine import Machine, changed_machine, cuttable, find_machine
+from kirigami_studio.fabricate.machine import machines as all_machines
 from kirigami_studio.fabricate.material import Material, default_material, find_material, library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
 from kirigami_studio.foundation.errors import UsageError
@@ -111,16 +114,70 @@ def _refuse_loose_options(arguments: argparse.Namespace) -> None:
         raise UsageError("materials.calibrated_by_nobody")
 
 
-def _copy(arguments: argparse.Namespace) -> int:
-    """Save a changed copy under its new key, or under the old one, which it then replaces."""
+def machines(arguments: argparse.Namespace) -> int:
+    """List all machines, or save or delete one of one's own."""
+    if arguments.copy is not None and arguments.delete is not None:
+        raise UsageError("machines.copy_and_delete")
+    if arguments.copy is None and (arguments.key is not None or arguments.set):
+        raise UsageError("machines.options_without_copy")
+    if arguments.delete is not None:
+        MACHINES.delete(arguments.delete)
+        return _answer(arguments, {"deleted": arguments.delete}, tr("{key}: deleted", key=arguments.delete))
+    if arguments.copy is not None:
+        made = changed_machine(arguments.copy, _copied_key(arguments), _changes(arguments))
+        MACHINES.save(made)
+        return _answer(arguments, {"saved": made.key}, tr("{material}: saved", material=_machine_row(made, own=True)))
+    found = all_machines()
+    if arguments.json:
+        listed = {key: _machine_json(machine, key in found.own) for key, machine in found.items.items()}
+        print_json({"machines": listed, "faults": [fault.text for fault in found.faults]})
+        return 0
+    for key, machine in found.items.items():
+        say(_machine_row(machine, key in found.own))
+    for fault in found.faults:
+        say(tr("Left out: {fault}", fault=fault.text))
+    return 0
+
+
+def _machine_json(machine: Machine, own: bool) -> dict[str, object]:
+    """All numbers of a machine, and the keys of the materials that it cuts."""
+    return {**asdict(machine), "own": own, "reach_mm": machine.reach_mm, "materials": list(cuttable(machine))}
+
+
+def _machine_row(machine: Machine, own: bool) -> str:
+    """Key, whose it is, what it reaches, and its name."""
+    width, height = machine.reach_mm
+    reach = tr("{width:g} x {height:g} mm", width=width, height=height) if min(width, height) > 0.0 else tr("any size")
+    return f"{machine.key:<20} {tr('own') if own else tr('bundled'):<8} {reach:<14} {tr(machine.name)}"
+
+
+def _changes(arguments: argparse.Namespace) -> dict[str, object]:
+    """Changes of ``--set`` by name.
+
+    Raises
+    ------
+    UsageError
+        Something that is no name with a value.
+    """
     changes: dict[str, object] = {}
     for entry in arguments.set:
         name, equals, value = entry.partition("=")
         if not equals or not value.strip():
             raise UsageError("materials.not_name_and_value", entry=entry)
         changes[name.strip()] = value.strip()
-    key = arguments.copy if arguments.key is None else arguments.key
-    made = changed_copy(arguments.copy, key, changes)
+    return changes
+
+
+def _copied_key(arguments: argparse.Namespace) -> str:
+    """The new key of a copy, or the old one, which it then replaces."""
+    key: str = arguments.copy if arguments.key is None else arguments.key
+    return key
+
+
+def _copy(arguments: argparse.Namespace) -> int:
+    """Save a changed copy under its new key, or under the old one, which it then replaces."""
+    machine = None if arguments.machine is None else find_machine(arguments.machine)
+    made = changed_copy(arguments.copy, _copied_key(arguments), _changes(arguments), machine)
     if arguments.calibrated:
         made = mark_calibrated(made, date.today(), arguments.by)
     else:
@@ -134,6 +191,8 @@ def _copy(arguments: argparse.Namespace) -> int:
 
 def _list(arguments: argparse.Namespace) -> int:
     found = library()
+    if arguments.machine is not None:
+        found = replace(found, materials=cuttable(find_machine(arguments.machine)))
     if arguments.json:
         print_json(
             {

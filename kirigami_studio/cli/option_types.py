@@ -42,14 +42,14 @@ def setting_options(kind: type, *names: str, over: object = None) -> tuple[Optio
 
 def setting_values(arguments: argparse.Namespace, kind: type) -> dict[str, Any]:
     """Return the values of a dataclass's settings that have an option, by name."""
-    return {name: getattr(arguments, name) for name, one in settings_of(kind).items() if one.setting.option}
+    return {name: getattr(arguments, one.keyword) for name, one in settings_of(kind).items() if one.setting.option}
 
 
 def _setting_option(one: NamedSetting, over: object) -> Option:
     setting = one.setting
     usual = one.default if over is None else getattr(over, one.name)
     given = over is None and not setting.open_unless_given
-    keywords: dict[str, Any] = {"dest": one.name, "default": usual if given else None}
+    keywords: dict[str, Any] = {"dest": one.keyword, "default": usual if given else None}
     if one.kind is bool:
         keywords["action"] = argparse.BooleanOptionalAction if over is not None or one.default else "store_true"
     elif setting.switched:
@@ -83,7 +83,9 @@ def _word(one: NamedSetting, value: object) -> str:
         return "yes" if value else "no"
     if one.setting.special is not None and value == one.setting.special.value and one.setting.special.word:
         return one.setting.special.word
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{one.setting.scale * value if _in_degrees(one) else value:g}"
+    return str(value)
 
 
 def _reader(one: NamedSetting) -> Callable[[str], object]:
@@ -91,11 +93,22 @@ def _reader(one: NamedSetting) -> Callable[[str], object]:
     setting = one.setting
     if one.kind is int:
         return partial(_whole_or_word, setting.special) if setting.special is not None else whole
+    if _in_degrees(one):
+        return _degrees
     if setting.unit == "°":
         return angle
     if setting.least == 0.0:
         return positive if setting.above_least else share if setting.most == 1.0 else amount
     return number
+
+
+def _in_degrees(one: NamedSetting) -> bool:
+    return one.setting.option.endswith("-deg")
+
+
+def _degrees(text: str) -> float:
+    """An angle above 0 in degrees."""
+    return math.radians(positive(text))
 
 
 def _whole_or_word(special: SpecialValue, text: str) -> int:
@@ -240,7 +253,7 @@ def name(text: str) -> str:
 
 
 def check_name(wanted: str | None, code: str) -> None:
-    """Refuse a name that reads as another design's code than ``code``, that of the design which is to have it.
+    """Refuse a name that reads as the code of another design than the one that gets it.
 
     Raises
     ------

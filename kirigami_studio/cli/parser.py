@@ -1,4 +1,4 @@
-"""The table of sub-commands, with the help of every option and examples, and the parser that is built from it."""
+"""The table of sub-commands with help and examples, and the parser that is built from it."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ from kirigami_studio.cli.option_types import (
     share,
     whole,
 )
+from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.merging import Join
-from kirigami_studio.outlines.starts import USUAL_WEIGHT
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignChoices
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -58,7 +59,7 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 (PHI,) = setting_options(DesignChoices, "phi")
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
-WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", over=USUAL)
+WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", "machine", over=USUAL)
 PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
 SINGLE_CONNECTORS = (
     option(
@@ -116,14 +117,7 @@ START = option(
     "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
 )
 #: How firmly they keep that.
-START_WEIGHT = option(
-    "--start-weight",
-    type=positive,
-    default=USUAL_WEIGHT,
-    metavar="WEIGHT",
-    help="how firmly round parts and hollows of the start are held: at 0.01, say, the flat sheet may be a little off "
-    "for a better match (default 1)",
-)
+(START_WEIGHT,) = setting_options(StartShape)
 
 #: A cluster in the place of this machine.
 SCHEDULER = option(
@@ -147,10 +141,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         START_WEIGHT,
         option("--also", default=None, metavar="TARGET",
                help="second target, a file or library name, that the sheet should show on its way from flat"),
-        option("--at-deg", type=positive, default=None, metavar="DEGREES",
-               help="angle at which it should show the second target, above --phi (default 45)"),
-        option("--weight", type=positive, default=None,
-               help="weight of the second target, that of the first being 1 (default 0.3)"),
+        *setting_options(SecondTarget),
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
         *WIDTHS,
@@ -207,6 +198,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write (.dxf .svg .pdf .lbrn2 .png .gif); with --all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
+        option("--as-cut", action="store_true",
+               help="pictures (.png .gif, and those of --all) show the sheet on the connectors of its planned cuts, as "
+                    "far as it comes (default: the ideal motion)"),
+        option("--at-deg", type=amount, default=None, metavar="DEGREES",
+               help="angle that pictures show: 180 is flat (default: the target angle)"),
         *setting_options(FabricationSettings, over=USUAL),
         *setting_options(CutOptions, over=USUAL.options),
         *SINGLE_CONNECTORS,
@@ -220,6 +216,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
         "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave --name 'For Ada'",
+        "kirigami-studio export heart.kiri --out half-open.png --as-cut --at-deg 90",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
         "mechanics:mechanics", (
@@ -325,15 +322,28 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--by", default=None, metavar="NAME", help="who measured the values"),
         option("--delete", default=None, metavar="KEY",
                help="delete one of your own materials; presets cannot be deleted"),
+        option("--machine", default=None, metavar="KEY",
+               help="list what this machine cuts, or copy with its figures there"),
         JSON,
-    ), ("kirigami-studio materials",
+    ), ("kirigami-studio materials", "kirigami-studio materials --machine glowforge",
         "kirigami-studio materials --copy film-uv --as my-film --set kerf_mm=0.028 --calibrated --by Ada",
         "kirigami-studio materials --delete my-film")),
+    SubCommand("machines", "list the machines, or copy and change one", "library:machines", (
+        option("--copy", default=None, metavar="KEY", help="machine to copy and change"),
+        option("--as", default=None, dest="key", metavar="NEW",
+               help="key of the copy (default: the same KEY, which then hides the bundled one)"),
+        option("--set", action="append", default=[], metavar="NAME=VALUE",
+               help="change a value of the copy, such as bed_width_mm=500; may be repeated"),
+        option("--delete", default=None, metavar="KEY", help="delete one of your own machines"),
+        JSON,
+    ), ("kirigami-studio machines",
+        "kirigami-studio machines --copy co2-laser --as my-laser --set bed_width_mm=900 --set bed_height_mm=600",
+        "kirigami-studio machines --delete my-laser")),
     SubCommand("coupon", "write a calibration coupon, or calculate the kerf from measured gaps", "library:coupon", (
         option("--out", default=None, help="file to write (.dxf .svg .pdf)"),
         option("--gap-mm", type=amount, nargs="+", default=None,
                help="gaps measured beside the comb with its fingers pushed to one side"),
-        WIDTHS[1], WIDTHS[3],
+        *setting_options(FabricationSettings, "material", "kerf_mm", over=USUAL),
         option("--profile", default=None, help="machine profile of DXF files"),
         *setting_options(FabricationSettings, "dxf_version"),
         JSON,
@@ -411,7 +421,7 @@ def _add(commands: Any, name: str, about: str, examples: Iterable[str]) -> argpa
 
 
 def open_window(arguments: argparse.Namespace) -> int:
-    """Open the studio, with a project or a target if one is named; Qt is loaded here and not before."""
+    """Open the studio, with a project or a target if one is named; Qt is loaded here."""
     code: int = import_module("kirigami_studio.gui.window.application").run(["kirigami-studio", *arguments.shown])
     return code
 

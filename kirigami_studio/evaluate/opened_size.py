@@ -1,4 +1,4 @@
-"""How large a sheet of some width shows its target, and how wide it must be to show it as drawn."""
+"""Size of the target on an opened sheet, beside the size that it was drawn in."""
 
 from __future__ import annotations
 
@@ -25,17 +25,14 @@ class OpenedSize:
         Of the target in its own orientation, at the scale at which the opened sheet fits it best.
     drawn : (width, height) float or None, mm
         Its real size; None when its source has none in mm.
-    fitting_width_mm : float or None
-        Width of the flat sheet that shows the target in its real size.
     """
 
     opened: tuple[float, float]
     drawn: tuple[float, float] | None
-    fitting_width_mm: float | None
 
     @classmethod
     def of(cls, target: Outline, flat: float, width_mm: float) -> OpenedSize:
-        """That of a flat sheet ``width_mm`` wide, which is ``flat`` wide in the frame where the target has area 1.
+        """That of a sheet ``width_mm`` wide, ``flat`` wide where the target has area 1.
 
         Raises
         ------
@@ -46,9 +43,7 @@ class OpenedSize:
             raise UsageError("opened_size.width_not_positive", width_mm=width_mm)
         width, height = np.ptp(target.points, axis=0).tolist()
         unit = width_mm / flat
-        if target.size is None or target.unit != "mm":
-            return cls((unit * width, unit * height), None, None)
-        return cls((unit * width, unit * height), target.size, flat * target.size[0] / width)
+        return cls((unit * width, unit * height), target.size if target.unit == "mm" else None)
 
     @property
     def agrees(self) -> bool:

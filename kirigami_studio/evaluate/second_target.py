@@ -1,4 +1,4 @@
-"""A second target, for an angle between the flat sheet and the one at which the first is shown.
+"""A second target, for an angle between flat and that of the first target.
 
 The flat sheet itself needs none: its outline is the start, and is met exactly.  What a second target asks for has its
 own size, place and rotation, and a weight: the design loses so much worth for each share of match that it lacks there.
@@ -24,15 +24,15 @@ USUAL_PHI, USUAL_WEIGHT = math.radians(45.0), 0.3
 
 @dataclass(frozen=True, slots=True)
 class SecondTarget:
-    """What the sheet should also show, on its way.
+    """Another target of a sheet on its way.
 
     Attributes
     ----------
     outline : Outline
-    phi : float, radians
-        Between 0 and pi, both excluded.
+    phi : float, radians, above 0 and below pi
+        Angle at which the sheet should show it.
     weight : float, above 0, up to 4
-        Of its match, where that of the first target has 1: it may count four times as much.
+        Weight of its match, where that of the first target has 1: it may count four times as much.
 
     Raises
     ------
@@ -42,6 +42,7 @@ class SecondTarget:
 
     outline: Outline
     phi: float = field(
+        default=USUAL_PHI,
         metadata=Setting(
             least=0.0,
             above_least=True,
@@ -49,6 +50,7 @@ class SecondTarget:
             below_most=True,
             code="second_target.angle_out_of_range",
             error=AngleError,
+            help="angle at which it should show the second target, above --phi",
             label=mark("At"),
             spoken=mark("Angle of the second target in degrees"),
             widget="secondAngle",
@@ -56,21 +58,31 @@ class SecondTarget:
             step=5.0,
             decimals=1,
             unit="°",
-        ).metadata
+            option="--at-deg",
+            keyword="also_phi",
+            metavar="DEGREES",
+            open_unless_given=True,
+        ).metadata,
     )
     weight: float = field(
+        default=USUAL_WEIGHT,
         metadata=Setting(
             about=mark("How much the second target counts; the first has 1 ({low:g} to {most:g})."),
             least=0.0,
             above_least=True,
             most=4.0,
             code="second_target.weight_out_of_range",
+            help="weight of the second target, that of the first being 1",
             label=mark("&Weight"),
             spoken=mark("Weight of the second target"),
             widget="secondWeight",
             low=0.01,
             step=0.1,
-        ).metadata
+            option="--weight",
+            keyword="also_weight",
+            metavar="WEIGHT",
+            open_unless_given=True,
+        ).metadata,
     )
 
     def __post_init__(self) -> None:
@@ -109,7 +121,7 @@ class SecondMatch:
 
     @property
     def price(self) -> float:
-        """What the design lacks there, times the weight: IoU."""
+        """The IoU that the design lacks there, times the weight."""
         return self.target.weight * (1.0 - self.match.iou_exact)
 
 
@@ -127,7 +139,7 @@ def second_matches(deployments: Sequence[Deployment], target: SecondTarget | Non
 
 
 def confirmed_match(deployment: Deployment, read: SecondMatch) -> SecondMatch:
-    """Keep a match from a file that is the design's in the pose that it names; else match the design again."""
+    """Keep a match from a file that is the design's in its pose; else match the design again."""
     target, match = read.target, read.match
     (own,) = matches_in_poses([deployment.outline(target.phi)], target.outline, [match.transform])
     if own is not None and own.is_near(match):

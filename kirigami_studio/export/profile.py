@@ -28,6 +28,8 @@ class DxfVersion(StrEnum):
     R12 = "R12"  #: for old programs; such files have no unit
 
 
+#: Millimetres, pixels of old drawing programs, and those of CSS, to the inch.
+MM_DPI, POINT_DPI, CSS_DPI = 25.4, 72.0, 96.0
 #: Layer of a file that keeps everything together.
 ONE_LAYER = "SHEET"
 #: Layer of closed contours that stand for slits.
@@ -56,6 +58,9 @@ class Profile:
         Closed contours only: every slit becomes the outline of the slot that it burns.
     note : Note or None
         What to know before importing.
+    svg_dpi : float
+        Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width
+        and height say mm in any case.
     name_colour : int or None
         AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
     """
@@ -69,6 +74,7 @@ class Profile:
     slots: bool = False
     note: Note | None = None
     name_colour: int | None = BLUE
+    svg_dpi: float = MM_DPI
 
     def layer_name(self, layer: Layer) -> str:
         """Name of a layer in files of this profile."""
@@ -110,6 +116,41 @@ _TABLE = (
         slots=True,
         note=Note.of("profile.kerf_is_theirs"),
         name_colour=None,
+    ),
+    # One colour: Design Space lays every colour on a mat of its own.
+    Profile(
+        "cricut",
+        "Cricut Design Space: SVG in one colour, counted at 72 dpi",
+        _ALL_RED,
+        one_layer=True,
+        note=Note.of("profile.attach_and_measure"),
+        name_colour=None,
+        svg_dpi=POINT_DPI,
+    ),
+    Profile(
+        "silhouette",
+        "Silhouette Studio: everything red, arcs as chords",
+        _ALL_RED,
+        flatten=True,
+        note=Note.of("profile.measure"),
+        name_colour=None,
+        svg_dpi=POINT_DPI,
+    ),
+    Profile(
+        "glowforge",
+        "Glowforge: SVG with one colour for each layer",
+        _BY_LAYER,
+        note=Note.of("profile.order_of_steps"),
+        name_colour=WHITE,
+        svg_dpi=CSS_DPI,
+    ),
+    Profile(
+        "xtool",
+        "xTool Studio: SVG with one colour for each layer",
+        _BY_LAYER,
+        note=Note.of("profile.order_of_steps"),
+        name_colour=WHITE,
+        svg_dpi=CSS_DPI,
     ),
 )
 PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for profile in _TABLE})

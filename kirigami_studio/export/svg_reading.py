@@ -34,6 +34,11 @@ HEAD_BYTES = 4096
 UNKNOWN_COLOUR = -1
 _WORDS = re.compile(r"[MLAZ]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
 
+#: Digits of a scale that svgelements keeps.
+SCALE_DIGITS = 6
+#: Sides of a frame may differ by this, in the drawing's own unit, for they are rounded in the file.
+SAME_SIDE = 1e-3
+_SCALE = re.compile(r"scale\((\d+(?:\.\d+)?)\)")
 _REPEATS = re.compile(rb"<(\w+:)?use\b")
 
 Row = tuple[float, float, float]
@@ -51,9 +56,13 @@ def read_with_svgelements(path: Path) -> FileContent:
     try:
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
+        grouped = _grouped(svg)
+        counted = _scale_of_groups(grouped, scale)
         width, height = float(box.width), float(box.height)
+        if counted != 1.0:  # the frame as it is written, for svgelements rounds scales and lengths
+            scale, width, height = scale * counted, *(_millimetres(svg.values[side]) for side in ("width", "height"))
         strokes = tuple(
-            _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in _grouped(svg)
+            _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in grouped
         )
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         # What a damaged file leaves out, svgelements has as None or NaN.
@@ -100,13 +109,27 @@ def read_with_xml(path: Path) -> FileContent:
         )
     except (OSError, ElementTree.ParseError, ArithmeticError, LookupError, ValueError, RuntimeError) as error:
         raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
-    millimetres = width.endswith("mm") and height.endswith("mm") and tuple(box) == (0.0, 0.0, *size)
+    scales = {str(group.get("transform", "scale(1)")) for group in root.findall(f"{{{NAMESPACE}}}g")}
+    millimetres = width.endswith("mm") and height.endswith("mm") and _counts_mm(box, size, scales)
     others = tuple(
         element.tag.removeprefix(f"{{{NAMESPACE}}}")
         for element in root.iter()
         if element.tag not in {f"{{{NAMESPACE}}}{known}" for known in ("svg", "g", "path", "title", "desc", "metadata")}
     )
     return FileContent("the XML reader", strokes, MILLIMETRES if millimetres else 0, size, _layers(strokes), others)
+
+
+def _counts_mm(box: list[float], size: tuple[float, float], scales: set[str]) -> bool:
+    """Whether groups that are scaled alike fill a frame of this size (mm) when they count in mm."""
+    found = [_SCALE.fullmatch(text) for text in scales]
+    if len(found) > 1 or len(box) != 4 or not all(found):
+        return False
+    scale = float(found[0][1]) if found and found[0] is not None else 1.0
+    if scale == 1.0:
+        return tuple(box) == (0.0, 0.0, *size)
+    return box[:2] == [0.0, 0.0] and all(
+        abs(side - scale * meant) <= SAME_SIDE for side, meant in zip(box[2:], size, strict=True)
+    )
 
 
 def is_svg(path: Path) -> bool:
@@ -163,6 +186,20 @@ def _grouped(svg: Any) -> list[tuple[Any, Any]]:
     """Every path with the group that holds it."""
     groups = [element for element in svg if isinstance(element, Group)]
     return [(group, path) for group in groups for path in group if isinstance(path, SvgPath)]
+
+
+def _scale_of_groups(grouped: list[tuple[Any, Any]], scale: float) -> float:
+    """How many of a drawing's own units its groups take for one of theirs.
+
+    Raises
+    ------
+    ValueError
+        Groups differ.
+    """
+    found = {round(float(path.transform.a) * MM_PER_PX / scale, SCALE_DIGITS) for _, path in grouped}
+    if len(found) > 1:
+        raise ValueError("its groups are scaled differently")
+    return found.pop() if found else 1.0
 
 
 def _segments(element: Any) -> tuple[list[Row], bool]:

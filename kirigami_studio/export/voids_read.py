@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +89,15 @@ class FoundVoids:
     def narrowest_mm(self) -> float:
         """Least finished width; infinite without connectors."""
         return min((connector.width_mm for connector in self.connectors), default=math.inf)
+
+    def moved(self, by: FloatArray) -> FoundVoids:
+        """The same in another frame, everything moved by (2,), mm."""
+
+        def there(place: tuple[float, float]) -> tuple[float, float]:
+            return place[0] + float(by[0]), place[1] + float(by[1])
+
+        connectors = tuple(replace(one, centre=there(one.centre)) for one in self.connectors)
+        return replace(self, connectors=connectors, where=None if self.where is None else there(self.where))
 
     @property
     def panels(self) -> int:

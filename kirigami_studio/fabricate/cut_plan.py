@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -25,9 +26,10 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.fitting import Obstacle
 from kirigami_studio.fabricate.hinged_cuts import HingedCuts, hinged_cuts, relief_radius
 from kirigami_studio.fabricate.lettering import Engraving
+from kirigami_studio.fabricate.machine import Machine, machine_of
 from kirigami_studio.fabricate.making_room import CHANGED_SHARE, has_room, with_room
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
@@ -91,6 +93,14 @@ class CutPlan:
         Where the design comes from, repeated in every file of the plan; decides nothing.
     engraving : Engraving or None
         A name on the sheet, which is engraved before anything is cut and counts as no cut.
+    name : str
+        That was to be engraved, "" for none; the sheet may have no room for it.
+    trimmed : int
+        Panels of which something was trimmed off.
+    verdict : str
+        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
+    chosen_machine : Machine or None
+        That was asked for; None for the one that the material is for.
     """
 
     paths: tuple[CutPath, ...]
@@ -101,7 +111,7 @@ class CutPlan:
     hinges: Hinges
     material: Material
     design_hash: str
-    options: CutOptions = field(default_factory=CutOptions)
+    options: CutOptions = STRAIGHT
     notes: tuple[Note, ...] = ()
     panels: tuple[FloatArray, ...] = ()
     centres: FloatArray | None = None
@@ -109,6 +119,15 @@ class CutPlan:
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
+    name: str = ""
+    trimmed: int = 0
+    verdict: str = ""
+    chosen_machine: Machine | None = None
+
+    @cached_property
+    def machine(self) -> Machine:
+        """The machine that cuts it."""
+        return machine_of(self.material) if self.chosen_machine is None else self.chosen_machine
 
     @cached_property
     def cut_length_mm(self) -> float:
@@ -122,7 +141,7 @@ class CutPlan:
     @cached_property
     def times(self) -> timing.CutTimes:
         """Seconds for cutting, travel and switching, and the range that the job may take."""
-        return timing.cut_times(self.paths, self.material)
+        return timing.cut_times(self.paths, self.material, self.machine)
 
     @property
     def seconds_estimate(self) -> float:
@@ -150,8 +169,12 @@ class CutPlan:
     @cached_property
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
-        bed = (self.material.bed_width_mm, self.material.bed_height_mm)
-        return lay_out(self.bounds_mm, bed, self.options, self.kerf_mm)
+        return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
+
+    @cached_property
+    def cut_panels(self) -> CutPanels:
+        """The panels as the cuts leave them."""
+        return cut_panels(self)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -174,10 +197,11 @@ def plan_cuts(
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     material: Material | None = None,
-    options: CutOptions | None = None,
+    options: CutOptions = STRAIGHT,
     overcut_mm: float = OVERCUT_MM,
     kept: Sequence[FloatArray | None] | None = None,
     cancel: Callable[[], bool] = lambda: False,
+    machine: Machine | None = None,
 ) -> CutPlan:
     """Turn a design into a job for the cutter.
 
@@ -190,8 +214,8 @@ def plan_cuts(
         Finished connector width and full cut width; the material's values unless given.
     material : Material, optional
         The default preset unless given.
-    options : CutOptions, optional
-        Straight connectors of one width, in the shortest order, without tabs, unless given.
+    options : CutOptions
+        Not those of new projects: plain slits unless given.
     overcut_mm : float
         Reach of edge cuts beyond the outline.
     kept : sequence of (P, 2) float or None, unit cells, optional
@@ -199,6 +223,8 @@ def plan_cuts(
         stays that of the untrimmed sheet.
     cancel : function
         Asked between the steps of planning, and while room is made for centred connectors.
+    machine : Machine, optional
+        The one that the material is for unless given.
 
     Raises
     ------
@@ -213,7 +239,7 @@ def plan_cuts(
         if cancel():
             raise Cancelled("plan.stopped")
 
-    material, options = material or default_material(), options or CutOptions()
+    material = material or default_material()
     width = check_length("sheet.width_not_positive", width_mm)
     asked = material.connector_mm if connector_mm is None else connector_mm
     connector = check_length("connector.width_not_positive", asked)
@@ -221,7 +247,7 @@ def plan_cuts(
     overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(*deployment.sheet.grid)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    design_hash = _design_hash(deployment, parts)
+    identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
     left = _without(options, lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
@@ -267,7 +293,10 @@ def plan_cuts(
     boundary = Polygon(measured_line(ring.points, ring.bulges, True))
     planned = widths if arranged.widths is None else arranged.widths
     go_on()
-    hinges = _hinges(cuts, table, widths, planned, cuts.widths(table, left.removed, boundary, kerf), lost)
+    finished = cuts.widths(table, left.removed, boundary, kerf)
+    if parts or deployment.sheet.start is not None:
+        planned = _left_by_outline(planned, finished)
+    hinges = _hinges(cuts, table, widths, planned, finished, lost)
     plan = CutPlan(
         paths=in_cutting_order(
             _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
@@ -280,7 +309,8 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=design_hash,
+        design_hash=identity,
+        trimmed=sum(part is not None for part in parts),
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
@@ -293,6 +323,7 @@ def plan_cuts(
         centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, left, table),
         made=made,
+        chosen_machine=machine,
     )
     return replace(plan, notes=(*plan.notes, *plan.copies.notes))
 
@@ -348,6 +379,13 @@ def _plain_cuts(
     return Polygon(outline_path(size, kerf)), pieces
 
 
+def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
+    """Widths (H,), mm, where the outline is no rectangle and leaves less of a connector."""
+    left = (finished > 0.0) & (finished < planned - WIDER_MM)
+    widths: FloatArray = np.where(left, finished, planned)
+    return widths
+
+
 def _hinges(
     cuts: HingedCuts,
     table: CutTable,
@@ -401,7 +439,8 @@ def _on_grid(points: FloatArray) -> FloatArray:
     return rounded
 
 
-def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:

@@ -1,4 +1,4 @@
-"""Room for centred connectors: the ratios of a design move a little, and its silhouette stays.
+"""Room for centred connectors: ratios of a design move a little, its silhouette stays.
 
 Where the ratio of a void is near 1, the connectors on both sides of its slit face each other and cannot both turn on
 their nodes: a cut takes no material away, so each has to lie beside it, and panels touch while the void is still open
@@ -19,11 +19,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
-from scipy.sparse import csc_matrix
+from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
@@ -32,8 +30,9 @@ from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.foundation.threads import one_blas_thread
-from kirigami_studio.lattice.compact import barycentric_stencil
+from kirigami_studio.lattice.compact import barycentric_matrix, barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -64,8 +63,8 @@ RATIO_WEIGHT = 0.05
 CLOSE_SPANS = 4.0
 #: Weight of what cannot be met against all else.
 UNMET = 300.0
-#: Newton steps at most; shares of the cost and of the promised fall that a step has to bring to be taken whole.
-MOST_STEPS, NO_FALL, LEAST_FALL = 60, 1e-9, 1e-4
+#: What is not met by less than this, of the most that one variable can do for it, counts as met.
+VIOLATED = 1e-9
 #: Right sides that are solved for at once: longer work would hold up the window, which waits for the lock.
 AT_ONCE = 32
 
@@ -126,7 +125,7 @@ def _programme(
 
 
 def long_enough(slits: FloatArray, spans: FloatArray) -> BoolArray:
-    """Whether slits (S,), mm, are long enough for two connectors and two ends, all of spans (S,), mm."""
+    """Whether slits (S,), mm, hold two connectors and two ends of spans (S,), mm."""
     needed = FACING_SPANS + 2.0 * (HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0]))
     enough: BoolArray = slits >= needed * spans
     return enough
@@ -196,7 +195,7 @@ class _Programme:
         return float(self._missing(self._design, self._z, 1.0).max(initial=0.0)) <= MET_MM
 
     def changed_share(self, design: Deployment) -> float:
-        """By how much the closed outline differs from the design's after the best similarity, of its area."""
+        """Share of its area by which the closed outline differs after the best similarity."""
         off = self._off(design)
         rest = off - self._similar @ np.linalg.lstsq(self._similar, off, rcond=None)[0]
         x, y = self._outline
@@ -204,7 +203,7 @@ class _Programme:
         return float(np.abs(rest / self._weight) @ self._length) / area
 
     def _off(self, design: Deployment) -> FloatArray:
-        """How far (L,), mm, the closed outline lies off the design's, weighted by the outline's length there."""
+        """Weighted distances (L,), mm, of the closed outline off the design's."""
         off: FloatArray = np.sum((self._closed(design.compact.T) - self._outline) * self._normal, axis=0)
         return off
 
@@ -217,12 +216,12 @@ class _Programme:
         return closed
 
     def _near(self, design: Deployment, share: float) -> Clearances:
-        """What comes too near to what across a panel."""
+        """Clearances across panels that are too small."""
         spans = share * self._hinge_spans
         return clearances(self._scale * design.compact, self._table, spans, self._rim, self._loop, SPARE_MM)
 
     def _missing(self, design: Deployment, z: FloatArray, share: float) -> FloatArray:
-        """What is missing (N,), mm, to the distances that slits need: facing connectors, their ends, their slants."""
+        """Lengths (N,), mm, that slits lack: between facing connectors, at ends, for slants."""
         length = np.linalg.norm(self._run(design), axis=1)
         apart, lean = self._side * np.tanh(0.5 * z), self._lean(design)
         wanted = np.where(self._facing > 0.0, share * self._facing * self._facing_spans(design) + SPARE_MM, -math.inf)
@@ -233,7 +232,7 @@ class _Programme:
         return np.concatenate([wanted - length * apart, room, self._hinge_spans[self._there] * (lean - MOST_SLANTED)])
 
     def _falls(self, design: Deployment, z: FloatArray, share: float) -> tuple[SparseJacobian, FloatArray]:
-        """How what is missing (N,) falls as nodes move, and, of what slits need, as their own ratios grow (2 S,)."""
+        """Derivatives of lacking lengths (N,) by nodes, and of slits by their own ratios (2 S,)."""
         run = self._run(design)
         length = np.linalg.norm(run, axis=1)
         along = self._scale * run / length[:, None]
@@ -257,7 +256,7 @@ class _Programme:
         return run
 
     def _facing_spans(self, design: Deployment) -> FloatArray:
-        """How many spans (S,) facing connectors are apart: more where a slit leans over the other one's bow."""
+        """Spans (S,) between facing connectors: more where a slit leans over the other's bow."""
         table, nodes = self._table, design.compact
         along = directions(nodes[table.ends])
         away = along[table.hinge_cut] * np.where(table.hinge_end == 0, 1.0, -1.0)[:, None]
@@ -269,7 +268,7 @@ class _Programme:
         return np.where(sine > LEANING, spans, FACING_SPANS)
 
     def _worst_ends(self, lean: FloatArray) -> tuple[IntArray, IntArray]:
-        """Slits (P,), and of each the end (P,), among hinges with a connector, whose turn needs more room."""
+        """Slits (P,), and of each the end (P,) with a connector whose turn needs more room."""
         ends = np.flatnonzero(self._table.hinge_cut[self._there] < self._table.slit_count)
         turns = shortest_turn(np.minimum(lean[ends], MOST_SLANTED))
         # Of both ends the one that needs more comes last, and stays.
@@ -341,70 +340,19 @@ def _crossed(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _least(curvature: FloatArray, pull: FloatArray, falls: FloatArray, missing: FloatArray) -> FloatArray:
-    """The y with the least y.curvature.y / 2 + pull.y of those with falls y >= missing, as nearly as that can be.
-
-    In variables that make the curvature 1 it is a problem of least distance (Lawson and Hanson, Solving Least Squares
-    Problems, 1974, chapter 23).
-    """
+    """The y of least y.curvature.y / 2 + pull.y with falls y >= missing, as nearly as possible."""
     root = cholesky(curvature, lower=True)
     start = solve_triangular(root, pull, lower=True)
     rows = solve_triangular(root, falls.T, lower=True).T
     wanted = missing + rows @ start
     scale = np.maximum(np.abs(rows).max(axis=1), 1e-12)
-    rows, wanted = rows / scale[:, None], wanted / scale
-    found: FloatArray = solve_triangular(root.T, shortest(rows, wanted) - start, lower=False)
+    conditions = Conditions(np.arange(scale.size), rows, wanted, (scale / UNMET) ** 2)
+
+    def violated(step: FloatArray) -> Conditions:
+        return conditions.chosen(wanted - rows @ step > VIOLATED * scale)
+
+    found: FloatArray = solve_triangular(root.T, shortest_step(start.size, violated)[0] - start, lower=False)
     return found
-
-
-def shortest(rows: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The least u (V,) with rows.u >= wanted, where what is not met counts UNMET^2 times as much.
-
-    Newton's method on a convex cost of quadratic pieces, with the best share of a step where a whole one is too far.
-    """
-    # Imported when it is needed: it takes long, and the window starts without it.
-    from scipy.optimize import brentq
-
-    u = np.zeros(rows.shape[1])
-    for _ in range(MOST_STEPS):
-        short = wanted - rows @ u
-        own = rows[short > 0.0]
-        step = _balance(own, wanted[short > 0.0]) - u
-        line = _CostLine(u, step, short, rows @ step)
-        if line.slope(0.0) >= -NO_FALL * line.cost(0.0):
-            break
-        if line.cost(1.0) <= line.cost(0.0) + LEAST_FALL * line.slope(0.0) or line.slope(1.0) <= 0.0:
-            u = u + step
-        else:
-            u = u + brentq(line.slope, 0.0, 1.0) * step
-    return u
-
-
-def _balance(rows: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The u (V,) with the least |u|^2 + UNMET^2 |wanted - rows u|^2, from the smaller of two systems."""
-    count, size = rows.shape
-    table = rows @ rows.T if count < size else rows.T @ rows
-    table[np.diag_indices(len(table))] += UNMET**-2
-    factor = cho_factor(table, overwrite_a=True)
-    found: FloatArray = rows.T @ cho_solve(factor, wanted) if count < size else cho_solve(factor, rows.T @ wanted)
-    return found
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _CostLine:
-    """The cost from a place (V,) along a step (V,): conditions (N,) are short there, and by ``along`` less after it."""
-
-    place: FloatArray
-    step: FloatArray
-    short: FloatArray
-    along: FloatArray
-
-    def cost(self, share: float) -> float:
-        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
-        return 0.5 * float(place @ place) + 0.5 * UNMET**2 * float(unmet @ unmet)
-
-    def slope(self, share: float) -> float:
-        place, unmet = self.place + share * self.step, np.maximum(self.short - share * self.along, 0.0)
-        return float(place @ self.step) - UNMET**2 * float(unmet @ self.along)
 
 
 def _node_slopes(design: Deployment) -> FloatArray:
@@ -412,25 +360,13 @@ def _node_slopes(design: Deployment) -> FloatArray:
     node, ends, void = barycentric_stencil(*design.sheet.grid)
     x = design.field.ratio.ravel()[void]
     nodes, count = design.compact, node.size
-    position = np.full(len(nodes), -1)
-    position[node] = np.arange(count)
-    row, column = np.repeat(np.arange(count), 2), position[ends].ravel()
-    weight = np.stack([x, np.ones(count)], axis=1).ravel() / np.repeat(1.0 + x, 2)
-    free = column >= 0
-    diagonal = np.arange(count)
-    matrix = csc_matrix(
-        (
-            np.concatenate([np.ones(count), -weight[free]]),
-            (np.concatenate([diagonal, row[free]]), np.concatenate([diagonal, column[free]])),
-        ),
-        shape=(count, count),
-    )
-    factor = splu(matrix)
+    weights = np.stack([x, np.ones(count)], axis=1) / (1.0 + x)[:, None]
+    factor = splu(barycentric_matrix(len(nodes), node, ends, weights)[0])
     along = (x / (1.0 + x) ** 2)[:, None] * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
     slopes = np.zeros((2, len(nodes), design.field.ratio.size))
     for axis in (0, 1):
         right = np.zeros((count, slopes.shape[2]))
-        right[diagonal, void] = along[:, axis]
+        right[np.arange(count), void] = along[:, axis]
         for first in range(0, right.shape[1], AT_ONCE):
             slopes[axis, node, first : first + AT_ONCE] = factor.solve(right[:, first : first + AT_ONCE])
     return slopes

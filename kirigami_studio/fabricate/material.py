@@ -6,25 +6,23 @@ with the key of a preset wins over it.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import dataclass, field
 from datetime import date
-from functools import cache
+from enum import StrEnum
 from pathlib import Path
-from types import MappingProxyType
-
-import platformdirs
+from typing import Any
 
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.shelf import Shelf
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.foundation.files import read_toml
-from kirigami_studio.foundation.plain_text import plain_line, plain_lines
-from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line, plain_lines
 from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.foundation.words import mark
 
-#: The preset that a new project starts with: the film of the paper's specimens.
+#: The preset that a new project starts with.
 DEFAULT_PRESET = "film-uv"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
@@ -32,7 +30,18 @@ BY_HAND = "by hand"
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Full power, percent.
 LARGEST_POWER = 100.0
+#: Entry of files from before tension and bending were told apart: the strain at which connectors were taken to break.
+OLD_LIMIT = "strain_limit"
 _FLAG = Setting(code="material.wrong_type", error=FabricationError).metadata
+_WORD = Setting(code="material.no_such_word", error=FabricationError).metadata
+
+
+class Construction(StrEnum):
+    """Way of making a sheet; the values stand in files."""
+
+    ONE_SHEET = "one-sheet"  #: bridges of the sheet itself turn
+    PINNED = "pinned"  #: two layers of rigid panels turn on pins
+    BACKED = "backed"  #: tiles are glued on a hinge layer
 
 
 def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
@@ -69,6 +78,16 @@ def _number(
     return setting.metadata
 
 
+def _machine_number(zero: bool = False) -> Mapping[str, Setting]:
+    """Describe a number that older files have; no editor shows it."""
+    return _number("", "", "", 0.0, 1.0, 1.0, zero=zero)
+
+
+def _strain(label: str, about: str, zero: bool = False) -> Mapping[str, Setting]:
+    """Describe a strain, which the editor shows in percent."""
+    return _number(label, about, "%", 0.0 if zero else 0.01, 1000.0, 0.5, decimals=2, scale=100.0, zero=zero)
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
     """One sheet material on one kind of machine.
@@ -90,18 +109,19 @@ class Material:
         A warning is given about finished ligaments below this.
     relief_radius_mm : float
         Radius of a stress-relief slit end, 0 for none.
-    speed_mm_s, travel_mm_s : float
-        Speed with the beam on, and between cuts.
-    acceleration_mm_s2 : float
+    speed_mm_s : float
+        Speed with the beam on.
     join_tolerance_mm : float
         Gaps below twice this may be closed by the program that imports the file.
     calibrated : bool
         False until the numbers were measured on a coupon.
     note : str
-    strain_limit : float
-        Strain at which the material breaks (0.05 = 5 %); files without it get that of a brittle sheet.
-    on_delay_s, off_delay_s : float
-        What the machine waits at the start and at the end of every path; 0 in files without it.
+    yield_strain : float
+        Strain (0.05 = 5 %) above which it stays bent; 0 for what springs back until it breaks, and where nobody knows.
+    break_strain : float
+        Elongation at which it tears when pulled; files without it get that of a brittle sheet.
+    bend_strain : float
+        Strain of the outer fibre at which a bend breaks; larger than ``break_strain`` in what delaminates or folds.
     passes : int
         How many times the job is cut; 1 in files without it.
     min_slit_mm : float
@@ -110,14 +130,24 @@ class Material:
         Young's modulus; 3 in files without it, as many plastics have.
     power_percent : float
         Power of the laser while it cuts, 0 to 100; 0 for a blade, and where nobody knows it.
-    bed_width_mm, bed_height_mm : float
-        What the machine can reach; 0 in files without it, where nobody knows it.
     min_panel_mm : float
         A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it.
     connectors_hold : bool
         False where no style, width and sheet size is known whose connectors survive opening.
+    construction : Construction
+        Way of making sheets that works in it.
+    backing : bool
+        Whether it is meant as the hinge layer under tiles.
+    sheet_mm : float
+        Usual width of the flat sheet.
+    style : ConnectorStyle
+        Style that works at that width.
+    sources : mapping of str to str
+        Where the figures of entries are from, or that they are an estimate; no part of comparisons.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
+    travel_mm_s, acceleration_mm_s2, on_delay_s, off_delay_s, bed_width_mm, bed_height_mm : float or None
+        The machine's, in files from before machines stood apart; None in others, see ``machine.machine_of``.
     """
 
     key: str = field(metadata=_text())
@@ -143,14 +173,6 @@ class Material:
     speed_mm_s: float = field(
         metadata=_number(mark("Cutting speed"), mark("Speed with the beam on."), "mm/s", 0.01, 10000.0, 5.0, decimals=2)
     )
-    travel_mm_s: float = field(
-        metadata=_number(mark("Travel speed"), mark("Speed between cuts."), "mm/s", 0.01, 20000.0, 20.0, decimals=2)
-    )
-    acceleration_mm_s2: float = field(
-        metadata=_number(
-            mark("Acceleration"), mark("How fast the head accelerates."), "mm/s²", 0.1, 200000.0, 100.0, decimals=1
-        )
-    )
     join_tolerance_mm: float = field(
         metadata=_number(
             mark("Joins gaps below"), mark("Gaps that the machine software may close."), "mm", 0.0, 2.0, 0.01, zero=True
@@ -158,46 +180,16 @@ class Material:
     )
     calibrated: bool = field(metadata=_FLAG)
     note: str = field(metadata=_text(mark("Note"), mark("Anything worth knowing.")))
-    strain_limit: float = field(
+    yield_strain: float = field(
+        default=0.0,
+        metadata=_strain(mark("Yield strain"), mark("Strain above which it stays bent; 0: none."), zero=True),
+    )
+    break_strain: float = field(
+        default=0.05, metadata=_strain(mark("Breaking strain"), mark("Strain at which it tears when pulled."))
+    )
+    bend_strain: float = field(
         default=0.05,
-        metadata=_number(
-            mark("Breaking strain"),
-            mark("Strain at which the material breaks."),
-            "%",
-            0.01,
-            500.0,
-            0.5,
-            decimals=2,
-            scale=100.0,
-        ),
-    )
-    on_delay_s: float = field(
-        default=0.0,
-        metadata=_number(
-            mark("Delay before a cut"),
-            mark("Pause before each cut."),
-            "ms",
-            0.0,
-            10000.0,
-            5.0,
-            decimals=1,
-            scale=1000.0,
-            zero=True,
-        ),
-    )
-    off_delay_s: float = field(
-        default=0.0,
-        metadata=_number(
-            mark("Delay after a cut"),
-            mark("Pause after each cut."),
-            "ms",
-            0.0,
-            10000.0,
-            5.0,
-            decimals=1,
-            scale=1000.0,
-            zero=True,
-        ),
+        metadata=_strain(mark("Bending strain"), mark("Strain of the outer fibre at which a bend breaks.")),
     )
     passes: int = field(
         default=1,
@@ -234,32 +226,6 @@ class Material:
             zero=True,
         ),
     )
-    bed_width_mm: float = field(
-        default=0.0,
-        metadata=_number(
-            mark("Bed width"),
-            mark("Width that the machine reaches; 0: any."),
-            "mm",
-            0.0,
-            5000.0,
-            10.0,
-            decimals=1,
-            zero=True,
-        ),
-    )
-    bed_height_mm: float = field(
-        default=0.0,
-        metadata=_number(
-            mark("Bed height"),
-            mark("Height that the machine reaches; 0: any."),
-            "mm",
-            0.0,
-            5000.0,
-            10.0,
-            decimals=1,
-            zero=True,
-        ),
-    )
     min_panel_mm: float = field(
         default=0.0,
         metadata=_number(
@@ -267,14 +233,29 @@ class Material:
         ),
     )
     connectors_hold: bool = field(default=True, metadata=_FLAG)
+    construction: Construction = field(default=Construction.ONE_SHEET, metadata=_WORD)
+    backing: bool = field(default=False, metadata=_FLAG)
+    sheet_mm: float = field(
+        default=100.0,
+        metadata=_number(mark("Usual width"), mark("Usual width of the flat sheet."), "mm", 5.0, 3000.0, 10.0, 1),
+    )
+    style: ConnectorStyle = field(default=ConnectorStyle.CENTRED, metadata=_WORD)
+    sources: Mapping[str, str] = field(default_factory=FrozenMapping, compare=False)
     measured_on: str = field(default="", metadata=_text())
     measured_by: str = field(default="", metadata=_text())
+    travel_mm_s: float | None = field(default=None, metadata=_machine_number())
+    acceleration_mm_s2: float | None = field(default=None, metadata=_machine_number())
+    on_delay_s: float | None = field(default=None, metadata=_machine_number(zero=True))
+    off_delay_s: float | None = field(default=None, metadata=_machine_number(zero=True))
+    bed_width_mm: float | None = field(default=None, metadata=_machine_number(zero=True))
+    bed_height_mm: float | None = field(default=None, metadata=_machine_number(zero=True))
 
     def __post_init__(self) -> None:
         check(self, key=self.key)
         for name in ("name", "machine", "measured_on", "measured_by"):  # the key names a file, which its writer checks
             object.__setattr__(self, name, plain_line(getattr(self, name)))
         object.__setattr__(self, "note", plain_lines(self.note))
+        self._check_sources()
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.power_percent > LARGEST_POWER:
@@ -283,9 +264,27 @@ class Material:
             self._check_day()
 
     @property
+    def limits_note(self) -> Note | None:
+        """Word before a run that no single sheet of it works, and which construction does; else None."""
+        if self.backing:
+            return Note.of("plan.material_is_hinge_layer", material=self.name)
+        if self.connectors_hold:
+            return None
+        backed = self.construction is Construction.BACKED
+        return Note.of("plan.material_needs_backing" if backed else "plan.material_does_not_hold", material=self.name)
+
+    @property
     def by_hand(self) -> bool:
         """Whether it is cut with scissors or a knife."""
         return self.machine == BY_HAND
+
+    def _check_sources(self) -> None:
+        found = self.sources
+        if not isinstance(found, Mapping) or not all(isinstance(text, str) for text in found.values()):
+            values = {"key": self.key, "name": "sources", "kind": "a table of texts", "value": found}
+            raise FabricationError("material.wrong_type", **values)
+        clean = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in found.items()}
+        object.__setattr__(self, "sources", FrozenMapping(clean))
 
     def _check_day(self) -> None:
         try:
@@ -313,42 +312,56 @@ class Library:
     faults: tuple[Note, ...]
 
 
+def with_entries_of_now(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """Entries of a file or of changes, those of older programs under the names that they have now."""
+    now = dict(entries)
+    if OLD_LIMIT in now:
+        limit = now.pop(OLD_LIMIT)
+        now = {"break_strain": limit, "bend_strain": limit} | now
+    return now
+
+
+#: The bundled presets and the user's own materials.
+SHELF: Shelf[Material] = Shelf(
+    Material,
+    "materials",
+    FOLDER_VARIABLE,
+    DEFAULT_PRESET,
+    FrozenMapping(
+        {
+            "folder": "material.folder_not_readable",
+            "unknown": "material.unknown",
+            "unreadable": "material.file_not_readable",
+            "missing": "material.entries_missing",
+            "not_known": "material.entries_unknown",
+            "key": "material.key_not_usable",
+            "bundled": "material.bundled_not_deleted",
+            "none_own": "material.none_own",
+            "not_own": "material.not_own",
+            "not_deleted": "material.not_deleted",
+            "no_entry": "material.no_such_entry",
+            "folder_bundled": "material.folder_is_bundled",
+        }
+    ),
+    frozenset({"key", "calibrated", "connectors_hold", "construction", "backing", "style", "sources"}),
+    with_entries_of_now,
+)
+
+
 def presets() -> dict[str, Material]:
     """Return all bundled presets by key, the default one first, the rest in alphabetical order."""
-    return dict(_bundled())
-
-
-@cache
-def _bundled() -> Mapping[str, Material]:
-    """The presets; they come with the program, so one reading is enough."""
-    found = {path.stem: read_preset(path) for path in sorted(resource("materials").glob("*.toml"))}
-    return MappingProxyType(dict(sorted(found.items(), key=lambda item: (item[0] != DEFAULT_PRESET, item[0]))))
+    return SHELF.bundled()
 
 
 def own_folder() -> Path:
     """Folder of the user's own materials: the one in the variable, or the platform's for settings."""
-    named = os.environ.get(FOLDER_VARIABLE)
-    if named:
-        return Path(named)
-    return platformdirs.user_config_path("kirigami-studio", appauthor=False) / "materials"
+    return SHELF.own_folder()
 
 
 def library() -> Library:
     """Read presets and own materials; an own file that cannot be used is noted among the faults."""
-    materials, own, faults = presets(), set[str](), list[Note]()
-    folder = own_folder()
-    try:
-        files = sorted(folder.glob("*.toml"))
-    except OSError as error:
-        reason = error.strerror or str(error)
-        files, faults = [], [Note.of("material.folder_not_readable", folder=folder, reason=reason)]
-    for path in files:
-        try:
-            materials[path.stem] = read_preset(path)
-            own.add(path.stem)
-        except FabricationError as error:
-            faults.append(Note(error.code, error.fields))
-    return Library(materials, frozenset(own), tuple(faults))
+    found = SHELF.contents()
+    return Library(found.items, found.own, found.faults)
 
 
 def default_material() -> Material:
@@ -364,14 +377,7 @@ def find_material(name: str) -> Material:
     FabricationError
         No material of that name; the sentence lists the known keys.
     """
-    known = library().materials
-    wanted = str(name).strip().casefold()
-    by_key = {key.casefold(): material for key, material in known.items()}
-    by_name = {material.name.casefold(): material for material in list(known.values())[::-1]}
-    found = by_key.get(wanted) or by_name.get(wanted)
-    if found is None:
-        raise FabricationError("material.unknown", name=name, known=", ".join(known))
-    return found
+    return SHELF.find(name)
 
 
 def read_preset(path: Path) -> Material:
@@ -382,15 +388,4 @@ def read_preset(path: Path) -> Material:
     FabricationError
         Unreadable, not TOML, or with missing, unknown or impossible entries.
     """
-    try:
-        entries = read_toml(path)
-    except (OSError, ValueError) as error:
-        raise FabricationError("material.file_not_readable", path=path, reason=str(error)) from error
-    expected = {one.name: one.default is MISSING for one in fields(Material) if one.name != "key"}
-    if missing := {name for name, needed in expected.items() if needed} - entries.keys():
-        names = ", ".join(sorted(missing))
-        raise FabricationError("material.entries_missing", path=path, names=names, count=len(missing))
-    if unknown := entries.keys() - expected.keys():
-        names = ", ".join(sorted(unknown))
-        raise FabricationError("material.entries_unknown", path=path, names=names, count=len(unknown))
-    return Material(key=plain_line(path.stem), **entries)
+    return SHELF.read(path)

@@ -2,39 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
-from kirigami_studio.fabricate.material import Material, find_material, library, own_folder, presets
+from kirigami_studio.fabricate.machine import Machine, material_on
+from kirigami_studio.fabricate.material import SHELF, Construction, Material, find_material, with_entries_of_now
 from kirigami_studio.foundation.errors import FabricationError
-from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.foundation.resources import resource
-
-#: Keys are file names on every platform: lower case, so that no two differ by capitals only.
-KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
-#: Entries that are no numbers or words of the user's own.
-JUDGED = frozenset({"key", "calibrated", "connectors_hold"})
-#: Files of these names cannot exist on Windows.
-RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))})
-
-
-def check_key(key: str) -> str:
-    """Return a key that can be a file's name, or refuse it.
-
-    Raises
-    ------
-    FabricationError
-        Empty, too long, with other characters than a-z, 0-9, - and _, or reserved by a platform.
-    """
-    if not isinstance(key, str) or KEY.fullmatch(key) is None or key in RESERVED:
-        raise FabricationError("material.key_not_usable", key=key)
-    return key
 
 
 def save_copy(material: Material) -> Path:
@@ -47,10 +23,7 @@ def save_copy(material: Material) -> Path:
     ExportError
         The file cannot be written.
     """
-    path = _own_file(material.key)
-    entries = {name: value for name, value in asdict(material).items() if name != "key"}
-    write_atomically(path, tomli_w.dumps(entries).encode("utf-8"))
-    return path
+    return SHELF.save(material)
 
 
 def delete_copy(key: str) -> None:
@@ -61,21 +34,10 @@ def delete_copy(key: str) -> None:
     FabricationError
         There is no own material of that key.
     """
-    path = _own_file(key)
-    try:
-        path.unlink()
-    except FileNotFoundError:
-        if key in presets():
-            raise FabricationError("material.bundled_not_deleted", key=key) from None
-        own = ", ".join(sorted(library().own))
-        if not own:
-            raise FabricationError("material.none_own", key=key) from None
-        raise FabricationError("material.not_own", key=key, own=own) from None
-    except OSError as error:
-        raise FabricationError("material.not_deleted", path=path, reason=error.strerror or str(error)) from error
+    SHELF.delete(key)
 
 
-def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Material:
+def changed_copy(source: str, key: str, changes: Mapping[str, object], machine: Machine | None = None) -> Material:
     """An uncalibrated copy of a material under a new key (or the same) with some entries changed; not saved yet.
 
     Parameters
@@ -85,6 +47,8 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
     key : str
     changes : mapping of field name to value
         Text is read as the field's type.
+    machine : Machine, optional
+        Whose kind the copy gets its figures for; those that the material has by itself unless given.
 
     Raises
     ------
@@ -92,17 +56,16 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object]) -> Materi
         No such material or field, or a value that makes no sense.
     """
     original = find_material(source)
-    kinds = {field.name: str(field.type) for field in fields(Material) if field.name not in JUDGED}
-    for name in changes:
-        if name not in kinds:
-            raise FabricationError("material.no_such_entry", name=name, known=", ".join(kinds))
-    values = {name: _typed(name, kinds[name], value) for name, value in changes.items()}
+    original = original if machine is None else material_on(original, machine)
+    values = SHELF.typed(with_entries_of_now(changes))
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"
     clean: dict[str, Any] = {"calibrated": False, "measured_on": "", "measured_by": ""}
-    if any(kinds[name] != "str" for name in changes):
-        clean["connectors_hold"] = True  # what was known of the original is not known of other numbers
-    return replace(original, key=check_key(key), **(clean | values))
+    if any(not isinstance(value, str) for value in values.values()):
+        # What was known of the original is not known of other numbers.
+        clean |= {"connectors_hold": True, "construction": Construction.ONE_SHEET}
+        clean["sources"] = {name: text for name, text in original.sources.items() if name not in values}
+    return replace(original, key=SHELF.check_key(key), **(clean | values))
 
 
 def mark_calibrated(
@@ -141,21 +104,3 @@ def mark_calibrated(
     )
     save_copy(measured)
     return measured
-
-
-def _typed(name: str, kind: str, value: object) -> object:
-    """A value as typed on a command line, as float, int or text."""
-    if not isinstance(value, str) or kind == "str":
-        return value
-    try:
-        return int(value) if kind == "int" else float(value)
-    except ValueError:
-        code = "material.not_a_whole_number" if kind == "int" else "material.not_a_number"
-        raise FabricationError(code, name=name, value=value) from None
-
-
-def _own_file(key: str) -> Path:
-    folder = own_folder()
-    if folder.resolve() == resource("materials").resolve():
-        raise FabricationError("material.folder_is_bundled", folder=folder)
-    return folder / f"{check_key(key)}.toml"

@@ -51,7 +51,9 @@ class CutOptions:
     Attributes
     ----------
     style : ConnectorStyle
+        How slits end at their connectors.
     order : CutOrder
+        Order of the slits.
     tabs : int
         Uncut places of the outline that hold the sheet until it is taken out; 0 for none.
     tab_mm : float
@@ -72,7 +74,7 @@ class CutOptions:
     """
 
     style: ConnectorStyle = field(
-        default=ConnectorStyle.STRAIGHT,
+        default=ConnectorStyle.CENTRED,
         metadata=Setting(
             help="how slits end at their connectors",
             code="settings.no_such_choice",
@@ -173,9 +175,9 @@ class CutOptions:
         default=1,
         metadata=Setting(
             about=mark(
-                "Copies of the sheet in one file, in rows (1 to {most}); below 1: as many as fit on the material's bed."
+                "Copies of the sheet in one file, in rows (1 to {most}); below 1: as many as fit on the machine's bed."
             ),
-            help="copies of the sheet in one file, in rows; fit: as many as fit on the material's bed",
+            help="copies of the sheet in one file, in rows; fit: as many as fit on the machine's bed",
             least=AS_MANY_AS_FIT,
             most=MOST_COPIES,
             code="copies.number",
@@ -222,3 +224,7 @@ class CutOptions:
 
 def _ascending(numbers: Sequence[int]) -> bool:
     return all(number >= 0 for number in numbers) and all(a < b for a, b in pairwise(numbers))
+
+
+#: Plain slits between connectors of one width.
+STRAIGHT = CutOptions(ConnectorStyle.STRAIGHT)

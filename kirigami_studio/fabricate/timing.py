@@ -1,10 +1,11 @@
 """How long cutting takes: a head that speeds up and slows down on every run (trapezoid model), and how far to trust it.
 
 A run is what the head does without stopping.  The estimate stops at every corner sharper than ``FLOWING_TURN`` and
-takes the material's acceleration as it stands.  The range around it has two ends: at the slow one the head stops at
-every vertex and the acceleration is ``DOUBT`` times smaller, at the fast one it stops only where it turns by more than
-``SWIFT_TURN`` and the acceleration is ``DOUBT`` times larger.  An arc is one edge.  Neither end knows what heat, blower
-or controller add; passes repeat the whole job, and delays apply to every path of every pass.
+takes the machine's acceleration as it stands; the cutting speed is the material's, as far as the machine reaches it.
+The range around it has two ends: at the slow one the head stops at every vertex and the acceleration is ``DOUBT`` times
+smaller, at the fast one it stops only where it turns by more than ``SWIFT_TURN`` and the acceleration is ``DOUBT``
+times larger.  An arc is one edge.  Neither end knows what heat, blower or controller add; passes repeat the whole job,
+and delays apply to every path and every sharp corner of every pass.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kirigami_studio.fabricate.cut_path import CutPath, arc_lengths
+from kirigami_studio.fabricate.machine import Machine, machine_of
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
@@ -112,6 +114,11 @@ class Edges:
         turn[np.diff(edge, prepend=-1) > 0] = np.inf
         return cls(edge, arc_lengths(np.linalg.norm(chord, axis=1), bulge), turn)
 
+    @property
+    def sharp_corners(self) -> IntArray:
+        """Places of edges after a turn sharper than ``SWIFT_TURN``, those that begin a path left out."""
+        return np.flatnonzero((self.turn > SWIFT_TURN) & np.isfinite(self.turn))
+
     def runs(self, flowing_turn: float) -> tuple[IntArray, FloatArray]:
         """What is cut between two stops, where turns up to ``flowing_turn`` (radians) are no stop.
 
@@ -125,26 +132,28 @@ class Edges:
         return self.path[starts], np.add.reduceat(self.length, starts) if len(starts) else np.zeros(0)
 
 
-def cut_times(paths: Sequence[CutPath], material: Material) -> CutTimes:
-    """Estimate the time of a job, and the range around it."""
+def cut_times(paths: Sequence[CutPath], material: Material, machine: Machine | None = None) -> CutTimes:
+    """Estimate the time of a job, and its range; without a machine, on that of the material."""
+    machine = machine_of(material) if machine is None else machine
     edges, moves = Edges.of(paths), travel_lengths(paths)
-    cut, travel = _moving_seconds(edges, moves, material, FLOWING_TURN, 1.0)
-    extra = material.passes * len(paths) * (material.on_delay_s + material.off_delay_s)
+    cut, travel = _moving_seconds(edges, moves, material, machine, FLOWING_TURN, 1.0)
+    switching = len(paths) * (machine.on_delay_s + machine.off_delay_s)
+    extra = material.passes * (switching + len(edges.sharp_corners) * machine.corner_delay_s)
     return CutTimes(
         cut=cut,
         travel=travel,
         extra=extra,
-        low=sum(_moving_seconds(edges, moves, material, SWIFT_TURN, DOUBT)) + extra,
-        high=sum(_moving_seconds(edges, moves, material, 0.0, 1.0 / DOUBT)) + extra,
+        low=sum(_moving_seconds(edges, moves, material, machine, SWIFT_TURN, DOUBT)) + extra,
+        high=sum(_moving_seconds(edges, moves, material, machine, 0.0, 1.0 / DOUBT)) + extra,
     )
 
 
 def _moving_seconds(
-    edges: Edges, moves: FloatArray, material: Material, flowing_turn: float, eagerness: float
+    edges: Edges, moves: FloatArray, material: Material, machine: Machine, flowing_turn: float, eagerness: float
 ) -> tuple[float, float]:
     """Seconds with the beam on and off; ``eagerness`` multiplies the acceleration."""
-    acceleration = eagerness * material.acceleration_mm_s2
+    acceleration = eagerness * machine.acceleration_mm_s2
     _, runs = edges.runs(flowing_turn)
-    cut = float(run_seconds(runs, material.speed_mm_s, acceleration).sum())
-    travel = float(run_seconds(moves, material.travel_mm_s, acceleration).sum())
+    cut = float(run_seconds(runs, machine.speed_mm_s(material), acceleration).sum())
+    travel = float(run_seconds(moves, machine.travel_mm_s, acceleration).sum())
     return material.passes * cut, material.passes * travel

@@ -2,5 +2,5 @@
 
 Vocabulary: a *resource* is a file shipped with the program; a *unit cell* is the edge of one
 undeformed panel, the length unit of layouts; millimetres appear first in a cut plan.
-Imports nothing else of this project, and of third-party packages at most numpy.
+Imports nothing else of this project, and of third-party packages at most numpy; scipy in ``shortest_step``.
 """

@@ -1,4 +1,4 @@
-"""Array types that signatures name; what an array holds, its shape and its unit stand in the docstring beside it."""
+"""Array types of signatures; shape and unit stand in the docstring beside them."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from kirigami_studio.foundation.sentences import sentence
 
 
 class KirigamiError(Exception):
-    """Root of every error this program raises on purpose; ``str(error)`` is the sentence for the user.
+    """Root of all errors raised on purpose; ``str(error)`` is the sentence for the user.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ def _remade(kind: type[KirigamiError], code: str, fields: Mapping[str, object]) 
 
 
 def text_of(error: BaseException) -> str:
-    """Return the text of any error, the name of its class where it has none or its text cannot be made."""
+    """Return the text of any error, or the name of its class."""
     try:
         return str(error) or type(error).__name__
     except Exception:
@@ -80,7 +80,7 @@ class FabricationError(KirigamiError):
 
 
 class MechanicsError(KirigamiError):
-    """A network of panels and ligaments, or what is done to it, makes no sense, or no equilibrium was found."""
+    """A network of panels that makes no sense, or one without an equilibrium."""
 
 
 class ExportError(KirigamiError):

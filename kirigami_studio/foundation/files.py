@@ -1,4 +1,4 @@
-"""Atomic writing: a file appears whole or not at all, and an old one survives a failure.  Folders for one writer.
+"""Atomic writing: a file appears whole or not at all.  Folders for one writer.
 
 Reading with limits: regular files only, because a pipe or a device may have no end, and no more than can be meant.
 """
@@ -91,7 +91,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def _check_whole_numbers(entry: object) -> None:
-    """TOML's whole numbers have 64 bits; Python's reader takes longer ones, which no float can hold."""
+    """Refuse whole numbers of more than TOML's 64 bits, which Python's reader takes."""
     if isinstance(entry, dict):
         entry = list(entry.values())
     if isinstance(entry, list):
@@ -190,7 +190,7 @@ def linked_file(path: Path) -> Path:
 
 @contextlib.contextmanager
 def folder_of_one_writer(folder: Path) -> Iterator[None]:
-    """Make a folder and keep other writers that ask the same way out of it; a writer that is killed lets go of it.
+    """Make a folder and keep other writers out of it; a writer that is killed lets go of it.
 
     Where the file system knows no locks, everybody is let in.
 
@@ -242,7 +242,7 @@ else:
 
 
 def check_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be made or written, before any work is done for it; creates nothing.
+    """Refuse a folder that cannot be made or written; create nothing.
 
     Raises
     ------

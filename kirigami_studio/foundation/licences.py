@@ -53,7 +53,7 @@ class Component:
 
 
 def components() -> tuple[Component, ...]:
-    """Everything shipped or installed for the program: the program itself, then the others by name."""
+    """All that is installed for the program: the program itself, then the others by name."""
     needed = packages()
     ours = needed.pop(OURS, None)
     checkout = resource_root().parent / "LICENSE"  # whose metadata, if there are any, have no licence beside them
@@ -83,7 +83,7 @@ class Package:
 
 
 def packages() -> dict[str, Package]:
-    """The program's own distribution and all that it needs, as they are installed, by their normalised names.
+    """The program's own distribution and all that it needs, by their normalised names.
 
     What is not installed is not listed: it is needed on other systems only.
     """
@@ -116,7 +116,7 @@ def _component(package: Package) -> Component:
 
 
 def _licence_name(package: Package) -> str:
-    """What a distribution calls its licence: an expression, else a short field, else its classifiers."""
+    """The licence of a distribution: an expression, else a short field, else its classifiers."""
     expression = package.all("License-Expression")
     field = "".join(package.all("License")).strip().partition("\n")[0]
     short = field if len(field) <= LONGEST_NAME and not re.search("Copyright|:", field) else ""
@@ -135,7 +135,7 @@ def _homepage(package: Package) -> str:
 
 
 def _listed() -> Iterator[Component]:
-    """What the JSON files list."""
+    """Content of the JSON files."""
     for table in sorted(resource("licences").glob("*.json")):
         for entry in json.loads(table.read_text(encoding="utf-8")):
             text = _joined([_bundled(name) for name in entry["texts"]])

@@ -1,4 +1,4 @@
-"""Topic loggers, ``topic("lattice")`` is ``kirigami_studio.lattice``, and the silence of other libraries."""
+"""Topic loggers, ``topic("lattice")`` for one, and the silence of other libraries."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def topic(name: str) -> logging.Logger:
 
 
 def quiet_libraries() -> None:
-    """Keep off standard error what other libraries log and warn of; what this program logs still goes there.
+    """Keep other libraries' logs and warnings off standard error; this program's still go there.
 
     Python writes warnings of libraries to standard error where no program has said otherwise.  For programs, not for
     whoever imports this one; asked for by ``python -W``, warnings are shown.

@@ -1,4 +1,4 @@
-"""Numbers that the paper fixes and that more than one package needs (Yazdani, Shalileh, Shahriari; data generation)."""
+"""Numbers of the paper that more than one package needs (Yazdani, Shalileh, Shahriari)."""
 
 from __future__ import annotations
 

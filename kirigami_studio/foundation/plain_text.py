@@ -31,7 +31,7 @@ def plain_line(text: str, longest: int = LONGEST_NAME) -> str:
 
 
 def plain_lines(text: str, longest: int = LONGEST_NOTE) -> str:
-    """A note from outside with its lines, of at most ``longest`` printable characters and line ends in all."""
+    """A note from outside in lines, of at most ``longest`` printable characters in all."""
     if len(text) > longest:
         text = text[: longest - len(ELLIPSIS)].rstrip() + ELLIPSIS
     return "\n".join(printable(line) for line in text.splitlines())

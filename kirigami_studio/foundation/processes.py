@@ -1,4 +1,4 @@
-"""Work that is done piece by piece: in this process, in several fresh ones, or by the workers of a Dask cluster.
+"""Work piece by piece: in this process, in fresh ones, or by workers of a Dask cluster.
 
 A cluster is optional (the extra ``cluster``).  Its workers need this package in the same version; each does one piece
 at a time, on one thread.  A worker or process that dies loses nothing: its piece is done again by another one.
@@ -183,6 +183,6 @@ _ALONE = threading.Lock()
 
 
 def _alone(work: Callable[[Item], Result], item: Item) -> Result:
-    """Do a piece of work while no other thread of this process does one: limits of threads are the process's."""
+    """Do work while no other thread of this process does: limits of threads are shared."""
     with _ALONE, one_blas_thread():
         return work(item)

@@ -27,5 +27,5 @@ def resource_root() -> Path:
 
 
 def resource(*parts: str) -> Path:
-    """Return the path of one bundled file or folder, e.g. ``resource("models", "prior.safetensors")``."""
+    """Return the path of a bundled file or folder, ``resource("models", "prior.safetensors")``."""
     return resource_root().joinpath(*parts)

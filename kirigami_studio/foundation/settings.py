@@ -80,7 +80,10 @@ class Setting:
         Of that field, in what it shows.
     special : SpecialValue or None
     option : str
-        Name on the command line, such as ``--k``; without one it has none.
+        Name on the command line, such as ``--k``; without one it has none.  An angle whose option ends with ``-deg`` is
+        read in degrees there, and in radians everywhere else.
+    keyword : str
+        Name in Python and among the arguments, where the field's own one is another setting's, too.
     metavar, help : str
         Of that option, where they are not its name and ``about``.
     alone : object
@@ -113,6 +116,7 @@ class Setting:
     scale: float = 1.0
     special: SpecialValue | None = None
     option: str = ""
+    keyword: str = ""
     metavar: str = ""
     help: str = ""
     alone: object = None
@@ -155,6 +159,11 @@ class NamedSetting:
     optional: bool
     default: Any
     setting: Setting
+
+    @property
+    def keyword(self) -> str:
+        """Its name in Python and among the arguments of a command."""
+        return self.setting.keyword or self.name
 
     @property
     def is_plain(self) -> bool:

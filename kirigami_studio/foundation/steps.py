@@ -1,4 +1,4 @@
-"""Long work as a generator: it reports values as it goes, looks at a *cancel* flag, and may return a result."""
+"""Long work as a generator: it reports values and looks at a *cancel* flag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small matrices want one thread: with two, the BLAS workers wait for each other longer than they compute.
+"""One thread for small matrices: BLAS workers would wait for each other longer than compute.
 
 Measured in one run on two cores, a heart with 8 polished candidates, three times in turn: 4.4 - 5.3 s of processor time
 with the default two threads and 0.84 s with one, 2.3 - 2.7 s against 0.8 s on the clock.  The interpolation tables

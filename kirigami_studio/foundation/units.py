@@ -1,4 +1,4 @@
-"""Units at the edges: radians in code, degrees on screen; unit cells in layouts, mm in cut plans and files."""
+"""Units at the edges: degrees on screen, mm in cut plans and files."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def mark(text: str, /) -> str:
 
 
 def mark_n(one: str, many: str, /) -> tuple[str, str]:
-    """Mark a sentence in two numbers for the catalogue that is translated later, when it is read."""
+    """Mark a sentence in two numbers for the catalogue; it is translated when it is read."""
     return one, many
 
 
@@ -81,7 +81,7 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 
 def fill(text: str, values: Mapping[str, object]) -> str:
-    """Put values into a sentence; one that its format does not fit is written plainly, and shortened."""
+    """Put values into a sentence; where its format does not fit they are shown plainly."""
     try:
         return _filled(text, values)
     except (ValueError, TypeError, RecursionError):
@@ -151,7 +151,7 @@ def _translations() -> gettext.NullTranslations:
 
 
 def _find(code: str) -> tuple[str, Path | None] | None:
-    """The name and the catalogue of a language, or of the language without its country; English needs none."""
+    """Name and catalogue of a language, or of it without its country; English needs none."""
     code = code.replace("-", "_")
     found = next(filter(None, (gettext.find(DOMAIN, folder, [code]) for folder in _folders())), None)
     if found is None:

@@ -136,7 +136,7 @@ def masks(targets: Sequence[Outline], size: int = MASK_SIZE) -> BoolArray:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Simulation:
+class LaidOutSheet:
     """A sheet at an angle.
 
     Attributes
@@ -156,7 +156,7 @@ class Simulation:
     mask: BoolArray
 
 
-def simulate(ratios: npt.ArrayLike, phi: float = 0.0) -> Simulation:
+def simulate(ratios: npt.ArrayLike, phi: float = 0.0) -> LaidOutSheet:
     """Lay out the sheet of a table of ratios (m, n), exactly.
 
     Raises
@@ -166,7 +166,7 @@ def simulate(ratios: npt.ArrayLike, phi: float = 0.0) -> Simulation:
     """
     sheet = deploy(RatioField(np.asarray(ratios)))
     outline = sheet.outline(phi)
-    return Simulation(sheet, phi, outline, rasterise(outline))
+    return LaidOutSheet(sheet, phi, outline, rasterise(outline))
 
 
 def score(ratios: npt.ArrayLike, target: Outline) -> Score:

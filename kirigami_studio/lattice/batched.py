@@ -1,4 +1,4 @@
-"""Many designs at once in torch: the barycentric solve as a block-tridiagonal sweep, and its exact derivative.
+"""Many designs at once in torch: block-tridiagonal barycentric solve, exact derivative.
 
 Eliminating the v family of nodes leaves one block row per row of h nodes,
 
@@ -71,7 +71,7 @@ class BatchedLattice:
         return self._complete(self._sweep(weight, given), weight, given)
 
     def outline_parts(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
-        """U and V of the outline loop, (B, L, 2) each, L = 4 (m + n) + 4: one solve serves every angle.
+        """U and V of the outline loop, (B, L, 2) each, L = 4 (m + n) + 4, for every angle.
 
         The outline at phi is ``R(-a) U + R(+a) V`` with 2a = pi - phi, see ``deployment``.
         """
@@ -80,7 +80,7 @@ class BatchedLattice:
         return even, whole - even
 
     def outline(self, ratio: Tensor, phi: float | Tensor = 0.0, offsets: Tensor | None = None) -> Tensor:
-        """Outline loop at ``phi`` (a number or one per design, radians): (B, L, 2), counter-clockwise, unit cells.
+        """Outline loop (B, L, 2), unit cells, at ``phi`` (number or (B,), radians).
 
         Select ``[:, self.unzipped]`` at phi = 0, where the edge hinges have zipped shut.
         """
@@ -340,7 +340,7 @@ def block_sweep(lower: Tensor, upper: Tensor, right: Tensor) -> Tensor:
 
 
 def deployed(even: Tensor, odd: Tensor, phi: float | Tensor) -> Tensor:
-    """Combine the parts U, V (B, L, 2) at ``phi`` (a number or (B,) tensor, radians) into positions (B, L, 2)."""
+    """Combine parts U, V (B, L, 2) at ``phi`` (number or (B,), radians) into positions."""
     half = 0.5 * (math.pi - torch.as_tensor(phi, dtype=even.dtype, device=even.device)).reshape(-1, 1)
     c, s = torch.cos(half), torch.sin(half)
     total, spread = even + odd, even - odd

@@ -1,4 +1,4 @@
-"""The exact motion: by the parity rule (Eq. 1), panels with I + J even turn by -a, the others by +a, 2a = pi - phi.
+"""The exact motion: panels with I + J even turn by -a, others by +a, 2a = pi - phi (Eq. 1).
 
 Voids are parallelograms, so opposite panels stay parallel and every node moves on an ellipse
 
@@ -98,11 +98,11 @@ class Deployment:
         return self.nodes(phi)[self.topology.void_nodes]
 
     def panels(self, phi: float) -> FloatArray:
-        """Panel corners, counter-clockwise, at angle ``phi``: (m + 1, n + 1, 4, 2) float, unit cells."""
+        """Panel corners (m + 1, n + 1, 4, 2), unit cells, counter-clockwise, at ``phi``."""
         return self.nodes(phi)[self.topology.panel_nodes]
 
     def outline(self, phi: float) -> FloatArray:
-        """Boundary polygon at angle ``phi``: (L, 2) float, unit cells, counter-clockwise, first vertex not repeated.
+        """Boundary polygon (L, 2) at ``phi``, unit cells, counter-clockwise, not closed.
 
         L is 4 (m + n) + 4, or 2 (m + n) + 4 at phi = 0, where the edge hinges have zipped shut.
         """
@@ -111,7 +111,7 @@ class Deployment:
         return self.nodes(phi)[tables.outline_at_zero if zipped else tables.outline_nodes]
 
     def area(self, phi: float) -> float:
-        """Area inside the outline: panels plus voids, ``(sheet area) + sum a b sin(phi)``, unit cells squared."""
+        """Area inside the outline, ``(sheet area) + sum a b sin(phi)``, unit cells squared."""
         return signed_area(self.nodes(phi)[self.topology.outline_nodes])
 
 

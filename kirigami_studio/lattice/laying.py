@@ -1,4 +1,4 @@
-"""An outline laid under a grid: where on it the corner panels go, and how well the flat sheet then keeps it."""
+"""An outline laid under a grid: places of corner panels, and the error of the flat sheet."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FIRST_REACH = 0.1
 
 
 def laid_sheet(outline: FloatArray, rows: int, columns: int) -> Sheet:
-    """The uniform sheet of a grid with a start outline: of the rectangle's area, the middle of its top there.
+    """The uniform sheet of a grid with a start outline of the rectangle's area.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def laid_sheet(outline: FloatArray, rows: int, columns: int) -> Sheet:
 
 
 def lost_to_chords(sheet: Sheet) -> float:
-    """Share of the start outline's area that the chords between mouths and corners cut off; 0 for a rectangle."""
+    """Share of the start outline that chords between mouths and corners cut off."""
     if sheet.start is None:
         return 0.0
     whole = shapely.Polygon(RimPath(*sheet.grid, sheet.start, sheet.cell).outline()).area
@@ -69,7 +69,7 @@ def lost_to_chords(sheet: Sheet) -> float:
 
 
 def start_error(sheet: Sheet) -> float:
-    """How far the flat sheet is from its start outline: the area that only one of them covers, as a share.
+    """Area that only one of flat sheet and start outline covers, as a share.
 
     Both have the same area and centroid for it, as the size of a sheet is free.
     """
@@ -84,13 +84,13 @@ def start_error(sheet: Sheet) -> float:
 
 
 def start_match(sheet: Sheet) -> float:
-    """IoU of the flat sheet with its start outline, both of the same area and centroid: 1 for a rectangle."""
+    """IoU of the flat sheet with its start outline at the same area and centroid."""
     half = 0.5 * start_error(sheet)
     return (1.0 - half) / (1.0 + half)
 
 
 def _evened(rim: RimPlaces, path: _Path, start: FloatArray, first: float) -> FloatArray | None:
-    """The start moved along the outline to where its first place is even between the nearest sharp corners."""
+    """The start with its first place midway between the nearest sharp corners."""
     assigned = rim.assigned(start)
     if not assigned.anchors.size:
         return None

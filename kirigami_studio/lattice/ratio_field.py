@@ -1,4 +1,4 @@
-"""The design variables: the ratio field x, one positive side ratio per void (paper, Sec. 2.1)."""
+"""The ratio field x, one positive side ratio per void (paper, Sec. 2.1)."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class RatioField:
 
     @classmethod
     def uniform(cls, rows: int, columns: int) -> RatioField:
-        """All ratios 1: the plain rotating-squares sheet, the floor that every score is compared with."""
+        """All ratios 1: the plain rotating-squares sheet, with which every score is compared."""
         check_grid(rows, columns)
         return cls(np.ones((rows, columns)))
 

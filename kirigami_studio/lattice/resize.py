@@ -14,7 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 
 
 def resize_fields(z: FloatArray, rows: int, columns: int) -> FloatArray:
-    """Interpolate fields z (K, m, n) to (K, rows, columns), parity by parity; unchanged when the grid is the same."""
+    """Interpolate fields z (K, m, n) to (K, rows, columns), parity by parity."""
     count, m, n = z.shape
     if (m, n) == (rows, columns):
         return z

@@ -1,4 +1,4 @@
-"""The sheet that is cut: ratios, where cuts meet its rim, the outline it has while flat, and the size of its cells.
+"""The sheet that is cut: ratios, rim, outline while flat, and size of its cells.
 
 Along each side, *mouths* and *edge hinges* alternate.  At a mouth a cut leaves the sheet: two panels own a node each,
 at the same place while the sheet is flat.  At an edge hinge two panels share the node.  The paper spaces both evenly.
@@ -42,7 +42,7 @@ CELL_SIDES = (0.05, 20.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RimTable:
-    """Where the rim's nodes are, for one grid: everything is a combination of mouths and corners.
+    """Places of the rim's nodes for one grid, as combinations of mouths and corners.
 
     The *anchors* of a side are its two corners and its mouths.  They are numbered along the rim, clockwise from the
     top left corner.
@@ -148,7 +148,7 @@ class Rim:
 
     @classmethod
     def moved(cls, rows: int, columns: int, offsets: FloatArray) -> Rim:
-        """Mouths moved along their sides by ``offsets`` (R,), unit cells, in the order of :class:`RimTable`."""
+        """Mouths moved along their sides by ``offsets`` (R,), unit cells, as in :class:`RimTable`."""
         table = rim_table(rows, columns)
         positions = table.even + offsets
         top, right, bottom, left = (positions[table.side == number] for number in range(4))
@@ -271,7 +271,7 @@ class Sheet:
 
     @property
     def is_default(self) -> bool:
-        """Whether rim, start outline and cell are the paper's, so that the ratios alone tell the sheet."""
+        """Whether rim, start outline and cell are the paper's: ratios alone tell the sheet."""
         return self == Sheet(self.field)
 
     def with_field(self, field: RatioField) -> Sheet:
@@ -305,12 +305,12 @@ def replace_sheet(sheet: Sheet, field: RatioField | None = None, rim: Rim | None
 
 
 def rim_nodes(sheet: Sheet) -> FloatArray:
-    """The given nodes of a sheet: (G, 2) float, unit cells, in the order of ``rim_table(...).node``."""
+    """The given nodes (G, 2), unit cells, in the order of ``rim_table(...).node``."""
     return np.asarray(rim_table(*sheet.grid).share @ anchor_points(sheet))
 
 
 def anchor_points(sheet: Sheet) -> FloatArray:
-    """Corners and mouths of a sheet, clockwise from the top left corner: (A, 2) float, unit cells."""
+    """Corners and mouths (A, 2), unit cells, clockwise from the top left corner."""
     return RimPath(*sheet.grid, sheet.start, sheet.cell).anchors(sheet.rim.positions)
 
 
@@ -347,15 +347,16 @@ class RimPath:
         object.__setattr__(self, "_corner_place", place)
 
     def anchors(self, positions: FloatArray) -> FloatArray:
-        """Corners and mouths (A, 2), unit cells, from the mouths' ``positions`` (R,) along their sides."""
+        """Corners and mouths (A, 2), unit cells, from the mouths' ``positions`` (R,)."""
         table = rim_table(self.rows, self.columns)
         place = table.anchor_place.copy()
         place[table.mouths] = self._around(positions)
         return self._points(place)
 
     def slopes(self, positions: FloatArray) -> FloatArray:
-        """Derivative of each mouth's own point by its position: (R, 2) float; at a vertex of the start, that of the
-        part behind it, clockwise.
+        """Derivatives (R, 2) of the mouths' points by their own positions.
+
+        At a vertex of the start it is that of the part behind it, clockwise.
         """
         table = rim_table(self.rows, self.columns)
         if self.start is None:
@@ -368,8 +369,9 @@ class RimPath:
         return np.asarray(clockwise[:, None] * slope[np.clip(part, 0, len(slope) - 1)] * self.cell)
 
     def cut_off(self, positions: FloatArray) -> FloatArray:
-        """Areas (A,) between the parts of the outline from each anchor to the next and their chords: what chords cut
-        off is positive, what they add across hollows negative, in unit cells squared.
+        """Areas (A,), unit cells squared, between the outline from anchor to anchor and its chords.
+
+        Those that chords cut off are positive, those that they add across hollows negative.
         """
         table = rim_table(self.rows, self.columns)
         corners, corner_place = self._corners, self._corner_place
@@ -390,14 +392,14 @@ class RimPath:
 
     @property
     def held(self) -> BoolArray:
-        """Which mouths belong at sharp corners of the start outline, where fits leave them: (R,) bool."""
+        """Which mouths (R,) belong at sharp corners of the start outline, where fits leave them."""
         table = rim_table(self.rows, self.columns)
         if self.start is None:
             return np.zeros(table.mouths.size, dtype=np.bool_)
         return vertex_places(self.start, self.rows, self.columns, table.anchor_place)[1][table.mouths]
 
     def _around(self, positions: FloatArray) -> FloatArray:
-        """Places of the mouths along the whole rim, clockwise from the top left corner: (R,) unit cells."""
+        """Places (R,) of the mouths along the rim, clockwise from the top left corner, unit cells."""
         side = rim_table(self.rows, self.columns).side
         width, height = self.columns + 1, self.rows + 1
         first = np.array([0, width, 2 * width + height, 2 * (width + height)])[side]
@@ -411,7 +413,7 @@ class RimPath:
 
 
 def _swept(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Twice the areas swept clockwise by the ray from the origin on its way from points (K, 2) to others."""
+    """Twice the areas swept clockwise from the origin between points (K, 2) and others."""
     return np.asarray(first[:, 1] * second[:, 0] - first[:, 0] * second[:, 1])
 
 
@@ -437,7 +439,7 @@ def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
 
 
 def resized_sheet(sheet: Sheet, rows: int, columns: int) -> Sheet:
-    """The sheet carried to another grid: ratios parity by parity, and the rim's offsets along each side."""
+    """The sheet carried to another grid: ratios by parity, the rim's offsets along sides."""
     check_grid(rows, columns)
     if sheet.grid == (rows, columns):
         return sheet

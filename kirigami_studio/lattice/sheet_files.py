@@ -1,4 +1,4 @@
-"""Sheets as JSON: the files that scripts read and write, and the same entries in projects, answers and records.
+"""Sheets as JSON, for files of scripts, projects, answers and records.
 
 ``{"ratio": [[...], ...], "rim": {"top": [...], "right": [...], "bottom": [...], "left": [...]}, "start": [[x, y], ...],
 "cell": [width, height]}``.  Row 0 of the ratios is on top; the rim has the positions of the mouths in unit cells along

@@ -161,7 +161,7 @@ class RimPlaces:
         return cls(anchors, corner, TIE * away, around)
 
     def gain(self, place: float) -> FloatArray:
-        """What it gains to have a right angle that is at a place by arc length at each anchor: (A,)."""
+        """Gain of having the right angle at a place by arc length at each anchor: (A,)."""
         near = np.abs((self.anchors - place + 0.5 * self.around) % self.around - 0.5 * self.around)
         gain: FloatArray = self.tie + AT_CORNER_PANEL * self.around * (self.corner & (near <= NEAR * self.around + TIE))
         return gain
@@ -181,7 +181,7 @@ class RimPlaces:
         return Assigned(places, even[chosen[vertices]], at, cost + first)
 
     def _cheapest(self, corners: FloatArray, turn: FloatArray) -> tuple[IntArray, IntArray, float]:
-        """Which corners go where: their numbers, their anchors, and the cost, by dynamic programming.
+        """Numbers and anchors of the corners, and the cost, by dynamic programming.
 
         Row k of the table is for corner k - 1 being the last that was placed, row 0 for none.
         """
@@ -220,7 +220,7 @@ class RimPlaces:
 
 
 def _stretch(length: float, places: FloatArray) -> FloatArray:
-    """What it costs to spread a part of the outline over so many places; infinite where there are none."""
+    """Cost of spreading a part of the outline over so many places; infinite without any."""
     with np.errstate(divide="ignore", invalid="ignore"):
         cost: FloatArray = np.where(places > 0.0, places * np.square(np.log(length / places)), np.inf)
     return cost

@@ -1,4 +1,4 @@
-"""The exact symmetries of the lattice: which sheets equal their own turned or mirrored image, at every angle.
+"""Exact symmetries of the lattice: sheets that equal their own turned or mirrored image.
 
 With z = log10 x, row i from the top and column j from the left, the lattice has
 
@@ -29,7 +29,7 @@ from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points, rim_tab
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A flip left to right, if any, then quarter turns, counter-clockwise: what takes a sheet to its image.
+    """A flip left to right, if any, then quarter turns, counter-clockwise.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Move:
 
     @property
     def sign(self) -> float:
-        """What z is multiplied with: a void's ratio is inverted by a flip and by a quarter turn."""
+        """Factor of z: a void's ratio is inverted by a flip and by a quarter turn."""
         return -1.0 if self.flipped != bool(self.turns % 2) else 1.0
 
     @property
@@ -83,7 +83,7 @@ class Symmetry(Enum):
 
     @property
     def mirrors(self) -> bool:
-        """Whether a flip is among the moves: a target then has to lie with its axis along the sheet's."""
+        """Whether a flip is among the moves: a target's axis then lies along the sheet's."""
         return any(move.flipped for move in self.moves)
 
     def fits(self, rows: int, columns: int) -> bool:
@@ -125,7 +125,7 @@ class Symmetry(Enum):
 
 @dataclass(frozen=True, eq=False)
 class GridSymmetry:
-    """A symmetry as signed permutations of one grid's numbers: m n entries of z, then R offsets of mouths.
+    """Signed permutations of one grid's numbers: m n entries of z, then R offsets of mouths.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ class GridSymmetry:
         return self.symmetry.symmetric(z)
 
     def symmetric_offsets(self, offsets: FloatArray) -> FloatArray:
-        """The nearest rim offsets (..., R) that equal all their images, unit cells, in the order of ``RimTable``."""
+        """The nearest rim offsets (..., R), unit cells, that equal all their images."""
         cells = self.rows * self.columns
         total = offsets.copy()
         for source, sign in zip(self.source[:, cells:] - cells, self.sign[:, cells:], strict=True):

@@ -1,4 +1,4 @@
-"""Which node belongs to which void, panel and outline: constant for a grid, shared by all its designs.
+"""Nodes of every void, panel and outline: constant for a grid.
 
 Nodes come in two families, each indexed like the void whose corner it is:
 
@@ -100,13 +100,13 @@ def topology(rows: int, columns: int) -> Topology:
 
 
 def _uniform_h(m: int, n: int) -> FloatArray:
-    """Compact (x, depth) of h for all ratios 1: the middle of an even void, the left end of an odd one."""
+    """Compact (x, depth) of h for ratios 1: middle of an even void, left end of an odd one."""
     i, j = np.meshgrid(np.arange(-1, m + 1), np.arange(n + 1), indexing="ij")
     return np.stack([np.where((i + j) % 2 == 0, j + 1, j), i + 1], axis=-1).reshape(-1, 2).astype(np.float64)
 
 
 def _uniform_v(m: int, n: int) -> FloatArray:
-    """Compact (x, depth) of v for all ratios 1: the top end of an even void, the middle of an odd one."""
+    """Compact (x, depth) of v for ratios 1: top end of an even void, middle of an odd one."""
     i, j = np.meshgrid(np.arange(m + 1), np.arange(-1, n + 1), indexing="ij")
     return np.stack([j + 1, np.where((i + j) % 2 == 0, i, i + 1)], axis=-1).reshape(-1, 2).astype(np.float64)
 

@@ -190,14 +190,6 @@ def prescribed_places(panels: Sequence[int], shifts: FloatArray, displacement: F
     return Drive(freedoms, path[::every], displacement[::every], rate[::every])
 
 
-def prescribed_turns(network: PanelNetwork, turns: FloatArray, displacement: FloatArray) -> Drive:
-    """Turn every panel by (S, P) radians, and let them find their places; one panel's middle is held."""
-    anchor = _middle_panel(network)
-    freedoms = np.concatenate([3 * np.arange(network.panel_count) + 2, [3 * anchor, 3 * anchor + 1]])
-    path = np.concatenate([turns, np.zeros((len(turns), 2))], axis=1)
-    return Drive(freedoms, path, displacement, rated(path, displacement))
-
-
 def _middle_panel(network: PanelNetwork) -> int:
     return int(np.argmin(np.linalg.norm(network.centroids - network.centroids.mean(axis=0), axis=1)))
 

@@ -36,24 +36,35 @@ class StretchEstimate:
         In connector widths.
     room : (A,) float, radians
         The smallest void angle that is left before panels touch.
+    flat_room : float, radians
+        That of the flat sheet.
     """
 
     phi: FloatArray
     motion: FloatArray
     stretch: FloatArray
     room: FloatArray
+    flat_room: float
 
     def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
-        """Angle (radians) at which a connector is stretched by more than it tolerates or panels touch; 0 if neither."""
+        """Angle at which a connector is stretched too far or panels touch; 0 if neither."""
         phi = np.concatenate([[math.pi], self.phi])
         worst = np.concatenate([[0.0], self.stretch.max(axis=1)])
         if self.phi[-1] > CLOSED:
             # Stretch grows like cos(phi / 2) as the sheet closes, and hardly any more at the end.
             phi, worst = np.append(phi, CLOSED), np.append(worst, worst[-1])
-        stretched = jam_angle(phi, worst, tolerated, True)
+        return max(jam_angle(phi, worst, tolerated, True), self._touching_phi())
+
+    def _touching_phi(self) -> float:
+        """Angle at which the first void closes, 0 if none does before the sheet has closed."""
+        phi, room = np.append(math.pi, self.phi), np.append(self.flat_room, self.room)
+        shut = np.flatnonzero(room < 0.0)
+        if shut.size:
+            # Far beyond its contact an angle says nothing: panels that overlap are where no sheet comes to.
+            return jam_angle(phi[: shut[0] + 1], -room[: shut[0] + 1], 0.0, True) if shut[0] else math.pi
         # Voids close as fast as the mean angle falls.
-        touching = float(self.phi[-1] - self.room[-1])
-        return max(stretched, touching if touching > CLOSED else 0.0)
+        touching = float(phi[-1] - room[-1])
+        return touching if touching > CLOSED else 0.0
 
 
 def estimate_stretch(
@@ -83,7 +94,8 @@ def estimate_stretch(
         motions.append(motion)
         stretch.append(energy.stretch(motion) / sheet.connectors.width_mm)
         room.append(float(network.void_angles(motion)[: len(sheet.connectors)].min()))
-    return StretchEstimate(phis, np.array(motions), np.array(stretch), np.array(room))
+    flat_room = float(network.contacts.rest[: len(sheet.connectors)].min())
+    return StretchEstimate(phis, np.array(motions), np.array(stretch), np.array(room), flat_room)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

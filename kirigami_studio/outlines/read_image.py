@@ -94,7 +94,7 @@ def read_image(path: str | Path, threshold: float | None = None) -> Outline:
 
 
 def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
-    """Outline of the largest dark shape on light paper, light shape on dark ground, or opaque shape.
+    """Outline of the largest dark shape on light paper, light one on dark, or opaque shape.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
-    """The connected regions of a picture as parts: dark on light or the reverse, and those of each colour.
+    """Connected regions of a picture as parts: dark or light ones, and those of each colour.
 
     A coloured picture has a layer for each of its main colours but the one of its border.  A picture in grey has
     regions by its threshold alone, as have all where ``in_colour`` is not asked for.  Regions below ``LEAST_SHARE`` of
@@ -180,7 +180,7 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
 
 
 def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
-    """The main colours of a picture but that of its border: name, where they are (1, elsewhere -1), and reduction."""
+    """Main colours of a picture but its border's: name, where (1, elsewhere -1), reduction."""
     image = ImageOps.exif_transpose(opened_image(content))
     if image.width * image.height > MOST_PIXELS_IN_COLOUR:
         return []
@@ -203,7 +203,7 @@ def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
 
 
 def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
-    """The place of an outline: its box is that of the ring (L, 2), source pixels, also where a loop was dropped."""
+    """Place of an outline: its box is that of the ring (L, 2), source pixels."""
     width = outline.size[0] if outline.size is not None else float(np.ptp(ring[:, 0]))
     scale = width / float(np.ptp(outline.points[:, 0]))
     x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
@@ -212,7 +212,7 @@ def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
 
 
 def automatic_threshold(path: str | Path) -> float:
-    """Grey level in 0..1 that ``read_image`` uses by default: Otsu's, moved midway between the two class means.
+    """Grey level in 0..1 of ``read_image``: Otsu's, moved midway between the class means.
 
     Raises
     ------
@@ -291,13 +291,17 @@ def _levels(content: bytes) -> Levels:
     grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
     if channel.mode == "L":
         return Levels(grey / 255.0, reduction, is_alpha, channel.size)
-    # 16- and 32-bit pictures seldom use their whole range: black and white are what they contain.
-    lowest, highest = float(np.min(grey)), float(np.max(grey))
-    return Levels((grey - lowest) / max(highest - lowest, 1e-12), reduction, is_alpha, channel.size)
+    return Levels(stretched(grey), reduction, is_alpha, channel.size)
+
+
+def stretched(deep: FloatArray) -> FloatArray:
+    """Levels from 0 to 1 of a 16- or 32-bit picture: it seldom uses its whole range."""
+    lowest, highest = float(np.min(deep)), float(np.max(deep))
+    return (deep - lowest) / max(highest - lowest, 1e-12)
 
 
 def _channel(image: Image.Image) -> tuple[Image.Image, bool]:
-    """The one channel that holds the shape (mode L, or F for deep pictures), and whether it is the alpha channel."""
+    """The channel that holds the shape (mode L, or F for deep ones), and whether it is alpha."""
     if image.mode.startswith(("I", "F")):
         return image.convert("F"), False
     if not image.has_transparency_data:
@@ -332,7 +336,7 @@ def _automatic(grey: FloatArray) -> float:
 
 
 def _ink(levels: Levels, threshold: float | None) -> FloatArray:
-    """How much each pixel belongs to the shape: above 0 inside, where the grey level crosses the threshold 0.
+    """How much each pixel belongs to the shape: above 0 inside, 0 at the threshold.
 
     Raises
     ------

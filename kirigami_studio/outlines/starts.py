@@ -80,11 +80,16 @@ class StartShape:
             above_least=True,
             most=10.0,
             code="start.weight_out_of_range",
+            help="how firmly round parts and hollows of the start are held: at 0.01, say, the flat sheet may be a "
+            "little off for a better match",
             label=mark("Start weight"),
             spoken=mark("Weight of the start"),
             widget="startWeight",
             low=0.01,
             step=0.1,
+            option="--start-weight",
+            keyword="start_weight",
+            metavar="WEIGHT",
         ).metadata,
     )
 

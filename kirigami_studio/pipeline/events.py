@@ -71,6 +71,8 @@ class Result:
         Why those that were looked at closely cannot be cut.
     losses : mapping of Candidate to float
         Worth that those which were looked at closely lose by being cut.
+    as_cut : mapping of Candidate to object
+        All that was found out about them as cut, for those who know what it is.
     """
 
     request: Request
@@ -82,6 +84,7 @@ class Result:
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
     losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+    as_cut: Mapping[Candidate, object] = field(default_factory=dict, hash=False)
 
     @property
     def ranking(self) -> Ranking:

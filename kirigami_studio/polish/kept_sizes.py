@@ -1,4 +1,4 @@
-"""The last steps of a fit with a least panel size: every edge and neck keeps it, at the least cost of the match.
+"""Last steps of a fit with a least panel size: every edge and neck keeps it.
 
 The penalty in the objective leaves sizes a little below the least one, because the match goes on pulling.  Here each
 step s solves the quadratic problem
@@ -6,10 +6,9 @@ step s solves the quadratic problem
     minimise  g s + s H s / 2    such that    size_i + J_i s >= least    for all sizes near it,
 
 with g, H and J the derivatives of the other cost and of the sizes, and the limits of ratios and mouths as further
-conditions (sequential quadratic programming: Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 18).  Its dual
-has one multiplier >= 0 for each condition, and is solved as non-negative least squares (Lawson and Hanson).  Conditions
-that contradict each other give way a little.  A step counts if it lowers the cost plus the missing sizes, weighted
-above every multiplier.  Where that does not end with all sizes kept, the nearest sheet that keeps them is looked for.
+conditions (sequential quadratic programming: Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 18), solved in
+``foundation.shortest_step``.  A step counts if it lowers the cost plus the missing sizes, weighted above every
+multiplier.  Where that does not end with all sizes kept, the nearest sheet that keeps them is looked for.
 """
 
 from __future__ import annotations
@@ -18,10 +17,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from kirigami_studio.evaluate.evenness import panel_sizes
-from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
+from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.normal_equations import FLOOR
 from kirigami_studio.polish.objective import SETTLED, Look, Objective, Slopes
@@ -39,9 +39,8 @@ DAMPING, LARGEST_DAMPING, HARDEN = 1e-3, 1e3, 30.0
 OVER_MULTIPLIERS = 2.0
 #: How much conditions give way, relative to how far the sheet does.
 CONSTRAINT_RELAXATION = 1e-10
-#: Sizes that are no more than this (unit cells) above the least one are conditions from the start; rounds in which
-#: sizes and limits that a step violates by more than that become conditions: of hundreds, few do.
-TOUCHING, VIOLATED, ROUNDS = 1e-3, 1e-9, 6
+#: Sizes and limits that a step violates by more than this become conditions: of hundreds, few do.
+VIOLATED = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +115,7 @@ class _SizeDescent:
         return float(self._sizes(self.here).min()) >= self.least + KEPT
 
     def run(self, steps: int, cancel: Callable[[], bool], *, sizes_alone: bool) -> None:
-        """Take at most so many steps, until all sizes are kept and, unless they alone count, no step gains much."""
+        """Take at most so many steps, until all sizes are kept and no step gains much."""
         damping, weight = DAMPING, 0.0
         for _ in range(steps):
             if cancel() or (sizes_alone and self.is_kept):
@@ -143,7 +142,7 @@ class _SizeDescent:
         return slopes
 
     def _taken(self, step: FloatArray, weight: float, sizes_alone: bool) -> bool:
-        """Take as much of a step as lowers the merit and leaves the sheet clear of itself; False where nothing does."""
+        """Take as much of a step as lowers the merit and keeps clear; False where nothing does."""
         before = self._merit(self.here, weight, sizes_alone)
         for part in PARTS:
             trial = self._moved(part * step)
@@ -233,30 +232,30 @@ class _SizeProblem:
         """The step (V + P,) for a damping, and the largest multiplier of a size."""
         hessian, diagonal = self.hessian.copy(), np.diagonal(self.hessian)
         hessian[np.diag_indices_from(hessian)] += damping * (diagonal + FLOOR * diagonal.mean())
-        factor = cho_factor(hessian, overwrite_a=True, check_finite=False)
-        free = -cho_solve(factor, self.gradient, check_finite=False)
-        step, largest = free, 0.0
-        rows, asked, of_sizes = np.zeros((0, free.size)), np.zeros(0), np.zeros(0, dtype=np.bool_)
-        reach, short = np.zeros((free.size, 0)), self.added > -TOUCHING
-        limits, room = rows, asked
-        for _ in range(ROUNDS):
-            new = np.concatenate([self.slopes[short], limits])
-            rows, asked = np.concatenate([rows, new]), np.concatenate([asked, self.added[short], room])
-            of_sizes = np.concatenate([of_sizes, np.arange(len(new)) < len(new) - len(room)])
-            reach = np.concatenate([reach, cho_solve(factor, new.T, check_finite=False)], axis=1)
-            multipliers = _multipliers(rows @ reach, asked - rows @ free)
-            step = free + reach @ multipliers
-            largest = float(multipliers[of_sizes].max(initial=0.0))
-            pushes = multipliers > 0.0
-            rows, asked, of_sizes, reach = rows[pushes], asked[pushes], of_sizes[pushes], reach[:, pushes]
-            short = self.slopes @ step < self.added - VIOLATED
-            limits, room = self._passed(step)
-            if not short.any() and not len(room):
-                break
-        return step, largest
+        root = cholesky(hessian, lower=True, overwrite_a=True, check_finite=False)
+        free = -cho_solve((root, True), self.gradient, check_finite=False)
 
-    def _passed(self, step: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The limits that a step passes, as conditions (C, V + P) and what they ask for (C,)."""
+        def whole(step: FloatArray) -> FloatArray:
+            """The step in its own variables of one in those in which the second derivative is 1."""
+            found: FloatArray = free + solve_triangular(root, step, trans=1, lower=True, check_finite=False)
+            return found
+
+        def violated(step: FloatArray) -> Conditions:
+            moved = whole(step)
+            short = np.flatnonzero(self.slopes @ moved < self.added - VIOLATED)
+            number, limits, room = self._passed(moved)
+            rows = np.concatenate([self.slopes[short], limits])
+            asked = np.concatenate([self.added[short], room]) - rows @ free
+            rows = solve_triangular(root, rows.T, lower=True, check_finite=False).T
+            mean = float(np.sum(rows**2)) / max(len(rows), 1)
+            give = np.full(len(rows), CONSTRAINT_RELAXATION * max(mean, 1e-12))
+            return Conditions(np.concatenate([short, self.added.size + number]), rows, asked, give)
+
+        step, pushing, multipliers = shortest_step(free.size, violated)
+        return whole(step), float(multipliers[pushing.number < self.added.size].max(initial=0.0))
+
+    def _passed(self, step: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Limits that a step passes: their numbers (C,), and as conditions (C, V + P) of (C,)."""
         bounds, basis = self.bounds, self.bounds.basis
         moved = self.shape + basis.moved(step[: basis.size])
         over, under = moved > bounds.high + VIOLATED, moved < bounds.low - VIOLATED
@@ -268,21 +267,4 @@ class _SizeProblem:
         rows = np.zeros((number.size, step.size))
         rows[np.arange(number.size), basis.variable[number]] = way * basis.sign[number]
         limit = np.where(over[number], bounds.high[number], bounds.low[number])
-        return rows, way * (limit - self.shape[number])
-
-
-def _multipliers(compliance: FloatArray, asked: FloatArray) -> FloatArray:
-    """The multipliers l >= 0 (C,) with l M l / 2 - asked l least, M the compliance (C, C) of the conditions."""
-    # Imported when it is needed: it takes long, and the window starts without it.
-    from scipy.optimize import nnls
-
-    if not len(asked):
-        return np.zeros(0)
-    softened = compliance.copy()
-    softened[np.diag_indices_from(softened)] += CONSTRAINT_RELAXATION * max(
-        float(np.diagonal(compliance).mean()), 1e-12
-    )
-    lower = cholesky(softened, lower=True, check_finite=False)
-    right = solve_triangular(lower, asked, lower=True, check_finite=False)
-    found: FloatArray = nnls(lower.T, right, maxiter=10 * len(asked) + 100)[0]
-    return found
+        return number, rows, way * (limit - self.shape[number])

@@ -10,6 +10,7 @@ import tomli_w
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.fabricate.machine import machines
 from kirigami_studio.fabricate.material import DEFAULT_PRESET, library
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.files import read_toml, write_atomically
@@ -34,7 +35,7 @@ class TypedSize(StrEnum):
     FLAT = "flat"  #: width of the flat sheet
 
 
-class Motion(StrEnum):
+class MotionPreference(StrEnum):
     """Whether moving parts follow the desktop's setting for animations, or stand still."""
 
     SYSTEM = "system"
@@ -44,6 +45,7 @@ class Motion(StrEnum):
 #: Entries of earlier versions that mean nothing now.
 RETIRED = ("tour_seen",)
 _NAME = Setting(code="preferences.not_a_name", error=ProjectError).metadata
+_NAME_OR_NONE = Setting(may_be_empty=True, code="preferences.not_a_name", error=ProjectError).metadata
 _CHOICE = Setting(code="preferences.unknown_choice", error=ProjectError).metadata
 _FLAG = Setting(code="preferences.not_true_or_false", error=ProjectError).metadata
 
@@ -63,6 +65,8 @@ class Preferences:
         Code of the window's language, or "system" for the desktop's.
     material : str
         Key of the material that was chosen last.
+    machine : str
+        Key of the machine that was chosen last; "" for the one that the material is for.
     paper : Paper
         That PDFs are spread over.
     size : TypedSize
@@ -70,7 +74,7 @@ class Preferences:
         Longer side of the opened shape, and width of the flat sheet.
     machine_asked : bool
         Whether the question for machine and material was answered, or declined.
-    motion : Motion
+    motion : MotionPreference
     """
 
     profile: str = field(default="any", metadata=_NAME)
@@ -78,16 +82,17 @@ class Preferences:
     theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
     language: str = field(default="system", metadata=_NAME)
     material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
+    machine: str = field(default="", metadata=_NAME_OR_NONE)
     paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
     size: TypedSize = field(default=TypedSize.OPENED, metadata=_CHOICE)
     opened_mm: float = 100.0
     width_mm: float = 100.0
     machine_asked: bool = field(default=False, metadata=_FLAG)
-    motion: Motion = field(default=Motion.SYSTEM, metadata=_CHOICE)
+    motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
 
     def __post_init__(self) -> None:
         check(self)
-        for name in ("profile", "language", "material"):
+        for name in ("profile", "language", "material", "machine"):
             object.__setattr__(self, name, plain_line(getattr(self, name)))
         try:
             FabricationSettings(width_mm=self.width_mm, opened_mm=self.opened_mm)
@@ -100,6 +105,7 @@ class Preferences:
         machine = replace(
             empty.fabrication,
             material=self.material if self.material in library().materials else DEFAULT_PRESET,
+            machine=self.machine if self.machine in machines().items else "",
             profile=self.profile,
             dxf_version=self.dxf_version,
             paper=self.paper,
@@ -111,7 +117,14 @@ class Preferences:
     def on_machine_of(self, document: Document) -> Preferences:
         """The same with what a document says about the machine that it is cut on, and the material."""
         cut = document.fabrication
-        return replace(self, profile=cut.profile, dxf_version=cut.dxf_version, material=cut.material, paper=cut.paper)
+        return replace(
+            self,
+            profile=cut.profile,
+            dxf_version=cut.dxf_version,
+            material=cut.material,
+            machine=cut.machine,
+            paper=cut.paper,
+        )
 
     def with_size_of(self, document: Document) -> Preferences:
         """The same with the length that was typed for a document."""

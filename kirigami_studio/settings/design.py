@@ -47,6 +47,7 @@ class DesignChoices:
     k : int, 1..1024
         Number of candidates.
     seed : int, >= 0
+        The same seed gives the same designs.
     variant : str
         Name of a bundled generator variant, see :func:`kirigami_studio.generator.weights.variants`.
     steps : int, 1..64
@@ -62,6 +63,7 @@ class DesignChoices:
     symmetry : KeptSymmetry
         What designs have to keep.
     rim : RimRule
+        Where cuts meet the rim: where fits move them, or evenly spaced as in the paper.
     regular : float, 0..1
         What ranking prefers, from the best match (0) to even panels (1), see :mod:`kirigami_studio.pipeline.rank`.
     start : StartShape

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
-from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, find_material, library
+from kirigami_studio.fabricate.machine import (
+    Machine,
+    cuttable,
+    find_machine,
+    machine_of,
+    machines,
+    material_on,
+    usual_material,
+)
+from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, default_material, find_material, library
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
 from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
@@ -28,18 +36,19 @@ class FabricationSettings:
         Width of the flat sheet.
     material : str
         Key of a material preset.
+    machine : str
+        Key of the machine that cuts it; "" for the one that the material is for.
     connector_mm : float or None
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
         Width of the cut; None takes the material's own.
     options : CutOptions
-        Centred connectors unless chosen otherwise.
     profile : str
         Key of the machine profile that cut files are written for.
     dxf_version : DxfVersion
         DXF dialect of cut files.
     paper : Paper
-        That PDFs are spread over.
+        Pages that PDFs are spread over.
     markers : bool
         Whether LightBurn projects mark the connectors, on a layer that LightBurn does not cut.
     engrave : bool
@@ -78,6 +87,18 @@ class FabricationSettings:
             decimals=1,
             unit="mm",
             option="--width-mm",
+        ).metadata,
+    )
+    machine: str = field(
+        default="",
+        metadata=Setting(
+            help="machine, see 'kirigami-studio machines'; brings its profile, and a material that it cuts "
+            "(default: the one that the material is for)",
+            may_be_empty=True,
+            code="settings.machine_not_a_name",
+            undo=mark("Change the machine"),
+            spoken=mark("Machine"),
+            option="--machine",
         ).metadata,
     )
     material: str = field(
@@ -131,14 +152,14 @@ class FabricationSettings:
         ).metadata,
     )
     options: CutOptions = field(
-        default_factory=partial(CutOptions, style=ConnectorStyle.CENTRED),
+        default_factory=CutOptions,
         metadata=Setting(undo=mark("Change the cut options")).metadata,
     )
     profile: str = field(
         default="any",
         metadata=Setting(
             about=mark("Machine profile: the colours and layers your machine's software expects in cut files."),
-            help="machine profile: any, lightburn, k40, single, layers or slots",
+            help="machine profile: any, lightburn, k40, single, layers, slots, cricut, silhouette, glowforge or xtool",
             code="settings.profile_not_a_name",
             always_written=True,
             undo=mark("Change the machine profile"),
@@ -234,6 +255,7 @@ class SheetChange(TypedDict, total=False):
 
     width_mm: float
     material: str
+    machine: str
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
@@ -271,7 +293,7 @@ def stored_material(settings: FabricationSettings) -> Material | None:
 
 
 def material_for(settings: FabricationSettings) -> Material:
-    """Return the material that the settings name, from the library or as the project has it.
+    """Return the material of the settings as their machine cuts it, from library or project.
 
     Raises
     ------
@@ -279,9 +301,72 @@ def material_for(settings: FabricationSettings) -> Material:
         Neither has it; the sentence lists the library.
     """
     stored = stored_material(settings)
-    if stored is not None and stored.key not in library().materials:
-        return stored
-    return find_material(settings.material)
+    own = stored is not None and stored.key not in library().materials
+    material = stored if stored is not None and own else find_material(settings.material)
+    machine = named_machine(settings)
+    return material if machine is None else material_on(material, machine)
+
+
+def named_machine(settings: FabricationSettings) -> Machine | None:
+    """Return the machine of the settings; None where they name none, or an unknown one."""
+    return machines().items.get(settings.machine) if settings.machine else None
+
+
+def machine_for(settings: FabricationSettings) -> Machine:
+    """Return the machine of the settings, or else the one that their material is for.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    return named_machine(settings) or machine_of(material_for(settings))
+
+
+def machine_changes(settings: FabricationSettings, machine: Machine) -> FabricationChange:
+    """The changes that come with a machine: its profile and, if need be, another material."""
+    changes: FabricationChange = {"machine": machine.key, "profile": machine.profile}
+    if machine.kind is not machine_for(settings).kind:
+        changes |= {"connector_mm": None, "kerf_mm": None}  # those of the material on the other machine
+    taken = cuttable(machine)
+    if taken and settings.material not in taken:
+        changes["material"] = usual_material(machine, taken)
+    return changes
+
+
+def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
+    """The changes that come with a material: its connector and kerf; its usual size for the usual one of the last."""
+    changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
+    try:
+        before, after = material_for(settings), material_for(replace(settings, material=key))
+    except FabricationError:
+        return changes
+    if settings.opened_mm == before.sheet_mm:
+        changes["opened_mm"] = after.sheet_mm
+    elif settings.opened_mm is None and settings.width_mm == before.sheet_mm:
+        changes["width_mm"] = after.sheet_mm
+    return changes
+
+
+def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
+    """Settings without a project: with the given material, or one that the machine cuts.
+
+    The width is the material's usual one unless given.
+
+    Raises
+    ------
+    UsageError
+        What no settings can hold.
+    FabricationError
+        No such material or machine; the sentence lists those that there are.
+    """
+    usual = FabricationSettings(material=default_material().key)
+    if given.get("machine") is not None and given.get("material") is None:
+        changes = machine_changes(usual, find_machine(given["machine"]))
+        usual = replace(usual, material=changes.get("material", usual.material))
+    material = material_for(with_choices(usual, given))
+    own_style = replace(usual.options, style=material.style)
+    return with_choices(replace(usual, width_mm=material.sheet_mm, options=own_style), given)
 
 
 def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:
@@ -291,20 +376,24 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     ----------
     saved : FabricationSettings
     given : mapping of str to object
-        Settings of the sheet and of its cuts by name, material and profile as :func:`find_material` and
-        :func:`find_profile` read them; widths of single connectors, ``hinge_mm`` (pairs of number and width), and those
-        to be ``removed`` are added to the project's own.  Others are left alone.
+        Settings of the sheet and of its cuts by name, material, machine and profile as :func:`find_material`,
+        :func:`find_machine` and :func:`find_profile` read them; widths of single connectors, ``hinge_mm`` (pairs of
+        number and width), and those to be ``removed`` are added to the project's own.  Others are left alone.
 
     Raises
     ------
     UsageError
         What no settings can hold.
     FabricationError
-        No such material; the sentence lists the library.
+        No such material or machine; the sentence lists those that there are.
     """
     changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
     if "material" in given:
         changes["material"] = find_material(given["material"]).key
+    if given.get("machine"):
+        machine = find_machine(given["machine"])
+        changes["machine"] = machine.key
+        changes.setdefault("profile", machine.profile)
     try:
         if "profile" in given:
             changes["profile"] = find_profile(given["profile"]).key

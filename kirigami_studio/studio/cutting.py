@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
-from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.findings import Note, Severity
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, named_machine
 
 
 def plan_of(
@@ -48,7 +49,7 @@ def plan_of(
     trim = candidate.trim
     kept = None if trim is None else trim.kept
     plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
-    return engraved(plan, name) if settings.engrave and name else plan
+    return replace(engraved(plan, name), name=name) if settings.engrave and name else plan
 
 
 def plan_sheet(
@@ -66,7 +67,8 @@ def plan_sheet(
     FabricationError
         No such material, or a plan that cannot be made.
     """
-    return plan_cuts(
+    machine = named_machine(settings)
+    plan = plan_cuts(
         deployment,
         width_mm=settings.width_mm,
         connector_mm=settings.connector_mm,
@@ -75,7 +77,12 @@ def plan_sheet(
         options=settings.options,
         kept=kept,
         cancel=cancel,
+        machine=machine,
     )
+    if settings.machine and machine is None:
+        missing = Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name)
+        return replace(plan, notes=(*plan.notes, missing))
+    return plan
 
 
 def refuse_errors(report: PlanReport) -> None:

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import trimmed_parts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
+from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import Cancel, never
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.foundation.words import tr
@@ -35,6 +36,9 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import AsCut
 
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
@@ -104,17 +108,27 @@ class KnownAsCut:
     refusals : mapping of Candidate to Note
     losses : mapping of Candidate to float
         As :class:`~kirigami_studio.pipeline.rank.Ranking` has them.
+    simulated : mapping of Candidate to AsCut
+        Those that were closed on their connectors in a close look.
     """
 
     sheet: FabricationSettings
     jam_phi: Mapping[Candidate, float]
     refusals: Mapping[Candidate, Note]
     losses: Mapping[Candidate, float]
+    simulated: Mapping[Candidate, AsCut]
 
     @classmethod
     def of(cls, result: Result, cut: FabricationSettings) -> KnownAsCut:
         """What is known after a run."""
-        return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses)
+        from kirigami_studio.studio.as_cut import AsCut, Source
+
+        found = {
+            candidate: one
+            for candidate, one in result.as_cut.items()
+            if isinstance(one, AsCut) and one.source is Source.SIMULATION
+        }
+        return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
 
 
 #: What a run reports.
@@ -169,7 +183,6 @@ def run_design(
     cut: FabricationSettings,
     cancel: Cancel = never,
     *,
-    as_cut: bool = True,
     least_panel_mm: float = 0.0,
     beside: tuple[Candidate, ...] = (),
     only_new: bool = False,
@@ -184,8 +197,6 @@ def run_design(
     cut : FabricationSettings
         How designs are cut.
     cancel : callable
-    as_cut : bool
-        Whether designs are ranked as cut; without it, by their figures alone.
     least_panel_mm : float
         Least panel edge and neck that is asked for.
     beside : tuple of Candidate
@@ -204,8 +215,6 @@ def run_design(
     ------
     Cancelled
         ``cancel`` returned true.
-    FabricationError
-        Designs were to be trimmed and none could be.
     """
     from kirigami_studio.pipeline.run import grid_choice, run, with_grid
 
@@ -222,11 +231,15 @@ def run_design(
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
-        if as_cut:
-            result = yield from _ranked_as_cut(result, cut, beside, cancel)
-        if request.trim and all(one.trim is None for one in result.candidates):
-            raise FabricationError("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed")
+        result = yield from _ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
+
+
+def why_untrimmed(result: Result) -> Note | None:
+    """Why no design of a run was trimmed as asked for; None where one is."""
+    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+        return None
+    return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:
@@ -260,19 +273,26 @@ def _ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
 ) -> Generator[Progress, None, Result]:
     """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
-
-    from kirigami_studio.studio.as_cut import jam_angles
-    from kirigami_studio.studio.verdict import looking
+    from kirigami_studio.studio.as_cut import estimates
+    from kirigami_studio.studio.verdict import CloseLook, looking
 
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
     progress = _looking_at(0, len(everything.candidates))
-    jams: dict[Candidate, float] = {}
+    known: dict[Candidate, AsCut] = {}
     for start in range(0, len(everything.candidates), ESTIMATED_AT_ONCE):
         with one_blas_thread():
-            jams |= jam_angles(everything.candidates[start : start + ESTIMATED_AT_ONCE], cut)
+            known |= estimates(everything.candidates[start : start + ESTIMATED_AT_ONCE], cut)
         yield progress
-    steps = best_as_cut(everything, jams, lambda one: looking(one, cut, target, cancel))
+    jams = {one: as_cut.jam_phi for one, as_cut in known.items()}
+
+    def look(one: Candidate) -> Generator[None, None, CloseLook]:
+        found = yield from looking(one, cut, target, cancel)
+        if found.as_cut is not None:
+            known[one] = found.as_cut  # a simulation takes the place of the estimate
+        return found
+
+    steps = best_as_cut(everything, jams, look)
     while True:
         try:
             step = next(steps)
@@ -283,7 +303,7 @@ def _ranked_as_cut(
             progress = _looking_at(step.number, step.total)
         yield progress
     stay = {id(one) for one in beside}
-    return replace(found, candidates=tuple(one for one in found.candidates if id(one) not in stay))
+    return replace(found, candidates=tuple(one for one in found.candidates if id(one) not in stay), as_cut=known)
 
 
 def _looking_at(number: int, total: int) -> Progress:

@@ -17,19 +17,22 @@ from types import MappingProxyType
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem
+from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
-from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
+from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
@@ -76,6 +79,8 @@ class Fix:
     as_cut : AsCut
     instead : tuple of Candidate
         Designs on another grid, best first, that take the place of all there are; empty where those stay.
+    solves : tuple of str
+        Codes of the problems that are then gone.
     """
 
     change: Note
@@ -84,6 +89,12 @@ class Fix:
     verdict: Verdict
     as_cut: AsCut
     instead: tuple[Candidate, ...] = ()
+    solves: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """The change, and the verdict that it leads to."""
+        return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
         """Make the change, as one step that can be undone; a design that is gone leaves the choice as it is."""
@@ -112,6 +123,7 @@ class Fix:
             "material": settings.material,
             "grid": list(self.candidate.sheet.grid),
             "max_strain": self.as_cut.strain,
+            "solves": list(self.solves),
         }
 
 
@@ -135,9 +147,18 @@ class Advice:
         """As it is shown: every fix with what is then to be expected, or that nothing works."""
         if not self.fixes:
             return (self.tried.text,)
-        return tuple(
-            Note.of("fix.then", change=fix.change.text, level=fix.verdict.level.words).text for fix in self.fixes
-        )
+        return tuple(fix.line for fix in self.fixes)
+
+    def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
+        """A verdict with fixes: each below the worst problem that it solves, others at the end."""
+        told: list[str] = [verdict.words]
+        left = list(self.fixes)
+        for problem in verdict.problems:
+            told.append(problem.text)
+            told += [fix.line for fix in left if problem.code in fix.solves]
+            left = [fix for fix in left if problem.code not in fix.solves]
+        rest = [fix.line for fix in left] if self.fixes else [self.tried.text]
+        return (*told, *rest, verdict.summary, *(note.text for note in verdict.notes))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -156,6 +177,7 @@ def find_fixes(
     verdict: Verdict,
     others: Mapping[str, Candidate] = MappingProxyType({}),
     coarser: Iterable[tuple[Candidate, ...]] = (),
+    target: Outline | None = None,
 ) -> Generator[None, None, Advice]:
     """Look for changes that help; yields between them, for others to have their turn.
 
@@ -171,13 +193,15 @@ def find_fixes(
         Other designs of the document by their names, best first.
     coarser : iterable of tuple of Candidate
         Designs for the same target on coarser grids, best first; made when they are asked for.
+    target : Outline, optional
+        For the match as cut.
 
     Raises
     ------
     FabricationError
         No such material.
     """
-    search = _Search(verdict, material_for(settings))
+    search = _Search(verdict, material_for(settings), target)
     if not candidate.score.feasible and candidate.trim is None:
         # However it is cut, its panels overlap.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
@@ -210,6 +234,7 @@ class _Search:
 
     verdict: Verdict
     material: Material
+    target: Outline | None
     found: list[Fix] = field(default_factory=list)
     jamming: list[_Change] = field(default_factory=list)
     seen: list[tuple[Candidate, FabricationSettings]] = field(default_factory=list)
@@ -278,20 +303,22 @@ class _Search:
             return
         yield
         self.closed += 1
-        as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm)
+        as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm, self.target)
         after = judge(candidate, plan, report, as_cut)
         if isinstance(as_cut, AsCut) and after.better_than(self.verdict):
             if after.ok and change.note.code != "fix.material":
                 self.kinds.add(change.note.code)
             note = _told(change.note, self.verdict, as_cut)
-            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead))
+            left = {problem.code for problem in after.problems}
+            solves = tuple(problem.code for problem in self.verdict.problems if problem.code not in left)
+            self.found.append(Fix(note, candidate, settings, after, as_cut, change.instead, solves))
 
     def _hopeless(self, change: _Change, motion: Deployment) -> bool:
         """Whether its connectors break or the sheet jams, as estimated; thin sheets that jam are kept for later."""
         settings, phi = change.settings, change.candidate.final_phi
         try:
             material = material_for(settings)
-            if least_strain(motion, settings, phi, material) > material.strain_limit:
+            if all_break(motion, settings, phi, material):
                 return True
             found = estimate(motion, settings, phi, material)
         except KirigamiError:
@@ -327,14 +354,14 @@ def _single_changes(
         yield _Change(Note.of("fix.hinges"), candidate, even)
     named = [width for problem in verdict.problems for width in _named_widths(problem, settings, material)]
     for width in named:
-        yield from _wider(candidate, settings, material, width)
+        yield from _wider(candidate, settings, width)
     for style in _styles(material, settings):
         yield _Change(Note.of("fix.style", style=style.value), candidate, _with(settings, style=style))
     for connector in _connectors(material, settings, CONNECTORS):
         note = Note.of("fix.connector", connector_mm=connector)
         yield _Change(note, candidate, _with(settings, connector_mm=connector))
     for times in WIDTHS:
-        yield from _wider(candidate, settings, material, settings.width_mm * times)
+        yield from _wider(candidate, settings, settings.width_mm * times)
 
 
 def _named_widths(problem: Problem, settings: FabricationSettings, material: Material) -> list[float]:
@@ -351,17 +378,15 @@ def _named_widths(problem: Problem, settings: FabricationSettings, material: Mat
     return []
 
 
-def _wider(
-    candidate: Candidate, settings: FabricationSettings, material: Material, width_mm: float
-) -> Iterator[_Change]:
+def _wider(candidate: Candidate, settings: FabricationSettings, width_mm: float) -> Iterator[_Change]:
     """Another width of the sheet, rounded up to a tenth of a millimetre, if the machine can reach it."""
     width = math.ceil(10.0 * width_mm - 1e-6) / 10.0
-    if width <= max(_widest(material), settings.width_mm):
+    if width <= max(_widest(settings), settings.width_mm):
         yield _Change(Note.of("fix.width", width_mm=width), candidate, _with(settings, width_mm=width))
 
 
-def _widest(material: Material) -> float:
-    return max(material.bed_width_mm, material.bed_height_mm) or WIDEST_MM
+def _widest(settings: FabricationSettings) -> float:
+    return max(machine_for(settings).reach_mm) or WIDEST_MM
 
 
 def _styles(material: Material, settings: FabricationSettings) -> list[ConnectorStyle]:
@@ -406,15 +431,16 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
     connectors = _connectors(material, settings, (1.0, 2.0)) or [material.connector_mm]
     widths = [round(settings.width_mm * times, 1) for times in (1.0, 1.5, 2.0, 3.0)]
     for width, style, connector in product(widths, COMBINED, connectors):
-        if width <= max(_widest(material), settings.width_mm):
+        if width <= max(_widest(settings), settings.width_mm):
             note = Note.of("fix.combined", style=style.value, connector_mm=connector, width_mm=width)
             yield _Change(note, candidate, _with(settings, style=style, connector_mm=connector, width_mm=width))
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors."""
-    for key, material in library().materials.items():
-        if key != settings.material and material.connectors_hold:
+    """All other materials with centred connectors; of a chosen machine, those that it cuts."""
+    machine = named_machine(settings)
+    for key, material in (library().materials if machine is None else cuttable(machine)).items():
+        if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)

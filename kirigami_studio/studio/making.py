@@ -26,8 +26,9 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
 from kirigami_studio.studio import importing
+from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.file_kinds import kind_of
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exported:
+class ExportedFiles:
     """A file, or a folder of files, that is on disk.
 
     Attributes
@@ -193,6 +194,8 @@ class CutRequest:
         How it does as cut, or why that cannot be told, if that is known already.
     document : Document or None
         The project of the design, which cut files carry with this design alone.
+    engraved : str or None
+        The name that the sheet gets engraved if the settings say so; that of the design unless given.
     """
 
     candidate: Candidate
@@ -201,6 +204,7 @@ class CutRequest:
     settings: FabricationSettings
     as_cut: AsCut | str | None = None
     document: Document | None = None
+    engraved: str | None = None
 
     @classmethod
     def of(cls, document: Document, settings: FabricationSettings | None = None) -> CutRequest:
@@ -218,6 +222,8 @@ class CutRequest:
     @property
     def name(self) -> str:
         """What the design is called, "" where nobody knows."""
+        if self.engraved is not None:
+            return self.engraved
         return "" if self.document is None else self.document.name_of(self.candidate)
 
     @property
@@ -245,6 +251,31 @@ def chosen_candidate(document: Document) -> Candidate:
     return candidate
 
 
+def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
+    """Choose the first design of a project, from the chosen one on, that survives its cuts.
+
+    Returns
+    -------
+    document : Document
+        With that design chosen; where there is none, the first one whose cuts can be planned at all.
+    refusal : KirigamiError or None
+        Why the design that was chosen before cannot be cut; None where it can.
+    """
+    first: KirigamiError | None = None
+    planned_at_least: Document | None = None
+    for number in range(document.chosen or 0, len(document.candidates)):
+        chosen = replace(document, chosen=number)
+        try:
+            report = planned(CutRequest.of(chosen)).report
+            planned_at_least = planned_at_least or chosen
+            refuse_errors(report)
+        except FabricationError as error:
+            first = first or error
+            continue
+        return chosen, first
+    return planned_at_least or document, first
+
+
 # from a design to its files -------------------------------------------------------------------------------------------
 
 
@@ -270,7 +301,7 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
-    key = (request.candidate, request.target, settings, material_for(settings), name)
+    key = (request.candidate, request.target, settings, material_for(settings), machine_for(settings), name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -302,7 +333,7 @@ def _work(plan: CutPlan, profile: str) -> Work | None:
     if not found.slots and len(plan.copies) == 1:
         return None
     try:
-        return work_of(strokes_of(plan, found), plan.material)
+        return work_of(strokes_of(plan, found), plan)
     except ExportError:
         return None
 
@@ -351,7 +382,8 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
-) -> Exported:
+    picture_phi: float | None = None,
+) -> ExportedFiles:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
     Parameters
@@ -362,62 +394,64 @@ def written(
     as_cut : AsCut, str or None
         As :func:`closed` tells; None where nobody has looked, for the verdict.
     motion : CutMotion, optional
-        What an animation shows.
+        What pictures and animations show instead of the ideal motion.
     on_written : callable, optional
         Gets each path of a whole set once it is there, and may raise to stop.
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
 
     Raises
     ------
     ExportError
         An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
     """
-    from kirigami_studio.export.export_set import drafted, export_all
+    from kirigami_studio.export.export_set import export_all, placed
     from kirigami_studio.export.provenance import sidecar_path, write_sidecar
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion), output.path
+    job = replace(export_job(request, made), motion=motion, picture_phi=picture_phi, simulated_jam=jam_of(as_cut))
+    path = output.path
+
+    def told(verifications: Sequence[Verification]) -> Mapping[str, object]:
+        return judged(request, made, as_cut, verifications).to_json()
+
     if output.name is not None:
-        found = export_all(
-            job,
-            path,
-            output.name,
-            output.record,
-            on_written,
-            lambda verifications: judged(request, made, as_cut, verifications).to_json(),
-        )
+        found = export_all(job, path, output.name, output.record, on_written, told)
         left, gone = (tuple(one.name for one in paths) for paths in (found.older, found.removed))
         verdict = judged(request, made, as_cut, found.verifications)
         files, verified = found.files, found.verifications
-        return Exported(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
+        return ExportedFiles(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
     if path.suffix.lower() in FORMATS:
-        with drafted(job, path) as draft:
-            verified = (draft.verification,)
-            verdict = judged(request, made, as_cut, verified)
-            place = draft.place()
+        places: list[Path] = []
+        job, found_in_files = placed(job, ((path, job.dxf_version),), told, places.append)
+        verified, (place,) = tuple(found_in_files), places
     else:
-        verified, verdict = (), judged(request, made, as_cut)
+        job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
         place = export(job, path)
+    verdict = judged(request, made, as_cut, verified)
     files = (place,)
     if output.record:
         files = (place, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
-    return Exported(place, made, verified, motion=motion, verdict=verdict, files=files)
+    return ExportedFiles(place, made, verified, motion=motion, verdict=verdict, files=files)
 
 
-def exporting(request: CutRequest, output: Output, many_pages: bool, cancel: Cancel) -> Iterator[Exported | ManyPages]:
+def exporting(
+    request: CutRequest, output: Output, many_pages: bool, cancel: Cancel
+) -> Iterator[ExportedFiles | ManyPages]:
     """Write one file or a whole set; cut files are planned, checked, read back and judged.
 
     A PDF of many pages is written only where ``many_pages`` are wanted.
     """
     importing.import_exporters()
     importing.import_as_cut()
-    from kirigami_studio.export.registry import export, find_exporter
+    from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
     if output.name is None:
-        find_exporter(path)  # an unknown kind is refused before anything is planned
+        find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
-            yield Exported(export(export_job(request, None), path), None)
+            yield ExportedFiles(export(export_job(request, None), path), None)
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
@@ -447,7 +481,7 @@ def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
 
 def exporting_artwork(
     request: CutRequest, folder: Path, many_pages: bool, cancel: Cancel
-) -> Iterator[Exported | ManyPages]:
+) -> Iterator[ExportedFiles | ManyPages]:
     """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened.
 
     Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
@@ -463,19 +497,19 @@ def exporting_artwork(
         return
     with importing.collecting_between():
         write_artwork(work, folder)
-    yield Exported(folder, None)
+    yield ExportedFiles(folder, None)
 
 
 def exporting_coupon(
     material: Material, path: Path, settings: FabricationSettings, cancel: Cancel
-) -> Iterator[Exported]:
+) -> Iterator[ExportedFiles]:
     """Write the calibration coupon of a material as a cut file, and read it back."""
     from kirigami_studio.export.dxf import write_dxf
     from kirigami_studio.export.profile import find_profile
     from kirigami_studio.export.verification import verify_export
     from kirigami_studio.fabricate.checks import check_plan
     from kirigami_studio.fabricate.coupon import plan_coupon
-    from kirigami_studio.studio.verdict import Verdict
+    from kirigami_studio.studio.verdict import SIGNS_OF_A_JAM, Verdict
 
     if path.suffix.lower() != ".dxf":
         raise UsageError("coupon.not_dxf", name=path.name)
@@ -483,19 +517,17 @@ def exporting_coupon(
     with TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
         draft = Path(folder) / path.name
         write_dxf(plan, draft, settings.dxf_version, find_profile(settings.profile))
-        found = replace(verify_export(plan, draft, settings.profile, settings.dxf_version), path=path)
+        found = verify_export(plan, draft, settings.profile, settings.dxf_version)
+        # Flaps have no voids, and a coupon neither closes nor jams.
+        findings = tuple(finding for finding in found.findings if finding.code not in SIGNS_OF_A_JAM)
+        found = replace(found, path=path, findings=findings, void_miss_um=None)
         write_atomically(path, draft.read_bytes())
-    yield Exported(path, Planned(plan, check_plan(plan), Verdict()), (found,))
+    yield ExportedFiles(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
 
-def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a cut file with a project's chosen design as it would be cut; judge the sheet."""
-    from kirigami_studio.export.verification import verify_export
-
-    request = CutRequest.of(document)
-    made, cut = planned(request), request.settings
-    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment)
-    return found, judged(request, made, closed(request, made), [found])
+def jam_of(as_cut: AsCut | str | None) -> float | None:
+    """Where a simulated sheet jams (radians); None where that is unknown."""
+    return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
 # the sheet as cut -----------------------------------------------------------------------------------------------------
@@ -503,13 +535,13 @@ def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and at which strain connectors break.
+    """Estimates of some designs as cut, and their material.
 
     Designs that cannot be cut at all are left out.
     """
 
     found: tuple[tuple[Candidate, AsCut], ...]
-    strain_limit: float
+    material: Material
 
 
 def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[SimulatedSheet | None]:
@@ -526,7 +558,7 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
 
 def animating(
     request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None, cancel: Cancel
-) -> Iterator[Exported | None]:
+) -> Iterator[ExportedFiles | None]:
     """Write an animation; None after every step of the simulation that it may need.
 
     Parameters
@@ -552,9 +584,9 @@ def animating(
             raise
         except KirigamiError as error:
             why = str(error)
-    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
     written = export(replace(export_job(request, None), motion=shown), path)
-    yield Exported(written, None, motion=shown, not_as_cut=why)
+    yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
 
 def judging(
@@ -590,7 +622,7 @@ def fixing(
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
     coarser = () if run is None else coarser_designs(request.candidate, run)
-    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser)
+    steps = find_fixes(request.candidate, request.settings, verdict, others, coarser, request.target)
     yield from in_turns(steps, cancel)
 
 
@@ -634,4 +666,4 @@ def estimating(
                     found.append((candidate, estimate(deployment, settings, candidate.final_phi, material)))
             except KirigamiError:
                 continue  # its cuts cannot be planned, which planning explains once it is chosen
-        yield Estimated(tuple(found), material.strain_limit)
+        yield Estimated(tuple(found), material)

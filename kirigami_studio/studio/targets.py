@@ -23,7 +23,7 @@ from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
     from kirigami_studio.outlines.symmetry import TargetSymmetry
 
-#: Extensions of targets that are traced at a threshold.
-PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
 #: Problems of drawings whose lines may be meant as they are painted.
 OPEN_LINES = ("lines.open_at", "lines.not_closed")
 #: Longer side of the picture as it is kept for drawing, pixels.
@@ -305,16 +303,15 @@ def reduced_picture(path: Path) -> NDArray[np.uint8] | None:
     """
     from PIL import Image, ImageOps
 
-    from kirigami_studio.outlines.read_image import opened_image
+    from kirigami_studio.outlines.read_image import opened_image, stretched
     from kirigami_studio.outlines.source_file import decoding, read_bytes
 
     try:
         with decoding(path, "source.image_damaged"):
             image = ImageOps.exif_transpose(opened_image(read_bytes(path)))
-            if image.mode.startswith(("I", "F")):  # 16 and 32 bit: black and white are the extremes
-                deep = np.asarray(image, dtype=np.float64)
-                lowest, highest = float(np.min(deep)), float(np.max(deep))
-                image = Image.fromarray((255.0 * (deep - lowest) / max(highest - lowest, 1e-12)).astype(np.uint8))
+            if image.mode.startswith(("I", "F")):
+                levels = stretched(np.asarray(image, dtype=np.float64))
+                image = Image.fromarray((255.0 * levels).astype(np.uint8))
             image = image.convert("RGBA")
             image.thumbnail((LARGEST_SIDE, LARGEST_SIDE))
     except KirigamiError:
@@ -345,8 +342,8 @@ class TargetReading:
     start_refusal: str = ""
 
 
-def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
-    """Measure how symmetric a request's target is, and choose a grid for it."""
+def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Cancel) -> Iterator[TargetReading]:
+    """Measure how symmetric a request's target is; take the ``chosen`` grid, or choose one."""
     from kirigami_studio.outlines.symmetry import symmetry_of
     from kirigami_studio.pipeline.auto_grid import known_for
 
@@ -356,8 +353,16 @@ def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:
-        grid = choice.grid if request.grid is None else request.grid
-        yield TargetReading(found, choice.grid, choice.reason, start_refusal(request.start, grid, request.rim))
+        expected, reason = choice.grid, choice.reason
+        if chosen is not None:
+            rows, columns = expected = chosen
+            reason = tr(
+                "The designs have {rows} x {columns} voids: the grid that was chosen for this target.",
+                rows=rows,
+                columns=columns,
+            )
+        grid = expected if request.grid is None else request.grid
+        yield TargetReading(found, expected, reason, start_refusal(request.start, grid, request.rim))
 
 
 def _symmetry_sentence(found: TargetSymmetry) -> str:

@@ -1,13 +1,14 @@
-"""The verdict on a sheet that is to be cut: ready to cut, cut with care, or will not work, with all reasons in order.
+"""The verdict on a design: does it match, fit the material, close as cut; are its files right.
 
-It is made of what reading the file back found, what the check of the plan found, how the sheet does as cut, and what
-the material bears.  Window, report, record and command line show this one list.
+One value for a design and the settings that it is cut with, made of what reading its files back found, of the check of
+its cut plan, of how the sheet does as cut, and of what the material bears.  Window, report, record, command line and
+Python show this one value.  What is only estimated says so, and gives way to the simulation.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
@@ -16,13 +17,24 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.strain import StrainFigure, strain_note
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import result_of
-from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, ESTIMATE_CLOSES, AsCut, Outcome, StrainFigure, simulate
+from kirigami_studio.studio.as_cut import (
+    CLOSE_TO,
+    ESTIMATE_CLOSES,
+    AsCut,
+    Outcome,
+    Source,
+    jam_json,
+    simulate,
+)
 from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:
@@ -30,8 +42,10 @@ if TYPE_CHECKING:
 
 #: What the check of a plan finds about strain; the verdict has one sentence for it, without advice that nobody tried.
 STRAINED = frozenset({"plan.strain_choose_style", "plan.strain_larger_sheet"})
+#: Fields that both have.
+STRAIN_FIELDS = ("strain_percent", "limit_percent", "material", "why")
 #: Warnings of that check that mean that the sheet does not survive.
-FATAL = frozenset({"plan.material_does_not_hold"})
+FATAL = frozenset({"plan.material_does_not_hold", "plan.material_needs_backing"})
 #: Findings about panels smaller than the material needs.
 TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
 #: Notes of a plan that mean that a person does not get what was asked for.
@@ -43,19 +57,31 @@ SIGNS_OF_A_JAM = frozenset(
         "plan.no_room_to_centre",
         "plan.no_room_made_in_trimmed",
         "verify.voids_miss",
-        "verify.sheet_jams",
     }
 )
 #: Worth that a connector which stretches by its whole width costs: where designs match alike, calm connectors decide.
 STRETCH = 0.05
-#: Of a sheet that comes within a few degrees of its angle.
+#: Match (IoU) from which a silhouette counts as that of its target.  For a disc it means an edge that is 5 % of the
+#: radius off all round: 2.5 mm on a shape 100 mm wide, which is about what an eye forgives.
+MATCHES = 0.90
+#: Below this it is another shape: a plain square comes to 0.66 on a star and to 0.70 on a butterfly.
+MATCHES_ROUGHLY = 0.75
+#: A jam that costs no more match (IoU) than this is no more than nearly a jam: being forced shut costs film as much.
+LITTLE_LOST = 0.02
+#: Share of its way that a thin sheet has to come flat.  Film passes jams by bending out of the plane, as straight
+#: hearts do which jam at 69 to 74 of 180 degrees and match there with 0.87; sheets that jam at 121 to 148 degrees
+#: match with 0.72 to 0.74, and want their connectors stretched by 2 to 5 widths.
+HALF_WAY = 0.5
+#: Of a sheet that comes within a few degrees of its angle, or loses hardly any match.
 NEARLY = "as_cut.nearly"
+#: What a close look lets pass: ranking counts the match that is lost.
+BEARABLE = frozenset({NEARLY, "as_cut.loses_match"})
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
 
 class Level(Enum):
-    """What is to be expected; the values are the names in JSON."""
+    """The verdict in a word; the values are the names in JSON."""
 
     READY = "ready_to_cut"
     CARE = "cut_with_care"
@@ -63,7 +89,7 @@ class Level(Enum):
 
     @property
     def words(self) -> str:
-        """As a person reads it."""
+        """As it is shown."""
         return tr(_WORDS[self])
 
 
@@ -73,9 +99,84 @@ Told = TypeVar("Told", bound=Note)
 RANK = {level: place for place, level in enumerate(Level)}
 
 
+class Question(Enum):
+    """The four questions about a design; the values are the names in JSON."""
+
+    MATCHES = "matches"  #: does it show the target
+    FITS = "fits_material"  #: room for connectors, least sizes, strain
+    CLOSES = "closes"  #: does it come to its angle as cut
+    FILES = "files"  #: do its files read back as planned
+
+
+class AnswerState(Enum):
+    """How a question is answered; the values are the names in JSON."""
+
+    GOOD = "good"
+    CARE = "care"
+    BAD = "bad"
+    OPEN = "open"  #: nobody has looked so far
+
+
+#: What each answer is called; how a sheet closes has its own words.
+_ANSWERS = {
+    (Question.MATCHES, AnswerState.GOOD): mark("matches"),
+    (Question.MATCHES, AnswerState.CARE): mark("matches roughly"),
+    (Question.MATCHES, AnswerState.BAD): mark("does not match"),
+    (Question.MATCHES, AnswerState.OPEN): mark("match not known"),
+    (Question.FITS, AnswerState.GOOD): mark("fits the material"),
+    (Question.FITS, AnswerState.CARE): mark("hardly fits the material"),
+    (Question.FITS, AnswerState.BAD): mark("does not fit the material"),
+    (Question.FITS, AnswerState.OPEN): mark("material not checked"),
+    (Question.CLOSES, AnswerState.GOOD): mark("closes"),
+    (Question.CLOSES, AnswerState.CARE): mark("closing not known"),
+    (Question.CLOSES, AnswerState.BAD): mark("overlaps itself"),
+    (Question.CLOSES, AnswerState.OPEN): mark("not closed yet"),
+    (Question.FILES, AnswerState.GOOD): mark("files are right"),
+    (Question.FILES, AnswerState.CARE): mark("files need a look"),
+    (Question.FILES, AnswerState.BAD): mark("files are wrong"),
+    (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
+}
+#: Findings that answer a question; files have those of their reading, the material all others.
+_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
+_CLOSING_FINDINGS = frozenset(
+    {
+        NEARLY,
+        "as_cut.jams_while_flat",
+        "as_cut.jams_touching",
+        "as_cut.jams_stretched",
+        "as_cut.hardly_opens",
+        "as_cut.not_known",
+        "rank.not_feasible",
+        "verdict.not_made",
+    }
+)
+
+
+def question_of(finding: Note) -> Question:
+    """The question that a finding is about."""
+    if finding.code in _MATCH_FINDINGS:
+        return Question.MATCHES
+    if finding.code in _CLOSING_FINDINGS:
+        return Question.CLOSES
+    if finding.code.startswith("verify.") or finding.code == "as_cut.file_jams":
+        return Question.FILES
+    return Question.FITS
+
+
+@dataclass(frozen=True, slots=True)
+class VerdictAnswer:
+    """The answer to a question, in a word."""
+
+    question: Question
+    state: AnswerState
+    word: str
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is to be expected of a sheet, and why.
+    """Expectations of a design that is cut, and the reasons.
+
+    A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
 
     Attributes
     ----------
@@ -83,17 +184,28 @@ class Verdict:
         Worst first.  With an error the sheet will not work, with a warning it is cut with care.
     notes : tuple of Note
         What is worth knowing beside them.
+    source : Source or None
+        An estimate gives way to the simulation; None where neither can be, because no cuts can be planned or no sheet
+        hangs together.
+    as_cut : AsCut or None
+        How it does as cut, by the same source; None where that is not known.
+    match : float or None
+        IoU with the target: as cut where that is known, else as designed.
+    read : bool
+        Whether its files were read back.
     """
 
     problems: tuple[Problem, ...] = ()
     notes: tuple[Note, ...] = ()
+    source: Source | None = None
+    as_cut: AsCut | None = None
+    match: float | None = None
+    read: bool = False
 
     @property
     def level(self) -> Level:
         """By the worst of the problems."""
-        if not self.problems:
-            return Level.READY
-        return Level.FAILS if self.problems[0].severity is Severity.ERROR else Level.CARE
+        return _level_of(self.problems)
 
     @property
     def ok(self) -> bool:
@@ -101,9 +213,63 @@ class Verdict:
         return self.level is Level.READY
 
     @property
+    def is_estimate(self) -> bool:
+        """Whether the simulation is still to come."""
+        return self.source is Source.ESTIMATE
+
+    @property
+    def words(self) -> str:
+        """The level, marked where it is an estimate."""
+        if not self.is_estimate:
+            return self.level.words
+        return tr("{level} (estimate)", level=self.level.words) if self.is_checked else tr("Not checked yet")
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether there is a verdict: a sheet without a problem that nobody has closed has none."""
+        return self.as_cut is not None or bool(self.problems) or not self.is_estimate
+
+    @property
+    def answers(self) -> tuple[VerdictAnswer, ...]:
+        """To each question one, in their order."""
+        return tuple(self.answer(question) for question in Question)
+
+    def answer(self, question: Question) -> VerdictAnswer:
+        """The answer to a question: by the worst problem that is about it."""
+        found = [problem for problem in self.problems if question_of(problem) is question]
+        state = _STATES[_level_of(found)] if found or self._knows(question) else AnswerState.OPEN
+        if question is Question.MATCHES and self.match is not None:
+            own = AnswerState.GOOD if self.match >= MATCHES else AnswerState.CARE
+            state = AnswerState.BAD if self.match < MATCHES_ROUGHLY else max(state, own, key=list(AnswerState).index)
+        word = tr(_ANSWERS[question, state])
+        if question is Question.CLOSES and self.as_cut is not None and "rank.not_feasible" not in _codes(found):
+            word = self.as_cut.word
+        return VerdictAnswer(question, state, word)
+
+    def _knows(self, question: Question) -> bool:
+        """Whether somebody has looked for the answer."""
+        return {
+            Question.MATCHES: self.match is not None,
+            Question.FITS: self.source is not None,
+            Question.CLOSES: self.as_cut is not None,
+            Question.FILES: self.read,
+        }[question]
+
+    @property
     def lines(self) -> tuple[str, ...]:
-        """The list that is shown everywhere: its level, then every problem, then every note."""
-        return (self.level.words, *(problem.text for problem in self.problems), *(note.text for note in self.notes))
+        """The list that is shown everywhere: level, problems, answers, notes."""
+        problems, notes = ([note.text for note in part] for part in (self.problems, self.notes))
+        return (self.words, *problems, self.summary, *notes)
+
+    @property
+    def summary(self) -> str:
+        """All answers in one line, an estimate marked."""
+        words = {answer.question: answer.word for answer in self.answers}
+        if self.match is not None:
+            words[Question.MATCHES] += f" ({number(100.0 * self.match, '.1f')} %)"
+        if self.as_cut is not None and self.as_cut.source is Source.ESTIMATE:
+            words[Question.CLOSES] = tr("{answer} (estimate)", answer=words[Question.CLOSES])
+        return ", ".join(words.values())
 
     def better_than(self, other: Verdict) -> bool:
         """Whether less is to be feared."""
@@ -114,9 +280,16 @@ class Verdict:
         return {
             "level": self.level.value,
             "ok": self.ok,
+            "from": None if self.source is None else self.source.value,
+            "answers": {
+                answer.question.value: {"state": answer.state.value, "word": answer.word} for answer in self.answers
+            },
+            "match": self.match,
+            **jam_json(self.as_cut),
             "problems": [
                 {
                     "severity": problem.severity.value,
+                    "question": question_of(problem).value,
                     "code": problem.code,
                     "text": problem.text,
                     "where": None if problem.where is None else [float(side) for side in problem.where],
@@ -125,6 +298,19 @@ class Verdict:
             ],
             "notes": [note.text for note in self.notes],
         }
+
+
+_STATES = {Level.READY: AnswerState.GOOD, Level.CARE: AnswerState.CARE, Level.FAILS: AnswerState.BAD}
+
+
+def _codes(found: Iterable[Note]) -> set[str]:
+    return {note.code for note in found}
+
+
+def _level_of(problems: Sequence[Problem]) -> Level:
+    if not problems:
+        return Level.READY
+    return Level.FAILS if any(problem.severity is Severity.ERROR for problem in problems) else Level.CARE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -154,7 +340,7 @@ def assess(
     planned: tuple[CutPlan, PlanReport] | None = None,
     verifications: Sequence[Verification] = (),
 ) -> Assessment:
-    """Plan the cuts of a design, check them, close the sheet on its connectors, and judge, all in one go.
+    """Plan the cuts of a design, check them, close the sheet, and judge, all in one go.
 
     Parameters
     ----------
@@ -186,7 +372,7 @@ def assess(
 def closed_as_cut(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
 ) -> AsCut | str:
-    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
+    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that is open."""
     return result_of(closing_as_cut(candidate, deployment, plan, width_mm, target))
 
 
@@ -204,7 +390,7 @@ def closing_as_cut(
 
 @dataclass(frozen=True, slots=True)
 class CloseLook:
-    """What a close look at a design found.
+    """Findings of a close look at a design.
 
     Attributes
     ----------
@@ -220,16 +406,14 @@ class CloseLook:
 
     @property
     def loss(self) -> float:
-        """Worth (IoU) that the design loses by being cut: match, and for the stretch of its connectors."""
+        """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
-        iou, ideal = self.as_cut.iou, self.as_cut.ideal_iou
-        missed = 0.0 if iou is None or ideal is None else max(0.0, ideal - iou)
-        return missed + STRETCH * self.as_cut.stretch
+        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
-    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors, in one go."""
+    """Plan and check the cuts of a design, and close it on its connectors, in one go."""
     return result_of(looking(candidate, settings, target))
 
 
@@ -239,7 +423,7 @@ def looking(
     target: Outline | None = None,
     cancel: Callable[[], bool] = lambda: False,
 ) -> Generator[None, None, CloseLook]:
-    """Look at a design closely, see :func:`look_at`; yields between the steps, for others to have their turn.
+    """Look at a design closely, see :func:`look_at`; yields between the steps, for other jobs.
 
     Raises
     ------
@@ -261,7 +445,7 @@ def looking(
         return CloseLook(small or found.problems[0])
     as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
     new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
-    refusal = next((problem for problem in new if problem.code != NEARLY), None)
+    refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
 
 
@@ -277,7 +461,7 @@ def judge(
     as_cut: AsCut | str | None,
     verifications: Sequence[Verification] = (),
 ) -> Verdict:
-    """Judge a sheet by everything that is known of it.
+    """Judge a sheet by all that is known of it.
 
     Parameters
     ----------
@@ -296,17 +480,63 @@ def judge(
         *_of_design(candidate),
         *(_weighed(problem) for problem in report.problems if problem.code not in STRAINED),
         *_of_wishes(plan),
-        *([] if known is None else _of_jam(known)),
+        *_of_jam(known),
         *_of_strain(plan, report, known),
+        *_of_match(known),
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
-    notes: list[Note] = [*plan.notes, *(note for one in verifications for note in one.warnings)]
+    warned = (note for one in verifications for note in one.warnings)
+    notes: list[Note] = [*plan.notes, *_strain_notes(plan, known), *warned]
     if known is not None and known.closes:
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]
-    worst_first = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
-    told = {problem.text for problem in worst_first}
-    return Verdict(tuple(_once(worst_first)), tuple(note for note in _once(notes) if note.text not in told))
+    told = {problem.text for problem in problems}
+    return Verdict(
+        _worst_first(problems),
+        tuple(note for note in _once(notes) if note.text not in told),
+        None if isinstance(as_cut, str) else Source.ESTIMATE if known is None else known.source,
+        known,
+        match_of(candidate, known),
+        bool(verifications),
+    )
+
+
+def expected(
+    candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None, material: Material | None = None
+) -> Verdict:
+    """An estimate of the verdict on a design whose cuts nobody has planned.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    ranking : Ranking
+        With the sheet's width, the least feature of the material, and what close looks have found.
+    as_cut : AsCut, optional
+        As estimated, or simulated in a close look.
+    material : Material, optional
+        For the strain that its connectors bear.
+    """
+    refusal = ranking.refusals.get(candidate)
+    problems = [
+        *_of_design(candidate),
+        *_of_room(candidate, ranking),
+        *([] if refusal is None else _of_refusal(refusal)),
+        *_of_jam(as_cut),
+        *([] if as_cut is None or material is None else _of_expected_strain(material, as_cut)),
+        *_of_match(as_cut),
+    ]
+    return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match_of(candidate, as_cut))
+
+
+def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
+    """IoU with the target: as cut where that is known, else as designed and trimmed."""
+    if as_cut is not None and as_cut.iou is not None:
+        return as_cut.iou
+    return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
+
+
+def _worst_first(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    return tuple(_once(sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)))
 
 
 def _once(notes: Iterable[Told]) -> list[Told]:
@@ -333,8 +563,33 @@ def _of_design(candidate: Candidate) -> list[Problem]:
     return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
 
 
+def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
+    """Panels that are too small, by the design's own sizes."""
+    if ranking.wide_enough(candidate):
+        return []
+    size = candidate.score.evenness.least_feature_mm(ranking.width_mm)
+    return [Problem.warning("rank.too_thin", smallest_mm=size, least_mm=ranking.least_feature_mm)]
+
+
+def _of_refusal(refusal: Note) -> list[Problem]:
+    """The finding of a close look; a rank by an estimate, or without a look, is none."""
+    if refusal.code in ("rank.jams", "rank.not_looked_at"):
+        return []
+    return [refusal if isinstance(refusal, Problem) else Problem(refusal.code, refusal.fields, Severity.ERROR)]
+
+
+def _of_match(as_cut: AsCut | None) -> list[Problem]:
+    """Match that is lost by cutting; that of the design itself is an answer, and no problem."""
+    if as_cut is None or as_cut.iou is None or as_cut.ideal_iou is None or (as_cut.lost or 0.0) <= LITTLE_LOST:
+        return []
+    values = {"match_percent": 100.0 * as_cut.iou, "designed_percent": 100.0 * as_cut.ideal_iou}
+    if as_cut.iou < MATCHES_ROUGHLY <= as_cut.ideal_iou:
+        return [Problem.error("as_cut.does_not_match", **values, least_percent=100.0 * MATCHES_ROUGHLY)]
+    return [Problem.warning("as_cut.loses_match", **values)]
+
+
 def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut | None) -> list[Problem]:
-    """What two readers found in the files, once where several have it, and jams that only a file shows."""
+    """Findings of two readers, once where several files have them, and jams that only a file shows."""
     names: dict[tuple[Severity, str], list[str]] = {}
     jams = []
     for one in verifications:
@@ -345,7 +600,7 @@ def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut |
                 names.setdefault((Severity.WARNING, finding.text), []).append(one.path.name)
         jam = one.jam_phi
         if jam is not None and jam > max(phi + CLOSE_TO, ESTIMATE_CLOSES) and (as_cut is None or as_cut.closes):
-            jams.append(Problem.warning("as_cut.file_jams", name=one.path.name, jam_deg=math.degrees(jam)))
+            jams.append(Problem.warning("as_cut.file_jams", name=one.path.name))
     found = [
         Problem("verify.in_file", {"name": ", ".join(files), "finding": text}, severity)
         for (severity, text), files in names.items()
@@ -353,28 +608,47 @@ def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut |
     return [*found, *jams[:1]]
 
 
-def _of_jam(as_cut: AsCut) -> list[Problem]:
-    if as_cut.closes:
+def _of_jam(as_cut: AsCut | None) -> list[Problem]:
+    """By how far the sheet opens and how much match that costs."""
+    if as_cut is None or as_cut.closes:
         return []
-    angles = {"jam_deg": math.degrees(as_cut.jam_phi), "phi_deg": math.degrees(as_cut.phi)}
-    if as_cut.jam_phi <= as_cut.phi + ESTIMATE_CLOSES:
+    angles = {"jam_deg": as_cut.jam_deg, "phi_deg": math.degrees(as_cut.phi)}
+    if as_cut.jam_phi <= as_cut.phi + ESTIMATE_CLOSES or (as_cut.lost is not None and as_cut.lost <= LITTLE_LOST):
         return [Problem.warning(NEARLY, **angles)]
     if as_cut.figure is StrainFigure.OUT_OF_PLANE:
-        return [Problem.warning("as_cut.jams_while_flat", **angles)]
+        share = {"opened_percent": 100.0 * as_cut.opened, "least_percent": 100.0 * HALF_WAY}
+        if as_cut.opened >= HALF_WAY:
+            return [Problem.warning("as_cut.jams_while_flat", **angles, **share)]
+        return [Problem.error("as_cut.hardly_opens", **angles, **share)]
     if as_cut.outcome is Outcome.TOUCHING:
         return [Problem.error("as_cut.jams_touching", **angles)]
     return [Problem.error("as_cut.jams_stretched", stretch=as_cut.stretch, **angles)]
 
 
 def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
-    """One sentence for connectors that break, by the larger of the plan's estimate and the simulated strain."""
+    """One problem for connectors that break, by the larger of planned and simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
-    limit = 100.0 * plan.material.strain_limit
-    strains = [float(str(problem.fields["strain_percent"])) for problem in planned]
-    if as_cut is not None and 100.0 * as_cut.strain > limit:
-        strains.append(100.0 * as_cut.strain)
-    if not strains:
+    found = [{name: problem.fields[name] for name in STRAIN_FIELDS} for problem in planned]
+    if as_cut is not None and as_cut.survival.breaks:
+        found.append(dict(strain_note(plan.material, as_cut.survival).fields))
+    return _strained(found, planned[0].where if planned else None)
+
+
+def _of_expected_strain(material: Material, as_cut: AsCut) -> list[Problem]:
+    found = as_cut.survival
+    return _strained([strain_note(material, found).fields] if found.breaks else [])
+
+
+def _strained(found: Sequence[Mapping[str, object]], where: tuple[float, float] | None = None) -> list[Problem]:
+    """One sentence for connectors that break, of the strain that is furthest above its limit."""
+    if not found:
         return []
-    name, where = plan.material.name, planned[0].where if planned else None
-    values = {"strain_percent": max(strains), "material": name, "limit_percent": limit}
-    return [Problem.error("as_cut.breaks", where, **values)]
+    worst = max(found, key=lambda fields: float(str(fields["strain_percent"])) / float(str(fields["limit_percent"])))
+    return [Problem.error("as_cut.breaks", where, **worst)]
+
+
+def _strain_notes(plan: CutPlan, as_cut: AsCut | None) -> list[Note]:
+    """Note on the strain that a sheet survives, and whether its connectors stay bent."""
+    if as_cut is None or as_cut.survival.breaks:
+        return []
+    return [strain_note(plan.material, as_cut.survival)]

@@ -73,7 +73,7 @@ FAULTS = (
             f"kirigami_studio.gui.window.{module}",
         )
         for place in ("stage", "run", "gallery", "make", "target", "files")
-        for module, name in (("main_window", "MainWindow"), ("controller", "Controller"))
+        for module, name in (("main_window", "MainWindow"), ("services", "Services"))
     ),
     *(
         Fault(package, "import torch", "The exact core never reaches torch", "torch")

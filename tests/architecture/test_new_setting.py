@@ -88,6 +88,7 @@ found["undo"] = edit.label
 call = ks.design if command == "design" else ks.Design.plan_cuts
 parameter = inspect.signature(call).parameters.get("rings")
 found["keyword"] = parameter is not None and parameter.default in (0, None)
+found["told"] = "\\nrings : int" in call.__doc__
 try:
     replace(getattr(empty, part), rings=10)
 except KirigamiError as error:
@@ -147,7 +148,9 @@ def test_that_a_new_choice_costs_its_setting_its_use_and_a_test(
     found = found_in(tmp_path, planted.command)
     usual = "default 0" if planted.command == "design" else "default: the project's, or 0"
     assert f"--rings RINGS rings around the sheet (0 to 9; {usual})" in found["option"]
-    assert found["keyword"] and found["file"] == 3 and not found["file without"] and found["read back"]
+    assert (
+        found["keyword"] and found["told"] and found["file"] == 3 and not found["file without"] and found["read back"]
+    )
     assert found["undo"] == "Change a setting"
     assert found["refusal"].startswith("rings cannot be 10")
     assert found["field"] == [3, 9, "Rings around the sheet (0 to 9).", "Rings", {"rings": 5}]
@@ -157,7 +160,8 @@ def test_that_a_new_choice_costs_its_setting_its_use_and_a_test(
 def test_that_a_field_that_says_nothing_of_itself_appears_nowhere(repository: Path, tmp_path: Path) -> None:
     copy_with(SEARCH, SILENT, repository, tmp_path)
     found = found_in(tmp_path, "design", changed="seed")
-    assert "--rings" not in found["option"] and not found["keyword"] and found["file"] is None
+    assert "--rings" not in found["option"] and not found["keyword"] and not found["told"]
+    assert found["file"] is None
     assert "refusal" not in found and "field" not in found
 
 

@@ -104,8 +104,7 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
         popup.close()
     for left in QApplication.topLevelWidgets():
         left.hide()
-    made = create_window(LIGHT)
-    made.file_dialogs = files
+    made = create_window(LIGHT, file_dialogs=files)
     with qtbot.waitExposed(made):
         made.show()
     for button in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
@@ -114,7 +113,7 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     threads = made.findChildren(QThread)
     assert len(threads) == 1
     yield made
-    made.controller.history.mark_saved()
+    made.session.history.mark_saved()
     assert made.close()
     assert not any(thread.isRunning() for thread in made.findChildren(QThread))
     assert [timer.parent() for timer in made.findChildren(QTimer) if timer.isActive()] == []
@@ -151,7 +150,7 @@ def german(english_afterwards: None) -> None:
 @pytest.fixture
 def heart(window: MainWindow, until: Callable[[Callable[[], bool]], None]) -> MainWindow:
     """A studio with the heart as target."""
-    window.controller.targeting.open("heart")
+    window.services.targeting.open("heart")
     until(lambda: window.target.view.outline is not None)
     return window
 
@@ -178,8 +177,8 @@ def project_file(designs: Document, tmp_path: Path) -> Path:
 @pytest.fixture
 def designed(window: MainWindow, project_file: Path, until: Callable[[Callable[[], bool]], None]) -> MainWindow:
     """A studio with that project open and its cuts planned."""
-    window.controller.open_project(project_file)
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    window.services.project.open(project_file)
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
     return window
 
 

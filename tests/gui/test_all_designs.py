@@ -14,21 +14,25 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.gui.gallery import table_card
 from kirigami_studio.gui.gallery.all_designs import AllDesigns
 from kirigami_studio.gui.gallery.badges import badges_of
 from kirigami_studio.gui.gallery.card_delegate import CardButton
-from kirigami_studio.gui.gallery.gallery_model import BADGES_ROLE, NAME_ROLE
+from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VERDICT_ROLE
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.gallery.table_card import button_boxes
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets.theme import LIGHT
+from kirigami_studio.gui.widgets.verdict_marks import ICONS
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
-from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.as_cut import AsCut, Outcome, Source, StrainFigure
+from kirigami_studio.studio.verdict import Level, expected
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -39,8 +43,8 @@ KEY = Qt.Key
 def table(designed: MainWindow) -> AllDesigns:
     """The three designs on the table, opened by its key."""
     QTest.keyClick(designed.stage.view, KEY.Key_A)
-    page = designed.connections.all_designs.page
-    assert page is not None and page.isVisible() and not designed.columns.isVisible()
+    page = designed.presenters.all_designs.page
+    assert page is not None and page.isVisible() and not designed.columns.splitter.isVisible()
     page.filters.grouped.setChecked(False)
     return page
 
@@ -57,23 +61,23 @@ def names(page: AllDesigns) -> list[str]:
 
 
 def test_that_the_table_opens_at_the_chosen_design_and_closes_again(designed: MainWindow, table: AllDesigns) -> None:
-    assert table.table.hasFocus() and table.table.current == designed.controller.document.candidate
+    assert table.table.hasFocus() and table.table.current == designed.session.document.candidate
     press(table, KEY.Key_Escape)
-    assert not designed.connections.all_designs.shown and designed.columns.isVisible()
+    assert not designed.presenters.all_designs.shown and designed.columns.splitter.isVisible()
     QTest.mouseClick(designed.gallery.bar.all, LEFT)
-    assert designed.connections.all_designs.shown
+    assert designed.presenters.all_designs.shown
     QTest.mouseClick(table.close_button, LEFT)
-    assert designed.columns.isVisible() and designed.stage.view.hasFocus()
+    assert designed.columns.splitter.isVisible() and designed.stage.view.hasFocus()
 
 
 def test_that_arrows_move_and_enter_takes_the_design_to_the_stage(
     designed: MainWindow, table: AllDesigns, designs: Document
 ) -> None:
     press(table, KEY.Key_Right)
-    assert table.table.current == designs.candidates[1] and designed.controller.document.chosen == 0
-    assert designed.controller.history.undo_label is None, "looking at designs is no change"
+    assert table.table.current == designs.candidates[1] and designed.session.document.chosen == 0
+    assert designed.session.history.undo_label is None, "looking at designs is no change"
     press(table, KEY.Key_Return)
-    assert designed.controller.document.chosen == 1 and not designed.connections.all_designs.shown
+    assert designed.session.document.chosen == 1 and not designed.presenters.all_designs.shown
     assert designed.stage.title.text() == "Design A2"
 
 
@@ -83,9 +87,9 @@ def test_that_a_double_click_takes_a_design_and_a_click_does_not(
     view = table.table
     place = view.visualRect(view.model_.index(2, 0)).center()
     qtbot.mouseClick(view.viewport(), LEFT, pos=place)
-    assert designed.controller.document.chosen == 0 and view.current == designed.controller.document.candidates[2]
+    assert designed.session.document.chosen == 0 and view.current == designed.session.document.candidates[2]
     qtbot.mouseDClick(view.viewport(), LEFT, pos=place)
-    assert designed.controller.document.chosen == 2 and not designed.connections.all_designs.shown
+    assert designed.session.document.chosen == 2 and not designed.presenters.all_designs.shown
 
 
 def test_that_letters_of_the_window_do_nothing_out_of_sight(designed: MainWindow, table: AllDesigns) -> None:
@@ -93,14 +97,14 @@ def test_that_letters_of_the_window_do_nothing_out_of_sight(designed: MainWindow
     for key in (KEY.Key_T, KEY.Key_M, KEY.Key_E, KEY.Key_D, KEY.Key_J, KEY.Key_B):
         QTest.keyClick(table.table, key)
     assert designed.stage.view.overlays == overlays and designed.stage.showing_cuts is cuts
-    assert designed.connections.all_designs.shown and not designed.target.editing
+    assert designed.presenters.all_designs.shown and not designed.target.editing
 
 
 def test_that_a_design_is_pinned_rejected_and_renamed_by_keys(designed: MainWindow, table: AllDesigns) -> None:
     press(table, KEY.Key_I)
-    assert designed.controller.document.marks[0] is Mark.PINNED
+    assert designed.session.document.marks[0] is Mark.PINNED
     press(table, KEY.Key_Right, KEY.Key_Delete)
-    assert designed.controller.document.marks[1] is Mark.REJECTED and names(table) == ["A1", "A3"]
+    assert designed.session.document.marks[1] is Mark.REJECTED and names(table) == ["A1", "A3"]
     QTest.keyClick(table.table, KEY.Key_F2)
     editor = designed.dialogs.label
     assert editor is not None and editor.isVisible()
@@ -115,11 +119,11 @@ def test_that_buttons_of_a_card_pin_and_reject_it(designed: MainWindow, table: A
     boxes = button_boxes(view.visualRect(view.model_.index(1, 0)))
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.PIN].center())
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.REJECT].center())
-    assert designed.controller.document.marks[1] is Mark.REJECTED and designed.controller.history.position == 2
+    assert designed.session.document.marks[1] is Mark.REJECTED and designed.session.history.position == 2
 
 
 def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, table: AllDesigns) -> None:
-    matches = sorted(one.score.iou_exact for one in designed.controller.document.candidates)
+    matches = sorted(one.score.iou_exact for one in designed.session.document.candidates)
     table.filters.least.setValue(100 * matches[1] - 0.05)
     assert len(names(table)) == 2 and designed.gallery.bar.filters.least.value() == table.filters.least.value()
     assert table.show_all.isVisible() and table.count.text().startswith("2 of 3 shown")
@@ -136,9 +140,9 @@ def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, t
 
 
 def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
-    designed: MainWindow, table: AllDesigns
+    designed: MainWindow, table: AllDesigns, until: Until
 ) -> None:
-    document = designed.controller.document
+    document = designed.session.document
     sizes = [one.score.evenness.least_feature_mm(document.fabrication.width_mm) for one in document.candidates]
     least = round(float(np.mean(sorted(sizes)[1:])), 2)
     table.filters.feature.setValue(least)
@@ -147,12 +151,13 @@ def test_that_designs_are_filtered_by_least_feature_and_by_what_can_be_cut(
     designed.fabrication.lengths["width_mm"].setValue(10 * document.fabrication.width_mm)
     assert len(names(table)) == 3, "larger sheets have larger features"
     table.filters.feature.setValue(0.0)
-    table.filters.cuttable.setChecked(True)
-    ranking = table.table.model_.ranking
-    cuttable = [one for one in document.candidates if ranking.cuttable(one)]
-    assert len(names(table)) == len(cuttable)
-    designed.controller.fabrication.change(material="acrylic-co2", width_mm=20.0)
-    assert names(table) == [], "nothing so small can be cut"
+    table.filters.works.setChecked(True)
+    model = table.table.model_
+    works = [one for one in document.candidates if model.verdict_of(one).level is not Level.FAILS]
+    assert len(names(table)) == len(works) > 0
+    designed.services.fabrication.change(material="acrylic-co2", width_mm=20.0)
+    until(lambda: not designed.services.estimates.busy)
+    assert names(table) == [], "acrylic breaks"
 
 
 def test_that_every_card_shows_flat_half_open_and_open(table: AllDesigns, until: Until) -> None:
@@ -210,8 +215,8 @@ def test_that_pictures_wait_for_their_turn(designed: MainWindow, until: Until, m
     monkeypatch.setattr(table_card, "PAINT_SECONDS", 0.0)
     monkeypatch.setattr(table_card, "states_pixmap", counted)
     designed.gallery.bar.filters.grouped.setChecked(False)
-    designed.connections.all_designs.show(True)
-    page = designed.connections.all_designs.page
+    designed.presenters.all_designs.show(True)
+    page = designed.presenters.all_designs.page
     assert page is not None
     begin = page.table.cards.begin
 
@@ -251,8 +256,8 @@ def test_that_marked_designs_are_compared_at_one_angle_and_one_is_taken(
     press(table, KEY.Key_4)
     assert designed.stage.comparing, "there is no fourth one"
     press(table, KEY.Key_3)
-    assert designed.controller.document.chosen == 2 and not designed.connections.all_designs.shown
-    designed.connections.all_designs.show(True)
+    assert designed.session.document.chosen == 2 and not designed.presenters.all_designs.shown
+    designed.presenters.all_designs.show(True)
     assert not designed.stage.comparing and table.table.compared == designs.candidates, "the marks stay"
 
 
@@ -262,23 +267,23 @@ def test_that_comparing_without_marks_takes_the_current_design_and_the_next(
     press(table, KEY.Key_C)
     assert designed.stage.comparing and table.table.compared == designs.candidates[:2]
     press(table, KEY.Key_Escape)
-    assert not designed.stage.comparing and designed.connections.all_designs.shown and table.table.hasFocus()
+    assert not designed.stage.comparing and designed.presenters.all_designs.shown and table.table.hasFocus()
 
 
 def test_that_designs_that_are_gone_are_no_longer_compared(designed: MainWindow, table: AllDesigns) -> None:
     press(table, KEY.Key_1, KEY.Key_Right, KEY.Key_2, KEY.Key_C)
-    designed.controller.targeting.clear()
+    designed.services.targeting.clear()
     assert table.table.compared == () and not designed.stage.comparing and table.table.current is None
     assert not table.use.isEnabled()
 
 
 def test_that_the_drawing_board_and_the_stage_come_before_the_table(designed: MainWindow, table: AllDesigns) -> None:
     designed.commands["edit_target"].trigger()
-    assert designed.target.editing and not designed.connections.all_designs.shown
-    designed.connections.all_designs.show(True)
-    assert designed.connections.all_designs.shown and not designed.target.editing
+    assert designed.target.editing and not designed.presenters.all_designs.shown
+    designed.presenters.all_designs.show(True)
+    assert designed.presenters.all_designs.shown and not designed.target.editing
     designed.commands["compare"].trigger()
-    assert designed.stage.comparing and not designed.connections.all_designs.shown
+    assert designed.stage.comparing and not designed.presenters.all_designs.shown
 
 
 def test_that_the_nearness_is_one_control_in_two_places(designed: MainWindow, table: AllDesigns) -> None:
@@ -297,34 +302,56 @@ def test_that_cards_become_larger_and_smaller_by_keys(table: AllDesigns) -> None
     assert table.card_size.value() == 0 and table.table.cards.card.width() < before.width()
 
 
-def test_that_badges_say_what_keeps_a_design_from_being_cut(designs: Document) -> None:
+def texts(candidate: Candidate, ranking: Ranking, as_cut: AsCut | None, material: Material | None = None) -> list[str]:
+    return [badge.text for badge in badges_of(expected(candidate, ranking, as_cut, material))]
+
+
+def test_that_badges_say_the_verdict_and_what_keeps_it_from_being_better(designs: Document) -> None:
     candidate = designs.candidates[0]
+    candidate = replace(candidate, score=replace(candidate.score, iou_exact=0.95))
     wide, narrow = Ranking(width_mm=100.0), Ranking(width_mm=100.0, least_feature_mm=50.0)
-    closing = AsCut(0.0, 0.0, Outcome.CLOSES, 0.1, 0.2, StrainFigure.IN_PLANE)
+    closing = AsCut(0.0, 0.0, Outcome.CLOSES, 0.1, 0.2, StrainFigure.IN_PLANE, source=Source.ESTIMATE)
     jamming = replace(closing, jam_phi=0.6, outcome=Outcome.STRETCHED)
-    assert [badge.text for badge in badges_of(candidate, wide, None)] == ["cuttable"]
-    assert [badge.text for badge in badges_of(candidate, wide, closing, 0.45)] == ["cuttable", "closes"]
-    assert [badge.text for badge in badges_of(candidate, wide, closing, 0.1)] == ["hinges break", "cuttable", "closes"]
-    found = badges_of(candidate, narrow, jamming, 0.1)
-    size = candidate.score.evenness.least_feature_mm(100.0)
-    assert [badge.text for badge in found] == [f"too thin: {size:.2f} mm", "jams at 34°", "hinges break"]
-    assert not any(badge.good for badge in found) and "50.00 mm" in found[0].tip
+    tough, brittle = (replace(default_material(), strain_limit=limit) for limit in (0.45, 0.1))
+    fits, about = "fits the material", "\N{ALMOST EQUAL TO} "
+    assert texts(candidate, wide, None) == ["Not checked yet", "matches", fits]
+    assert texts(candidate, wide, closing, tough) == [f"{about}Ready to cut", "matches", fits, f"{about}closes"]
+    misfit = [f"{about}Will not work", "does not fit the material", "matches", f"{about}closes"]
+    assert texts(candidate, wide, closing, brittle) == misfit
+    found = badges_of(expected(candidate, narrow, jamming, brittle))
+    assert [badge.text for badge in found][:3] == [misfit[0], misfit[1], f"{about}jams at 34°"]
+    assert [badge.state for badge in found] == ["will_not_work", "bad", "bad", "good"]
+    assert "50.00 mm" in found[1].tip and [badge.is_level for badge in found] == [True, False, False, False]
     overlapping = replace(candidate, score=replace(candidate.score, feasible=False))
-    assert [badge.text for badge in badges_of(overlapping, wide, closing)] == ["overlaps itself", "closes"]
+    assert texts(overlapping, wide, closing)[:2] == [f"{about}Will not work", f"{about}overlaps itself"]
+    rough = replace(candidate, score=replace(candidate.score, iou_exact=0.85))
+    # How well a design matches is an answer of its own; it is no reason not to cut it.
+    assert texts(rough, wide, closing)[:2] == [f"{about}Ready to cut", "matches roughly"]
+
+
+def test_that_no_badge_of_a_sheet_that_will_not_work_has_a_check_mark(designs: Document) -> None:
+    verdict = expected(designs.candidates[0], Ranking(width_mm=100.0, least_feature_mm=50.0))
+    jammed = AsCut(2.5, 0.0, Outcome.STRETCHED, 3.0, 0.1, StrainFigure.OUT_OF_PLANE, source=Source.ESTIMATE)
+    for one in (verdict, expected(designs.candidates[0], Ranking(), jammed)):
+        icons = [ICONS[badge.state] for badge in badges_of(one) if badge.is_level]
+        assert icons == ["fault" if one.level is Level.FAILS else "warning"]
 
 
 def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns, until: Until) -> None:
-    until(lambda: bool(designed.controller.estimates.known) and not designed.controller.estimates.busy)
-    index = table.table.model_.index(0, 0)
-    assert "cuttable" in [badge.text for badge in index.data(BADGES_ROLE)]
-    designed.controller.fabrication.change(material="card-co2")
-    until(lambda: not designed.controller.estimates.busy)
-    assert any(badge.text == "hinges break" for badge in index.data(BADGES_ROLE))
+    services = designed.services
+    until(lambda: bool(services.estimates.known) and not services.estimates.busy)
+    rows = [table.table.model_.index(row, 0) for row in range(table.table.model_.rowCount())]
+    assert all("fits the material" in row.data(VERDICT_ROLE).summary for row in rows)
+    services.fabrication.change(material="card-co2")
+    # What was found in the other material goes at once, not once this one was looked at.
+    assert not any(row.data(VERDICT_ROLE).as_cut for row in rows)
+    until(lambda: not services.estimates.busy)
+    assert all("does not fit the material" in row.data(VERDICT_ROLE).summary for row in rows)
 
 
 def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path) -> None:
     window.commands["all_designs"].trigger()
-    page = window.connections.all_designs.page
+    page = window.presenters.all_designs.page
     assert page is not None and page.isVisible() and page.table.hint()[0] == "No designs yet"
     assert not page.use.isEnabled() and not page.alike.isEnabled()
     press(page, KEY.Key_C, KEY.Key_Return, KEY.Key_1, KEY.Key_Escape)

@@ -77,14 +77,14 @@ def test_that_a_picture_is_seen_whole_on_the_opened_sheet_and_cut_up_on_the_flat
     assert left[0] > 20 * left[1] and right[1] > 20 * right[0]
     editor.state.setCurrentIndex(editor.state.findData(SheetState.FLAT))
     editor.state.activated.emit(editor.state.currentIndex())
-    assert designed.controller.document.artwork.first.state is SheetState.FLAT
+    assert designed.session.document.artwork.first.state is SheetState.FLAT
 
 
 def test_that_every_change_is_a_step_that_can_be_undone(
     designed: MainWindow, editor: ArtworkEditor, until: Until
 ) -> None:
-    controller = designed.controller
-    assert controller.history.undo_label == "Lay photo.png on it"
+    session = designed.session
+    assert session.history.undo_label == "Lay photo.png on it"
     editor.scale.setValue(150.0)
     editor.scale.setValue(160.0)
     editor.scale.editingFinished.emit()
@@ -93,7 +93,7 @@ def test_that_every_change_is_a_step_that_can_be_undone(
     editor.right.setValue(10.0)
     editor.fitting.setCurrentIndex(editor.fitting.findData(PictureFit.FIT))
     editor.fitting.activated.emit(editor.fitting.currentIndex())
-    laid = controller.document.artwork.first
+    laid = session.document.artwork.first
     assert (laid.scale, laid.turn, laid.shift, laid.fitting) == (
         1.6,
         pytest.approx(math.pi / 2),
@@ -101,7 +101,7 @@ def test_that_every_change_is_a_step_that_can_be_undone(
         PictureFit.FIT,
     )
     steps = 0
-    while controller.history.undo_label == "Place the artwork":
+    while session.history.undo_label == "Place the artwork":
         designed.commands["undo"].trigger()
         steps += 1
     assert steps == 4
@@ -116,7 +116,7 @@ def test_that_a_second_picture_shares_the_sheet_until_it_is_removed(
     designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
 ) -> None:
     Image.new("RGB", (60, 60), (0, 0, 255)).save(tmp_path / "blue.png")
-    view, controller = designed.stage.view, designed.controller
+    view, session = designed.stage.view, designed.session
     assert not editor.stripes.isEnabled()
     files.answer = tmp_path / "blue.png"
     alone = view.artwork
@@ -128,29 +128,29 @@ def test_that_a_second_picture_shares_the_sheet_until_it_is_removed(
     assert ((blue > 200) & (red < 60) & (green < 60)).mean() > 0.02
     editor.stripes.setValue(40)
     editor.stripes.setValue(30)
-    assert controller.document.artwork.stripes == 30 and controller.history.undo_label == "Change the stripes"
+    assert session.document.artwork.stripes == 30 and session.history.undo_label == "Change the stripes"
     designed.commands["undo"].trigger()
     assert editor.stripes.value() == 160
     editor.remove_second.click()
-    assert controller.document.artwork.second is None and not editor.remove_second.isEnabled()
+    assert session.document.artwork.second is None and not editor.remove_second.isEnabled()
 
 
 def test_that_artwork_travels_with_the_project_and_with_another_design(
     designed: MainWindow, editor: ArtworkEditor, photo: Path, tmp_path: Path, until: Until
 ) -> None:
-    controller = designed.controller
-    controller.save(tmp_path / "own.kiri")
-    until(lambda: (tmp_path / "own.kiri").exists() and controller.path is not None)
+    services = designed.services
+    services.project.save(tmp_path / "own.kiri")
+    until(lambda: (tmp_path / "own.kiri").exists() and services.session.path is not None)
     stored = store.load(tmp_path / "own.kiri").artwork
-    assert stored == controller.document.artwork
+    assert stored == services.session.document.artwork
     assert stored.first.picture.content == photo.read_bytes()
     shown = designed.stage.view.artwork
     designed.commands["next"].trigger()
     until(lambda: designed.stage.view.artwork is not shown)
     assert designed.stage.view.artwork.sheet.design is designed.stage.view.design
-    controller.new_project()
-    assert controller.document.artwork is None and designed.stage.view.artwork is None
-    controller.open_project(tmp_path / "own.kiri")
+    services.project.new()
+    assert services.session.document.artwork is None and designed.stage.view.artwork is None
+    services.project.open(tmp_path / "own.kiri")
     until(lambda: designed.stage.view.artwork is not None)
 
 
@@ -171,14 +171,14 @@ def test_that_artwork_is_exported_alone_and_with_everything(
 def test_that_a_print_of_many_pages_is_written_only_after_asking(
     designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
 ) -> None:
-    designed.controller.fabrication.change(width_mm=1200.0, paper="a4")
-    until(lambda: not designed.controller.queue.busy and designed.fabrication.export.isEnabled())
+    designed.services.fabrication.change(width_mm=1200.0, paper="a4")
+    until(lambda: not designed.session.queue.busy and designed.fabrication.export.isEnabled())
     files.answer = tmp_path / "print"
     editor.export.click()
     until(lambda: any(message.actions for message in designed.messages.messages))
     (message,) = [message for message in designed.messages.messages if message.actions]
     assert "pages of a4" in message.sentence and not (tmp_path / "print").exists()
-    designed.controller.fabrication.change(width_mm=240.0)
+    designed.services.fabrication.change(width_mm=240.0)
     editor.export.click()
     until(lambda: (tmp_path / "print" / "artwork_opened.png").exists())
     assert 2 < len(page_boxes((tmp_path / "print" / "artwork.pdf").read_bytes())) < 10
@@ -187,12 +187,12 @@ def test_that_a_print_of_many_pages_is_written_only_after_asking(
 def test_that_a_file_that_is_no_picture_is_refused_and_nothing_changes(
     designed: MainWindow, editor: ArtworkEditor, files: Answers, tmp_path: Path, until: Until
 ) -> None:
-    before = designed.controller.document
+    before = designed.session.document
     (tmp_path / "text.png").write_text("no picture")
     files.answer = tmp_path / "text.png"
     editor.choose.click()
     until(lambda: any("text.png is damaged" in message.sentence for message in designed.messages.messages))
-    assert designed.controller.document is before
+    assert designed.session.document is before
 
 
 def test_that_export_without_a_picture_offers_to_choose_one(designed: MainWindow) -> None:

@@ -132,7 +132,7 @@ def drop(window: MainWindow, path: Path) -> None:
 def test_that_each_bad_file_gets_one_clear_sentence_and_loses_nothing(
     designed: MainWindow, tmp_path: Path, until: Until
 ) -> None:
-    before, stage, place = designed.controller.document, designed.controller.stage, designed.controller.path
+    before, stage, place = designed.session.document, designed.session.stage, designed.session.path
     for name, make, word in INPUTS:
         path = tmp_path / "dropped" / name
         path.parent.mkdir(exist_ok=True)
@@ -140,15 +140,15 @@ def test_that_each_bad_file_gets_one_clear_sentence_and_loses_nothing(
         if name == "locked.json" and os.access(path, os.R_OK):
             continue  # whoever runs this may read every file
         drop(designed, path)
-        until(lambda: bool(designed.messages.messages) and not designed.controller.queue.busy)
+        until(lambda: bool(designed.messages.messages) and not designed.session.queue.busy)
         (message,) = designed.messages.messages
         assert message.tone is Tone.ERROR and word in message.sentence, f"{name}: {message.sentence}"
         judge(message.sentence.replace(str(path), name))
-        assert designed.controller.document is before and designed.controller.stage is stage, name
-        assert designed.controller.path == place and not designed.isWindowModified(), name
+        assert designed.session.document is before and designed.session.stage is stage, name
+        assert designed.session.path == place and not designed.isWindowModified(), name
         assert "nothing changed" in designed.status_text.text(), name
         designed.messages.close_message()
-    designed.controller.targeting.open("star")
+    designed.services.targeting.open("star")
     until(lambda: designed.target.view.outline is not None and designed.target.view.outline.name == "star")
     designed.commands["undo"].trigger()
     until(lambda: designed.fabrication.export.isEnabled())

@@ -55,7 +55,7 @@ def test_that_a_new_shape_lies_beside_the_others_and_the_target_is_all_of_them(p
     assert bounds(pair) == [(-20, -10, 20, 10), (10, 0, 40, 30)]
     assert placed(pair).polygon.area == pytest.approx(800 + 900 - 100, rel=1e-6)
     assert drawing(pair).selected == {1} and pair.target.view.tool is Tool.POSE
-    target = pair.controller.document.target
+    target = pair.session.document.target
     assert target is not None and target.size == pytest.approx((60, 40))
     pair.commands["undo"].trigger()
     assert bounds(pair) == [(-20, -10, 20, 10)] and placed(pair).size == pytest.approx((40, 20))
@@ -90,14 +90,14 @@ def test_that_a_click_selects_shift_adds_and_a_box_selects_what_lies_in_it(pair:
 
 
 def test_that_a_drag_moves_only_what_is_selected_as_one_step(pair: MainWindow, qtbot: QtBot) -> None:
-    steps = pair.controller.history.position
+    steps = pair.session.history.position
     drag(pair, (30, 20), (33, 24), CTRL)
     assert bounds(pair) == [(-20, -10, 20, 10), (13, 4, 43, 34)]
-    assert pair.controller.history.position == steps + 1 and pair.controller.history.undo_label == "Move object"
+    assert pair.session.history.position == steps + 1 and pair.session.history.undo_label == "Move object"
     qtbot.keyClick(pair.target.view, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
     qtbot.keyClick(pair.target.view, Qt.Key.Key_Left)
     assert bounds(pair) == [(-21, -10, 19, 10), (12, 4, 42, 34)]
-    assert pair.controller.history.undo_label == "Move objects" and drawing(pair).selected == {0, 1}
+    assert pair.session.history.undo_label == "Move objects" and drawing(pair).selected == {0, 1}
 
 
 def test_that_points_of_the_selected_object_are_edited_and_a_click_takes_another(pair: MainWindow) -> None:
@@ -112,13 +112,13 @@ def test_that_points_of_the_selected_object_are_edited_and_a_click_takes_another
 def test_that_ctrl_d_duplicates_and_delete_removes(pair: MainWindow, qtbot: QtBot) -> None:
     qtbot.keyClick(pair, Qt.Key.Key_D, Qt.KeyboardModifier.ControlModifier)
     assert bounds(pair)[2] == (15, -5, 45, 25) and drawing(pair).selected == {2}
-    assert pair.controller.history.undo_label == "Duplicate"
+    assert pair.session.history.undo_label == "Duplicate"
     qtbot.keyClick(pair.target.view, Qt.Key.Key_Delete)
-    assert len(bounds(pair)) == 2 and pair.controller.history.undo_label == "Delete object"
+    assert len(bounds(pair)) == 2 and pair.session.history.undo_label == "Delete object"
     for _ in range(2):
         qtbot.keyClick(pair.target.view, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
         qtbot.keyClick(pair.target.view, Qt.Key.Key_Delete)
-    assert pair.controller.document.target is None and not pair.controller.document.drawing
+    assert pair.session.document.target is None and not pair.session.document.drawing
     pair.commands["undo"].trigger()
     assert len(bounds(pair)) == 2
 
@@ -129,7 +129,7 @@ def test_that_selected_objects_are_combined_into_one(pair: MainWindow, command: 
     qtbot.keyClick(pair.target.view, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
     pair.commands[command].trigger()
     assert len(bounds(pair)) == 1 and placed(pair).polygon.area == pytest.approx(area, rel=1e-5)
-    assert pair.controller.document.drawing == ()
+    assert pair.session.document.drawing == ()
     pair.commands["undo"].trigger()
     assert len(bounds(pair)) == 2
 
@@ -189,11 +189,11 @@ def test_that_a_mirror_draws_both_sides_even_where_they_do_not_touch(plate: Main
 
 def test_that_a_project_keeps_the_objects(pair: MainWindow, tmp_path: Path) -> None:
     path = tmp_path / "pair.kiri"
-    store.save(pair.controller.document, path)
+    store.save(pair.session.document, path)
     opened = store.load(path)
-    assert opened.target == pair.controller.document.target and len(opened.drawing) == 2
-    pair.controller.session.history.restart(opened)
-    assert [each.place for each in opened.drawing] == [each.place for each in pair.controller.document.drawing]
+    assert opened.target == pair.session.document.target and len(opened.drawing) == 2
+    pair.session.history.restart(opened)
+    assert [each.place for each in opened.drawing] == [each.place for each in pair.session.document.drawing]
     use(pair, Tool.POSE)
     assert bounds(pair) == [(-20, -10, 20, 10), (10, 0, 40, 30)]
 

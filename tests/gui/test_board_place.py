@@ -26,7 +26,7 @@ Until = Callable[[Callable[[], bool]], None]
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, ready to be moved."""
     made = placed_figure(Figure.RECTANGLE, BoundingBox(-20, -10, 20, 10))
-    window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
+    window.presenters.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POSE)
     QApplication.processEvents()
     return window
@@ -52,11 +52,11 @@ def test_that_a_drag_inside_moves_the_target_by_the_grid_and_ctrl_frees_it(plate
 
 
 def test_that_a_press_inside_that_does_not_move_changes_nothing(plate: MainWindow) -> None:
-    before = plate.controller.document
+    before = plate.session.document
     for place in ((5.3, 5.1), (0.2, 0.3)):
         send(plate, QEvent.Type.MouseButtonPress, place, LEFT, PLAIN)
         send(plate, QEvent.Type.MouseButtonRelease, place, NONE, PLAIN)
-    assert plate.controller.document is before
+    assert plate.session.document is before
 
 
 def test_that_arrow_keys_nudge_in_mm(plate: MainWindow, qtbot: QtBot) -> None:
@@ -110,28 +110,28 @@ def lost(window: MainWindow) -> list[Message]:
 
 def test_that_designs_stay_with_a_moved_and_enlarged_target(designed: MainWindow, qtbot: QtBot) -> None:
     designed.target.set_tool(Tool.POSE)
-    count = len(designed.controller.document.candidates)
+    count = len(designed.session.document.candidates)
     qtbot.keyClick(designed.target.view, Qt.Key.Key_Up)
     assert undo_label(designed) == "Move target"
     designed.target.refine.width_.setValue(83.7)
     assert undo_label(designed) == "Resize target"
-    assert len(designed.controller.document.candidates) == count > 0 and not lost(designed)
+    assert len(designed.session.document.candidates) == count > 0 and not lost(designed)
 
 
 def test_that_lost_designs_are_told_and_brought_back_over_several_changes(designed: MainWindow, qtbot: QtBot) -> None:
-    before = designed.controller.document
+    before = designed.session.document
     designed.target.set_tool(Tool.POSE)
     pose = designed.target.tools.options.pose
     pose.turn.setValue(15.0)
-    assert not designed.controller.document.candidates and len(lost(designed)) == 1
+    assert not designed.session.document.candidates and len(lost(designed)) == 1
     pose.turn.setValue(5.0)
-    designed.controller.end_drag()
+    designed.session.history.end_drag()
     designed.target.refine.sliders["smooth"].setValue(50)
     assert len(lost(designed)) == 1
     label, act = lost(designed)[0].actions[0]
     assert label == "Restore"
     act()
-    assert designed.controller.document is before
+    assert designed.session.document is before
     assert not lost(designed)
     designed.commands["redo"].trigger()
     assert lost(designed)
@@ -142,17 +142,17 @@ def test_that_lost_designs_are_told_and_brought_back_over_several_changes(design
 def test_that_a_press_on_the_groove_only_shows_until_it_is_let_go(designed: MainWindow, qtbot: QtBot) -> None:
     designed.target.set_editing(True)
     QApplication.processEvents()
-    slider, before = designed.target.refine.sliders["simplify"], designed.controller.document
+    slider, before = designed.target.refine.sliders["simplify"], designed.session.document
     spot = QPoint(round(0.7 * slider.width()), slider.height() // 2)
     qtbot.mousePress(slider, LEFT, pos=spot)
     assert slider.value() == pytest.approx(70, abs=8)
-    assert designed.controller.document is before
+    assert designed.session.document is before
     there = QPoint(round(0.5 * slider.width()), slider.height() // 2)
     qtbot.mouseMove(slider, there)
     qtbot.mouseRelease(slider, LEFT, pos=there)
     assert undo_label(designed) == "Simplify target" and len(lost(designed)) == 1
     designed.commands["undo"].trigger()
-    assert designed.controller.document is before
+    assert designed.session.document is before
 
 
 # the drawn size ---------------------------------------------------------------------------------------------
@@ -168,43 +168,43 @@ def test_that_the_sheet_follows_the_drawn_size_and_comes_back_to_it_in_one_step(
     designed.target.refine.width_.setValue(140.0)
     designed.target.set_editing(False)
     assert row.isVisible() and row.width_.value() == 140.0 and not row.drawn.isVisible()
-    followed = designed.controller.document.fabrication.width_mm
+    followed = designed.session.document.fabrication.width_mm
     designed.fabrication.lengths["width_mm"].setValue(60.0)
     assert row.drawn.isVisible() and row.width_.value() == pytest.approx(140.0 * 60.0 / followed, abs=0.05)
-    entry = designed.controller.stage
+    entry = designed.session.stage
     assert entry is not None
     qtbot.mouseClick(row.drawn, LEFT)
     assert undo_label(designed) == "Cut at the drawn size" and row.width_.value() == 140.0
-    width = designed.controller.document.fabrication.width_mm
-    design, target = entry.design, designed.controller.document.target
+    width = designed.session.document.fabrication.width_mm
+    design, target = entry.design, designed.session.document.target
     assert target is not None and not row.drawn.isVisible() and width == pytest.approx(followed)
     # The opened sheet in mm, turned as the target lies, has the target's scale.
     sheet = design.deployment.nodes(design.phi_target) * (width / np.ptp(design.deployment.compact[:, 0]))
     posed = design.pose.apply(design.deployment.nodes(design.phi_target)) * (140.0 / np.ptp(target.points[:, 0]))
     assert math.dist(sheet[0], sheet[-1]) == pytest.approx(math.dist(posed[0], posed[-1]), rel=1e-9)
     designed.commands["undo"].trigger()
-    assert designed.controller.document.fabrication.width_mm == 60.0 and row.drawn.isVisible()
+    assert designed.session.document.fabrication.width_mm == 60.0 and row.drawn.isVisible()
 
 
 def test_that_the_opened_size_is_typed_on_either_side_and_kept_by_every_design(
     designed: MainWindow, until: Callable[[Callable[[], bool]], None]
 ) -> None:
-    row, controller = designed.target.opened, designed.controller
+    row, services = designed.target.opened, designed.services
     row.height_.setValue(80.0)
-    longer = controller.document.fabrication.opened_mm
+    longer = services.session.document.fabrication.opened_mm
     assert longer is not None and row.height_.value() == 80.0 and row.width_.value() == pytest.approx(longer, abs=0.06)
     widths = []
-    for candidate in controller.document.candidates:
-        controller.choose(candidate)
+    for candidate in services.session.document.candidates:
+        services.chosen.choose(candidate)
         assert (row.width_.value(), row.height_.value()) == (pytest.approx(longer, abs=0.06), 80.0)
-        widths.append(controller.document.fabrication.width_mm)
+        widths.append(services.session.document.fabrication.width_mm)
         assert designed.fabrication.lengths["width_mm"].value() == pytest.approx(widths[-1], abs=0.06)
     assert len(set(widths)) == len(widths)  # each sheet opens by another factor
-    until(lambda: not controller.queue.busy)
-    known = dict(controller.estimates.known)
-    controller.choose(controller.document.candidates[0])
-    until(lambda: not controller.queue.busy)
-    assert controller.estimates.known == known  # the designs are cut as before
+    until(lambda: not services.session.queue.busy)
+    known = dict(services.estimates.known)
+    services.chosen.choose(services.session.document.candidates[0])
+    until(lambda: not services.session.queue.busy)
+    assert services.estimates.known == known  # the designs are cut as before
 
 
 # letters ----------------------------------------------------------------------------------------------------

@@ -69,14 +69,14 @@ def corners(window: MainWindow) -> set[Place]:
 
 
 def undo_label(window: MainWindow) -> str | None:
-    return window.controller.history.undo_label
+    return window.session.history.undo_label
 
 
 @pytest.fixture
 def plate(window: MainWindow) -> MainWindow:
     """A rectangle of 40 x 20 mm around the origin, its points ready to be moved."""
     made = placed_figure(Figure.RECTANGLE, BoundingBox(-20, -10, 20, 10))
-    window.connections.target.reshaping.take(Change("Draw rectangle", lambda: made))
+    window.presenters.target.reshaping.take(Change("Draw rectangle", lambda: made))
     window.target.set_tool(Tool.POINTS)
     QApplication.processEvents()
     return window
@@ -107,20 +107,20 @@ def test_that_shift_clicks_select_more_and_a_drag_moves_them_all_in_one_step(pla
 
 
 def test_that_a_dragged_field_selects_and_a_click_on_the_ground_selects_nothing(plate: MainWindow) -> None:
-    tool, before = tool_of(plate), plate.controller.document
+    tool, before = tool_of(plate), plate.session.document
     drag(plate, (-24, -14), (-10, 14))
     assert len(tool.selected) == 2
     drag(plate, (10, 4), (24, 14), SHIFT)
     assert len(tool.selected) == 3
     click(plate, (0, 0))
-    assert not tool.selected and plate.controller.document is before
+    assert not tool.selected and plate.session.document is before
 
 
 def test_that_a_click_on_a_point_beside_the_grid_does_not_move_it(plate: MainWindow) -> None:
     drag(plate, (20, 10), (23.3, 12.7), CTRL)
-    moved = plate.controller.document
+    moved = plate.session.document
     click(plate, (23.3, 12.7))
-    assert plate.controller.document is moved and len(tool_of(plate).selected) == 1
+    assert plate.session.document is moved and len(tool_of(plate).selected) == 1
 
 
 def test_that_all_points_are_selected_nudged_and_kept_from_being_deleted(plate: MainWindow, qtbot: QtBot) -> None:
@@ -144,7 +144,7 @@ def test_that_all_points_are_selected_nudged_and_kept_from_being_deleted(plate: 
 
 def test_that_selected_points_are_deleted_in_one_step(plate: MainWindow, qtbot: QtBot) -> None:
     made = placed_figure(Figure.REGULAR, BoundingBox(-20, -20, 20, 20), 8)
-    plate.connections.target.reshaping.take(Change("Draw octagon", lambda: made))
+    plate.presenters.target.reshaping.take(Change("Draw octagon", lambda: made))
     tool = tool_of(plate)
     tool.select({1, 4, 6})
     qtbot.keyClick(plate.target.view, Qt.Key.Key_Delete)
@@ -205,12 +205,12 @@ def test_that_points_are_the_same_after_undo_other_tools_and_the_project_file(
     qtbot.keyClick(plate.target.view, Qt.Key.Key_Up, SHIFT)
     plate.target.set_editing(False)
     path = tmp_path / "plate.kiri"
-    plate.controller.save(path)
-    until(lambda: plate.controller.path == path)
-    plate.controller.new_project()
-    assert plate.controller.document.target is None
-    plate.controller.open_project(path)
-    until(lambda: plate.controller.document.target is not None)
+    plate.services.project.save(path)
+    until(lambda: plate.session.path == path)
+    plate.services.project.new()
+    assert plate.session.document.target is None
+    plate.services.project.open(path)
+    until(lambda: plate.session.document.target is not None)
     plate.target.set_tool(Tool.POINTS)
     anchors = tool_of(plate).anchors
     assert anchors is not None and len(anchors.places) == 4
@@ -237,7 +237,7 @@ def test_that_with_a_mirror_the_image_of_a_point_goes_the_mirrored_way(plate: Ma
 
 def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: MainWindow, qtbot: QtBot) -> None:
     made = placed_figure(Figure.ELLIPSE, BoundingBox(-20, -10, 20, 10))
-    plate.connections.target.reshaping.take(Change("Draw ellipse", lambda: made))
+    plate.presenters.target.reshaping.take(Change("Draw ellipse", lambda: made))
     plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     tool = tool_of(plate)
     drag(plate, (0, 10), (8, 20))
@@ -253,7 +253,7 @@ def test_that_a_point_on_the_axis_stays_on_it_and_handles_are_mirrored(plate: Ma
 
 @pytest.mark.parametrize("tool", [Tool.RECTANGLE, Tool.FREEHAND, Tool.POLYGON])
 def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindow, tool: Tool, qtbot: QtBot) -> None:
-    plate.controller.targeting.clear()
+    plate.services.targeting.clear()
     plate.target.set_tool(tool)
     plate.target.tools.axis.set_axis(Axis.UPRIGHT)
     if tool is Tool.RECTANGLE:
@@ -277,7 +277,7 @@ def test_that_drawn_shapes_and_strokes_are_mirrored_in_one_step(plate: MainWindo
     mirrored = Placed.from_ring(shape.ring * (-1, 1), "").polygon
     assert shape.polygon.symmetric_difference(mirrored).area < 1e-5 * shape.polygon.area
     plate.commands["undo"].trigger()
-    assert plate.controller.document.target is None
+    assert plate.session.document.target is None
 
 
 def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate: MainWindow, until: Until) -> None:
@@ -286,10 +286,10 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
     drag(plate, (0, 0), (25, 10), CTRL)
     plate.target.tools.axis.set_axis(Axis.BOTH)
     assert context.mirror.at == pytest.approx((25, 10))
-    plate.controller.targeting.open("heart")
+    plate.services.targeting.open("heart")
     until(lambda: bool(asked(plate)))
     answer(plate, "Replace")
-    assert plate.controller.document.target is not None and plate.controller.document.target.name == "heart"
+    assert plate.session.document.target is not None and plate.session.document.target.name == "heart"
     ring = placed(plate).ring
     assert context.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
 
@@ -297,7 +297,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
 def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_stays_at_other_thresholds(
     plate: MainWindow, until: Until, photo: Path
 ) -> None:
-    context, targeting = plate.target.view.context, plate.controller.targeting
+    context, targeting = plate.target.view.context, plate.services.targeting
     plate.target.set_tool(Tool.POSE)
     drag(plate, (0, 0), (25, 10), CTRL)
     plate.target.tools.axis.set_axis(Axis.BOTH)
@@ -308,7 +308,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_sta
     ring = placed(plate).ring
     middle = tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0)))
     assert context.mirror.at == pytest.approx(middle)
-    before = plate.controller.document.target
+    before = plate.session.document.target
     targeting.change_threshold(0.3)
-    until(lambda: plate.controller.document.target is not before)
+    until(lambda: plate.session.document.target is not before)
     assert context.mirror.at == pytest.approx(middle)

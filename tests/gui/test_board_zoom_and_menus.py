@@ -36,13 +36,13 @@ def test_that_escape_cancels_a_gesture_then_the_selection_then_the_tool(plate: M
     view = plate.target.view
     use(plate, Tool.POINTS)
     qtbot.keyClick(view, Qt.Key.Key_BracketRight)
-    before = plate.controller.document
+    before = plate.session.document
     x, y = pixel(plate, (20, 10))
     send(view, QEvent.Type.MouseButtonPress, x, y, LEFT, PLAIN)
     send(view, QEvent.Type.MouseMove, x + 40, y + 10, LEFT, PLAIN)
     qtbot.keyClick(view, Qt.Key.Key_Escape)
     send(view, QEvent.Type.MouseButtonRelease, x + 40, y + 10, LEFT, PLAIN)
-    assert plate.controller.document is before and view.tool is Tool.POINTS
+    assert plate.session.document is before and view.tool is Tool.POINTS
     qtbot.keyClick(view, Qt.Key.Key_Escape)
     assert view.tool is Tool.POINTS and not view.active.deselect()
     qtbot.keyClick(view, Qt.Key.Key_Escape)
@@ -65,7 +65,7 @@ def test_that_the_space_bar_pans_the_board_in_every_tool_and_plays_elsewhere(pla
     qtbot.keyRelease(view, Qt.Key.Key_Space)
     moved = np.array(transform(plate).origin) - before.origin
     np.testing.assert_allclose(moved, (10 * before.scale, -10 * before.scale), atol=1.0)
-    assert plate.controller.history.position == 1 and view.tool is Tool.STAR
+    assert plate.session.history.position == 1 and view.tool is Tool.STAR
 
 
 def test_that_show_everything_shows_the_whole_drawing_however_far_it_was_moved(plate: MainWindow, qtbot: QtBot) -> None:

@@ -30,13 +30,13 @@ def sheet(qtbot: QtBot, tmp_path: Path) -> Iterator[StateSheet]:
 def test_that_the_collections_states_are_pictured_and_taken_back(sheet: StateSheet) -> None:
     window = sheet.window
     for change in ({"grid": (6, 6)}, {"k": 5}, {"polish": 0}):
-        window.controller.change_settings(**change)  # type: ignore[arg-type]
+        window.services.settings.change(**change)  # type: ignore[arg-type]
     sheet.choose_heart()
     click(window.run.generate)
-    sheet.until(lambda: not window.controller.running and window.fabrication.export.isEnabled(), "no designs")
-    before = window.controller.document
+    sheet.until(lambda: not window.services.run.running and window.fabrication.export.isEnabled(), "no designs")
+    before = window.session.document
     sheet.collection()
-    assert window.controller.document.candidates == before.candidates
-    assert set(window.controller.document.marks) == {Mark.NONE} and not window.stage.comparing
+    assert window.session.document.candidates == before.candidates
+    assert set(window.session.document.marks) == {Mark.NONE} and not window.stage.comparing
     names = {path.stem for path in sheet.files}
     assert {"gallery-sorted", "gallery-nothing", "gallery-alike", "gallery-more", "compare", "card-menu"} <= names

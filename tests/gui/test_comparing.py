@@ -45,14 +45,14 @@ def test_that_ctrl_click_compares_a_card_with_the_chosen_design(
     designed: MainWindow, designs: Document, qtbot: QtBot
 ) -> None:
     compare(designed, qtbot, 2)
-    assert designed.stage.comparing and designed.controller.document.chosen == 0
+    assert designed.stage.comparing and designed.session.document.chosen == 0
     assert pair(designed) == (designs.candidates[0], designs.candidates[2])
-    page, before = designed.stage.compare, designed.controller.history.undo_label
+    page, before = designed.stage.compare, designed.session.history.undo_label
     QApplication.processEvents()
     titles = [pane.title.drawn_text() for pane in page.shown]
     assert titles[0].endswith("A1, chosen") and titles[1] == "2   Design A3"
     assert designed.gallery.bar.compare.isChecked() and designed.commands["compare"].isChecked()
-    assert before is None and not designed.controller.history.unsaved
+    assert before is None and not designed.session.history.unsaved
 
 
 def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
@@ -61,7 +61,7 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
     compare(designed, qtbot, 1)
     one, other = pair(designed)
     page = designed.stage.compare
-    width = designed.controller.document.fabrication.width_mm
+    width = designed.session.document.fabrication.width_mm
     sizes = [width * least_panel_share(deploy(each.sheet.field)) for each in (one, other)]
     for pane, mine, size in zip(page.shown, (one, other), sizes, strict=True):
         values = {name: label.text() for name, label in pane.figures.values.items()}
@@ -77,36 +77,38 @@ def test_that_the_numbers_below_are_those_of_the_designs_and_their_differences(
     assert second["panels"].text() == f"{100 * (other.score.evenness.area_cv - one.score.evenness.area_cv):+.0f}"
     assert second["smallest"].text() == f"{sizes[1] - sizes[0]:+.2f}"
     assert second["roughness"].text() == f"{other.score.tv - one.score.tv:+.2f}"
-    designed.controller.fabrication.change(width_mm=2 * width)
+    designed.services.fabrication.change(width_mm=2 * width)
     assert page.shown[0].figures.values["smallest"].text() == f"{2 * sizes[0]:.1f} mm"
 
 
 def test_that_strain_jam_and_cut_time_stand_below_and_follow_the_material(
     designed: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    controller, page = designed.controller, designed.stage.compare
+    services, page = designed.services, designed.stage.compare
     compare(designed, qtbot, 1)
 
     def known() -> bool:
         rows = [pane.figures.values[name].text() for pane in page.shown for name in ("as_cut", "strain", "time")]
-        return "\N{EN DASH}" not in rows and not controller.queue.busy
+        return "\N{EN DASH}" not in rows and not services.session.queue.busy
 
     until(known)
     found, estimated = page.designs[0].as_cut, page.designs[1].as_cut
-    simulated = controller.as_cut.state.sheet
+    simulated = services.as_cut.state.sheet
     assert simulated is not None and found == simulated.as_cut
-    assert estimated == controller.estimates.known[page.designs[1].entry.candidate]
+    assert estimated == services.estimates.known[page.designs[1].entry.candidate]
     rows = [pane.figures.values["strain"].text() for pane in page.shown]
     assert rows[0] == f"{100 * found.strain:.0f} %" and rows[1] == f"\N{ALMOST EQUAL TO} {100 * estimated.strain:.0f} %"
     assert page.shown[1].figures.gaps["strain"].text() == "", "a simulation and an estimate are not subtracted"
     for design in page.designs:
-        made = planned(CutRequest.of(edits.choose(controller.document, place(controller.document, design)).document))
+        made = planned(
+            CutRequest.of(edits.choose(services.session.document, place(services.session.document, design)).document)
+        )
         assert design.seconds == pytest.approx(made.plan.times.total)
     seconds = [design.seconds or 0.0 for design in page.designs]
     gap = seconds[1] - seconds[0]
     assert page.shown[1].figures.gaps["time"].text() in (f"{gap:+.0f}", "=")
     before = [design.seconds for design in page.designs]
-    controller.fabrication.change(material="card-co2")
+    services.fabrication.change(material="card-co2")
     assert {pane.figures.values["time"].text() for pane in page.shown} == {"\N{EN DASH}"}
     until(known)
     assert [design.seconds for design in page.designs] != before
@@ -179,12 +181,12 @@ def test_that_swapping_chooses_the_other_design_and_undo_swaps_back(
     one, other, third = designs.candidates
     compare(designed, qtbot, 1)
     qtbot.mouseClick(designed.stage.compare.swap, LEFT)
-    assert pair(designed) == (other, one) and designed.controller.document.chosen == 1
+    assert pair(designed) == (other, one) and designed.session.document.chosen == 1
     qtbot.keyClick(designed, Qt.Key.Key_K, Qt.KeyboardModifier.ShiftModifier)
     assert pair(designed) == (one, other)
     designed.commands["undo"].trigger()
     assert pair(designed) == (other, one)
-    designed.controller.choose(third)
+    designed.services.chosen.choose(third)
     assert pair(designed) == (third, one)
 
 
@@ -210,7 +212,7 @@ def test_that_overlays_belong_to_both(designed: MainWindow, qtbot: QtBot) -> Non
 
 def test_that_the_comparison_ends_with_its_design(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
     compare(designed, qtbot, 1)
-    designed.controller.new_project()
+    designed.services.project.new()
     until(lambda: not designed.stage.comparing)
     qtbot.keyClick(designed, Qt.Key.Key_K)
     assert not designed.stage.comparing and not designed.commands["compare"].isChecked()
@@ -248,8 +250,8 @@ def test_that_sizes_are_those_of_the_sheet_that_each_design_is_cut_from(
     designed: MainWindow, designs: Document, qtbot: QtBot, until: Until
 ) -> None:
     """Before, both drawings had lengths of a sheet 100 mm wide, and "Smallest" was that of the chosen one."""
-    designed.controller.fabrication.set_opened_size(230.0)
-    document = designed.controller.document
+    designed.services.fabrication.set_opened_size(230.0)
+    document = designed.session.document
     widths = [cut_for(document, candidate).width_mm for candidate in document.candidates]
     assert len({round(width, 3) for width in widths}) == 3 and 100.0 not in widths
     compare(designed, qtbot, 2)
@@ -267,8 +269,8 @@ def test_that_sizes_are_those_of_the_sheet_that_each_design_is_cut_from(
 @pytest.fixture
 def marked(designed: MainWindow) -> MainWindow:
     """All three designs marked in the table and compared."""
-    designed.connections.all_designs.show(True)
-    table = designed.connections.all_designs.page
+    designed.presenters.all_designs.show(True)
+    table = designed.presenters.all_designs.page
     assert table is not None
     table.filters.grouped.setChecked(False)
     qtbot_key(table.table, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
@@ -286,7 +288,7 @@ def test_that_three_designs_take_the_place_of_the_other_columns_at_one_angle(
     marked: MainWindow, designs: Document
 ) -> None:
     page = marked.stage.compare
-    assert marked.stage.comparing and page.hasFocus() and not marked.connections.all_designs.shown
+    assert marked.stage.comparing and page.hasFocus() and not marked.presenters.all_designs.shown
     assert not marked.gallery.isVisible() and not marked.target.isVisible()
     assert tuple(one.entry.candidate for one in page.designs) == designs.candidates
     assert all(pane.isVisible() for pane in page.shown) and not page.swap.isVisible()
@@ -304,44 +306,44 @@ def test_that_three_designs_take_the_place_of_the_other_columns_at_one_angle(
 
 def test_that_a_number_uses_a_design_and_shows_it_alone(marked: MainWindow) -> None:
     qtbot_key(marked.stage.compare, Qt.Key.Key_3)
-    assert marked.controller.document.chosen == 2 and not marked.stage.comparing
-    assert marked.gallery.isVisible() and marked.target.isVisible() and not marked.connections.all_designs.shown
+    assert marked.session.document.chosen == 2 and not marked.stage.comparing
+    assert marked.gallery.isVisible() and marked.target.isVisible() and not marked.presenters.all_designs.shown
     qtbot_key(marked, Qt.Key.Key_K)
-    assert pair(marked)[0] == marked.controller.document.candidates[2], "the next comparison is one with the chosen"
+    assert pair(marked)[0] == marked.session.document.candidates[2], "the next comparison is one with the chosen"
 
 
 def test_that_a_button_uses_a_design(marked: MainWindow, qtbot: QtBot) -> None:
     qtbot.mouseClick(marked.stage.compare.shown[1].use, LEFT)
-    assert marked.controller.document.chosen == 1 and not marked.stage.comparing
+    assert marked.session.document.chosen == 1 and not marked.stage.comparing
 
 
 @pytest.mark.parametrize("key", [Qt.Key.Key_Escape, Qt.Key.Key_K])
 def test_that_leaving_leads_back_to_the_table(marked: MainWindow, key: Qt.Key) -> None:
     qtbot_key(marked.stage.compare, key)
-    table = marked.connections.all_designs
+    table = marked.presenters.all_designs
     assert table.shown and table.page is not None and table.page.table.hasFocus() and not marked.stage.comparing
     qtbot_key(table.page.table, Qt.Key.Key_Escape)
     assert marked.gallery.isVisible() and marked.target.isVisible() and marked.columns.isVisible()
 
 
 def test_that_the_columns_come_back_as_they_were(designed: MainWindow, designs: Document) -> None:
-    designed.columns.setSizes([300, 700, 400])
-    designed._keep_columns()  # as the user has left them
-    before = designed.columns.sizes()
-    designed.connections.comparison.compare(designs.candidates)
+    designed.columns.splitter.setSizes([300, 700, 400])
+    designed.columns._keep_sizes()  # as the user has left them
+    before = designed.columns.splitter.sizes()
+    designed.presenters.comparison.compare(designs.candidates)
     QApplication.processEvents()
-    assert designed.columns.sizes()[0] == designed.columns.sizes()[2] == 0
+    assert designed.columns.splitter.sizes()[0] == designed.columns.splitter.sizes()[2] == 0
     designed.target.set_editing(True)
     assert designed.target.isVisible() and not designed.stage.comparing
     designed.target.set_editing(False)
     QApplication.processEvents()
-    assert designed.columns.sizes() == before
+    assert designed.columns.splitter.sizes() == before
 
 
 def test_that_three_designs_lose_one_that_is_gone(marked: MainWindow, designs: Document) -> None:
-    document = marked.controller.document
+    document = marked.session.document
     fewer = replace(document, candidates=document.candidates[:2], marks=(), labels=document.labels[:2])
-    marked.controller.session.apply(Edit("Lose one", fewer))
+    marked.session.apply(Edit("Lose one", fewer))
     assert pair(marked) == designs.candidates[:2] and marked.gallery.isVisible()
 
 
@@ -349,7 +351,7 @@ def test_that_three_designs_lose_one_that_is_gone(marked: MainWindow, designs: D
 def test_that_nine_designs_are_in_rows_that_are_scrolled(
     marked: MainWindow, width: int, designs: Document, until: Until
 ) -> None:
-    until(lambda: not marked.controller.queue.busy)
+    until(lambda: not marked.session.queue.busy)
     marked.resize(width, 640)
     page, known = marked.stage.compare, marked.stage.compare.designs
     page.show_designs(known * 4, designs.target)

@@ -50,7 +50,7 @@ def lonely(page: CutsPage, count: int) -> list[int]:
 
 
 def fabrication(window: MainWindow) -> FabricationSettings:
-    return window.controller.document.fabrication
+    return window.session.document.fabrication
 
 
 def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: QtBot) -> None:
@@ -107,9 +107,9 @@ def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
     assert page._plan is not None
     assert page._plan.hinges.finished_mm[[3, 7]] == pytest.approx(0.3, abs=2e-3)
     assert page.view.selected == {3, 7}
-    assert cutting.controller.history.undo_label == "Set 2 connectors to 0.3 mm"
+    assert cutting.session.history.undo_label == "Set 2 connectors to 0.3 mm"
     cutting.commands["undo"].trigger()
-    assert fabrication(cutting).options.hinge_mm == () and cutting.controller.history.undo_label is None
+    assert fabrication(cutting).options.hinge_mm == () and cutting.session.history.undo_label is None
 
 
 def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None:
@@ -124,14 +124,14 @@ def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None
 
 def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting: MainWindow, qtbot: QtBot) -> None:
     page = cutting.stage.cuts
-    cutting.controller.fabrication.set_hinge_width(frozenset({4, 9}), 0.5)
+    cutting.services.fabrication.set_hinge_width(frozenset({4, 9}), 0.5)
     page.view.setFocus()
     page.view.gestures.select(frozenset({4}))
     qtbot.keyClick(page.view, Qt.Key.Key_Delete)
     options = fabrication(cutting).options
     assert options.removed == (4,) and options.hinge_mm == ((9, 0.5),)
-    assert cutting.controller.history.undo_label == "Cut through connector 4"
-    cutting.controller.fabrication.reset_hinges(frozenset({4, 9}))
+    assert cutting.session.history.undo_label == "Cut through connector 4"
+    cutting.services.fabrication.reset_hinges(frozenset({4, 9}))
     assert fabrication(cutting).options.removed == () and fabrication(cutting).options.hinge_mm == ()
     cutting.commands["undo"].trigger()
     assert fabrication(cutting).options.removed == (4,)
@@ -140,7 +140,7 @@ def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting:
 def test_that_delete_without_a_selection_changes_nothing(cutting: MainWindow, qtbot: QtBot) -> None:
     cutting.stage.cuts.view.setFocus()
     qtbot.keyClick(cutting.stage.cuts.view, Qt.Key.Key_Delete)
-    assert cutting.controller.history.undo_label is None
+    assert cutting.session.history.undo_label is None
 
 
 def test_that_zero_still_fits_while_nothing_is_selected(cutting: MainWindow, qtbot: QtBot) -> None:

@@ -56,12 +56,12 @@ def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> 
 )
 def test_that_each_choice_is_one_undo_step(options: MainWindow, name: str, value: object) -> None:
     box = getattr(options.fabrication.options, name)
-    before = options.controller.document.fabrication
+    before = options.session.document.fabrication
     pick(box, value)
-    after = options.controller.document.fabrication
+    after = options.session.document.fabrication
     assert value in (after.options.style, after.options.order, after.profile, after.dxf_version)
     options.commands["undo"].trigger()
-    assert options.controller.document.fabrication == before and box.currentData() != value
+    assert options.session.document.fabrication == before and box.currentData() != value
 
 
 def test_that_dragging_the_tabs_is_one_undo_step(options: MainWindow) -> None:
@@ -69,7 +69,7 @@ def test_that_dragging_the_tabs_is_one_undo_step(options: MainWindow) -> None:
     assert not panel.tab_mm.isEnabled()
     for count in (1, 2, 4):
         panel.tabs.setValue(count)
-    assert options.controller.document.fabrication.options.tabs == 4 and panel.tab_mm.isEnabled()
+    assert options.session.document.fabrication.options.tabs == 4 and panel.tab_mm.isEnabled()
     options.commands["undo"].trigger()
     assert panel.tabs.value() == 0
 
@@ -78,8 +78,8 @@ def test_that_the_choices_are_saved_with_the_project(options: MainWindow, until:
     pick(options.fabrication.options.style_, ConnectorStyle.ROUND)
     pick(options.fabrication.options.profile, "lightburn")
     options.fabrication.options.tabs.setValue(3)
-    options.controller.save(tmp_path / "options.kiri")
-    until(lambda: not options.controller.history.unsaved)
+    options.services.project.save(tmp_path / "options.kiri")
+    until(lambda: not options.session.history.unsaved)
     kept = store.load(tmp_path / "options.kiri").fabrication
     assert kept.options == CutOptions(style=ConnectorStyle.ROUND, tabs=3) and kept.profile == "lightburn"
 
@@ -126,7 +126,7 @@ def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(optio
 def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     options: MainWindow, until: Until, files: object, tmp_path: Path, qtbot: QtBot
 ) -> None:
-    panel, controller = options.fabrication.options, options.controller
+    panel, services = options.fabrication.options, options.services
     assert panel.copies.value() == 1 and not panel.copy_gap.isEnabled()
     until(lambda: options.fabrication.numbers["pieces"].text() == "1")
     cuts = int(options.fabrication.numbers["slits"].text())
@@ -138,15 +138,15 @@ def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     assert panel.copy_gap.isEnabled()
     bounds = options.stage.cuts.view.scene_bounds()
     assert bounds is not None and bounds.right > 200.0 and bounds.top > 160.0
-    with qtbot.waitSignal(controller.cutting.exported, timeout=30_000) as written:
-        controller.export(tmp_path / "three.dxf")
+    with qtbot.waitSignal(services.exporter.exported, timeout=30_000) as written:
+        services.exporter.export(tmp_path / "three.dxf")
     (verification,) = written.args[0].verifications
     assert verification.ok and verification.pieces == 3
-    with qtbot.waitSignal(controller.saved, timeout=30_000):
-        controller.save(tmp_path / "three.kiri")
+    with qtbot.waitSignal(services.project.saved, timeout=30_000):
+        services.project.save(tmp_path / "three.kiri")
     assert store.load(tmp_path / "three.kiri").fabrication.options.copies == 3
     options.commands["undo"].trigger()
-    assert controller.document.fabrication.options.copies == 1
+    assert services.session.document.fabrication.options.copies == 1
     until(lambda: options.fabrication.numbers["pieces"].text() == "1")
     assert panel.rows.text() == ""
 
@@ -154,8 +154,8 @@ def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
 def test_that_as_many_copies_as_fit_follow_the_bed_and_the_sheet_is_not_closed_again(
     options: MainWindow, until: Until
 ) -> None:
-    until(lambda: options.controller.as_cut.state.sheet is not None)
-    before = options.controller.as_cut.state.sheet
+    until(lambda: options.services.as_cut.state.sheet is not None)
+    before = options.services.as_cut.state.sheet
     panel = options.fabrication.options
     panel.copies.setValue(0)
     assert panel.copies.text() == "Fit bed"
@@ -168,5 +168,5 @@ def test_that_as_many_copies_as_fit_follow_the_bed_and_the_sheet_is_not_closed_a
     panel.copies.setValue(200)
     until(lambda: "copies" in options.fabrication.warnings.toolTip())
     assert "Of 200 copies" in options.fabrication.warnings.toolTip()
-    until(lambda: not options.controller.as_cut.state.busy)
-    assert options.controller.as_cut.state.sheet is before
+    until(lambda: not options.services.as_cut.state.busy)
+    assert options.services.as_cut.state.sheet is before

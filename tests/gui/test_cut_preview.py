@@ -145,7 +145,7 @@ def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
 ) -> None:
     page = cutting.stage.cuts
     assert not page.problems.isVisible()
-    cutting.controller.fabrication.change(connector_mm=0.03)
+    cutting.services.fabrication.change(connector_mm=0.03)
     until(lambda: page.problems.isVisible())
     assert page.problems.item(0).text().startswith("Warning: ")
     before = page.view.transform()

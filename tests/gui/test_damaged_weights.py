@@ -94,35 +94,35 @@ def test_that_the_window_tells_of_damaged_weights_and_runs_with_another_variant(
 ) -> None:
     damage(models, "truncated")
     monkeypatch.setattr("kirigami_studio.generator.weights.model_folder", lambda: models)
-    controller = window.controller
-    controller.start_with("square")
-    until(lambda: controller.document.target is not None)
-    controller.change_settings(variant="paper", k=2, grid=(4, 4), steps=2, polish=1)
-    controller.generation.generate()
-    until(lambda: not controller.running and not controller.queue.busy)
+    services = window.services
+    services.targeting.start_with("square")
+    until(lambda: services.session.document.target is not None)
+    services.settings.change(variant="paper", k=2, grid=(4, 4), steps=2, polish=1)
+    services.generation.generate()
+    until(lambda: not services.run.running and not services.session.queue.busy)
     messages = [message for message in window.messages.messages if message.tone is Tone.ERROR]
     assert len(messages) == 1 and "damaged" in messages[0].sentence
-    assert controller.document.candidates == ()
-    controller.change_settings(variant="paper-accuracy")
-    controller.generation.generate()
-    until(lambda: not controller.running and not controller.queue.busy)
-    assert controller.document.candidates
+    assert services.session.document.candidates == ()
+    services.settings.change(variant="paper-accuracy")
+    services.generation.generate()
+    until(lambda: not services.run.running and not services.session.queue.busy)
+    assert services.session.document.candidates
 
 
 def test_that_a_run_goes_on_when_a_worker_process_is_killed(window: MainWindow, until: Until) -> None:
-    controller = window.controller
-    controller.start_with("heart")
-    until(lambda: controller.document.target is not None)
-    controller.change_settings(k=24, grid=(8, 8))
-    controller.generation.generate()
-    until(lambda: workers_of(os.getpid()) != [] or not controller.running)
+    services = window.services
+    services.targeting.start_with("heart")
+    until(lambda: services.session.document.target is not None)
+    services.settings.change(k=24, grid=(8, 8))
+    services.generation.generate()
+    until(lambda: workers_of(os.getpid()) != [] or not services.run.running)
     workers = workers_of(os.getpid())
     assert workers != []
     for pid in workers:
         os.kill(pid, signal.SIGKILL)
-    until(lambda: not controller.running and not controller.queue.busy)
-    assert len(controller.document.candidates) == 24
-    before = controller.document.candidates
-    controller.generation.again()
-    until(lambda: not controller.running and not controller.queue.busy)
-    assert len(controller.document.candidates) > len(before)
+    until(lambda: not services.run.running and not services.session.queue.busy)
+    assert len(services.session.document.candidates) == 24
+    before = services.session.document.candidates
+    services.generation.again()
+    until(lambda: not services.run.running and not services.session.queue.busy)
+    assert len(services.session.document.candidates) > len(before)

@@ -15,11 +15,14 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.pose_tool import TURN, PoseTool
-from kirigami_studio.gui.target.target_view import DRAWING, Tool
+from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.combining import Combine
 from kirigami_studio.outlines.placed import Placed
+
+#: Tools that draw a figure in one drag.
+FIGURES = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE, Tool.FREEHAND, Tool.POLYGON}
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
@@ -155,7 +158,7 @@ def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -
     assert board.focusWidget() is field and field.selectedText() == field.text()
     qtbot.keyClicks(field, "AB")
     drag(board, (-40, -20), (40, 20))
-    target = board.controller.document.target
+    target = board.session.document.target
     assert target is not None and target.name == "AB"
 
 
@@ -187,25 +190,25 @@ def test_that_generating_leaves_the_editor(plate: MainWindow, until: Until) -> N
     plate.commands["generate"].trigger()
     assert not plate.target.editing and plate.stage.isVisible()
     plate.commands["cancel"].trigger()
-    until(lambda: not plate.controller.running)
+    until(lambda: not plate.services.run.running)
 
 
 # shapes -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("tool", sorted(DRAWING - {Tool.FREEHAND, Tool.POLYGON}, key=lambda tool: tool.value))
+@pytest.mark.parametrize("tool", sorted(FIGURES, key=lambda tool: tool.value))
 def test_that_a_dragged_box_becomes_a_shape_of_that_size_in_mm(board: MainWindow, tool: Tool) -> None:
     use(board, tool)
     board.target.tools.options.text.setText("K")
     drag(board, (-30, -20), (30, 20))
-    target = board.controller.document.target
+    target = board.session.document.target
     assert target is not None and target.unit == "mm" and target.size is not None
     width, height = target.size
     assert 20 < width <= 60.001 and 30 < height <= 40.001
-    assert board.controller.history.undo_label is not None and board.controller.history.undo_label.startswith("Draw ")
+    assert board.session.history.undo_label is not None and board.session.history.undo_label.startswith("Draw ")
     assert board.target.view.tool is Tool.POSE
     board.commands["undo"].trigger()
-    assert board.controller.document.target is None
+    assert board.session.document.target is None
 
 
 def test_that_shift_makes_a_square(board: MainWindow) -> None:
@@ -244,12 +247,12 @@ def test_that_the_numbers_of_a_star_hold(board: MainWindow) -> None:
 def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWindow) -> None:
     use(plate, Tool.RECTANGLE, Combine.ADD)
     drag(plate, (10, 0), (40, 30))
-    assert plate.controller.history.undo_label == "Add rectangle"
+    assert plate.session.history.undo_label == "Add rectangle"
     assert placed(plate).polygon.area == pytest.approx(800 + 900 - 100, rel=1e-6)
     assert plate.target.view.tool is Tool.RECTANGLE
     plate.target.tools.set_mode(Combine.SUBTRACT)
     drag(plate, (-30, -20), (0, 20))
-    assert plate.controller.history.undo_label == "Subtract rectangle"
+    assert plate.session.history.undo_label == "Subtract rectangle"
     assert placed(plate).polygon.bounds == pytest.approx((0, -10, 40, 30), abs=1e-4)
     for bounds in ((-20, -10, 40, 30), (-20, -10, 20, 10)):
         plate.commands["undo"].trigger()
@@ -257,10 +260,10 @@ def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWi
 
 
 def test_that_a_hole_is_refused_with_a_sentence_and_nothing_changes(plate: MainWindow) -> None:
-    before = plate.controller.document
+    before = plate.session.document
     use(plate, Tool.RECTANGLE, Combine.SUBTRACT)
     drag(plate, (-10, -5), (10, 5))
-    assert plate.controller.document is before
+    assert plate.session.document is before
     assert "hole" in plate.messages.messages[-1].sentence
 
 
@@ -284,7 +287,7 @@ def point_tool(window: MainWindow) -> PointTool:
 def test_that_a_dragged_point_is_one_step_and_the_others_stay(plate: MainWindow) -> None:
     tool = point_tool(plate)
     drag(plate, (20, 10), (40, 30))
-    assert plate.controller.history.undo_label == "Move point"
+    assert plate.session.history.undo_label == "Move point"
     corners = {(round(x, 6), round(y, 6)) for x, y in placed(plate).ring.tolist()}
     assert corners == {(-20, -10), (20, -10), (40, 30), (-20, 10)}
     assert tool.chosen is not None and plate.target.view.tool is Tool.POINTS
@@ -299,15 +302,15 @@ def test_that_a_double_click_sets_a_point_and_delete_takes_it_away(plate: MainWi
     drag(plate, (0, 10), (0, 30))
     assert len(placed(plate).ring) == 5
     qtbot.keyClick(plate.target.view, Qt.Key.Key_Delete)
-    assert len(placed(plate).ring) == 4 and plate.controller.history.undo_label == "Delete point"
+    assert len(placed(plate).ring) == 4 and plate.session.history.undo_label == "Delete point"
 
 
 def test_that_a_double_click_on_a_point_makes_it_smooth_and_a_corner_again(plate: MainWindow) -> None:
     point_tool(plate)
     double_click(plate, (20, 10))
-    assert plate.controller.history.undo_label == "Make point automatic" and len(placed(plate).ring) > 20
+    assert plate.session.history.undo_label == "Make point automatic" and len(placed(plate).ring) > 20
     double_click(plate, (20, 10))
-    assert plate.controller.history.undo_label == "Make point a corner" and len(placed(plate).ring) == 4
+    assert plate.session.history.undo_label == "Make point a corner" and len(placed(plate).ring) == 4
 
 
 def test_that_keys_walk_and_nudge(plate: MainWindow, qtbot: QtBot) -> None:
@@ -344,7 +347,7 @@ def test_that_a_corner_handle_stretches_and_shift_keeps_proportions(plate: MainW
     tool = pose_tool(plate)
     drag(plate, tool.handles()[1, 1], (30, 30))
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 30, 30))
-    assert plate.controller.history.undo_label == "Resize target"
+    assert plate.session.history.undo_label == "Resize target"
     plate.commands["undo"].trigger()
     drag(plate, tool.handles()[1, 1], (60, 10), SHIFT)
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 60, 30))
@@ -353,7 +356,7 @@ def test_that_a_corner_handle_stretches_and_shift_keeps_proportions(plate: MainW
 def test_that_a_uniform_enlargement_is_a_step_although_the_shape_is_the_same(plate: MainWindow) -> None:
     plate.target.refine.width_.setValue(80.0)
     assert placed(plate).size == pytest.approx((80, 40)) and plate.target.refine.height_.value() == 40
-    assert plate.controller.document.target is not None and plate.controller.document.target.size == (80, 40)
+    assert plate.session.document.target is not None and plate.session.document.target.size == (80, 40)
     plate.commands["undo"].trigger()
     assert placed(plate).size == pytest.approx((40, 20)) and plate.target.refine.width_.value() == 40
 
@@ -363,7 +366,7 @@ def test_that_the_knob_turns_and_shift_goes_by_15_degrees(plate: MainWindow) -> 
     far = 40.0
     angle = math.radians(90 + 31)
     drag(plate, tool.handles()[TURN], (far * math.cos(angle), far * math.sin(angle)), SHIFT)
-    assert plate.controller.history.undo_label == "Rotate target"
+    assert plate.session.history.undo_label == "Rotate target"
     sides = np.diff(placed(plate).ring, axis=0)
     directions = np.degrees(np.arctan2(sides[:, 1], sides[:, 0])) % 90
     np.testing.assert_allclose(directions, 30, atol=1e-6)
@@ -375,18 +378,18 @@ def test_that_the_knob_turns_and_shift_goes_by_15_degrees(plate: MainWindow) -> 
 @pytest.mark.parametrize(("name", "label"), [("simplify", "Simplify target"), ("smooth", "Smooth target")])
 def test_that_a_slider_shows_what_comes_and_one_drag_is_one_step(heart: MainWindow, name: str, label: str) -> None:
     heart.target.set_editing(True)
-    slider, before = heart.target.refine.sliders[name], heart.controller.document
+    slider, before = heart.target.refine.sliders[name], heart.session.document
     slider.setSliderDown(True)
     for value in range(5, 61, 5):
         slider.setValue(value)
-    assert heart.controller.document is before
+    assert heart.session.document is before
     heart.target.view.grab()
     slider.setSliderDown(False)
-    assert heart.controller.history.undo_label == label and heart.controller.document.target != before.target
+    assert heart.session.history.undo_label == label and heart.session.document.target != before.target
     assert slider.value() == 60
     heart.commands["undo"].trigger()
-    assert heart.controller.document.target == silhouettes.load("heart") and slider.value() == 0
-    assert heart.controller.history.undo_label != label
+    assert heart.session.document.target == silhouettes.load("heart") and slider.value() == 0
+    assert heart.session.history.undo_label != label
 
 
 def test_that_a_slider_goes_back_to_what_it_started_from(heart: MainWindow) -> None:
@@ -402,14 +405,14 @@ def test_that_a_slider_goes_back_to_what_it_started_from(heart: MainWindow) -> N
 
 
 def test_that_a_half_is_mirrored_and_the_whole_is_flipped(heart: MainWindow, until: Until) -> None:
-    heart.controller.targeting.open("leaf")
-    until(lambda: heart.controller.document.target == silhouettes.load("leaf"))
+    heart.services.targeting.open("leaf")
+    until(lambda: heart.session.document.target == silhouettes.load("leaf"))
     heart.target.set_editing(True)
     halves = {}
     for entry in heart.target.tools.mirror.menu().actions():
         before = placed(heart)
         entry.trigger()
-        after, label = placed(heart), heart.controller.history.undo_label
+        after, label = placed(heart), heart.session.history.undo_label
         axis = (1, -1) if label in ("Mirror top half", "Mirror bottom half") else (-1, 1)
         middle = 0.5 * (after.ring.min(axis=0) + after.ring.max(axis=0))
         reflected = Placed.from_ring((after.ring - middle) * axis + middle, "").polygon
@@ -443,7 +446,7 @@ def test_that_a_thin_arm_is_marked_and_said_until_the_grid_shows_it(plate: MainW
         and "10 \N{MULTIPLICATION SIGN} 10 voids may lose 1 thin arm" in plate.target.reach.text()
     )
     marked = plate.target.view.grab().toImage()
-    plate.controller.change_settings(grid=(30, 30))
+    plate.services.settings.change(grid=(30, 30))
     assert plate.target.view.reach is not None and plate.target.view.reach.clear
     assert not plate.target.reach.isVisible()
     assert plate.target.view.grab().toImage() != marked
@@ -475,4 +478,4 @@ def test_that_one_stroke_is_called_freehand_in_the_history(board: MainWindow) ->
     for place in places:
         send(view, QEvent.Type.MouseMove, *place, LEFT, PLAIN)
     send(view, QEvent.Type.MouseButtonRelease, *places[-1], NONE, PLAIN)
-    assert board.controller.history.undo_label == "Draw freehand"
+    assert board.session.history.undo_label == "Draw freehand"

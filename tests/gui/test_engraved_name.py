@@ -50,10 +50,10 @@ def test_that_the_box_engraves_the_name_and_undo_takes_it_off(shown: MainWindow,
     assert not box.isChecked() and engraved_text(shown) == ""
     box.click()
     until(lambda: engraved_text(shown) == "A1")
-    assert shown.controller.document.fabrication.engrave
+    assert shown.session.document.fabrication.engrave
     shown.commands["undo"].trigger()
     until(lambda: engraved_text(shown) == "")
-    assert not box.isChecked() and not shown.controller.document.fabrication.engrave
+    assert not box.isChecked() and not shown.session.document.fabrication.engrave
 
 
 def test_that_the_cut_view_shows_the_name_in_its_own_colour(shown: MainWindow, until: Until) -> None:
@@ -68,10 +68,10 @@ def test_that_the_cut_view_shows_the_name_in_its_own_colour(shown: MainWindow, u
 
 
 def test_that_another_name_is_engraved_at_once_only_where_names_are(shown: MainWindow, until: Until) -> None:
-    session = shown.controller.session
+    session = shown.session
     first = plan_of(shown)
     session.apply(candidate_edits.set_label(session.document, 0, "Ada", ""))
-    assert not shown.controller.cutting._timer.isActive() and plan_of(shown) is first
+    assert not shown.services.cutting._timer.isActive() and plan_of(shown) is first
     shown.fabrication.options.engrave.click()
     until(lambda: engraved_text(shown) == "Ada")
     session.apply(candidate_edits.set_label(session.document, 0, "Grace", ""))
@@ -81,15 +81,15 @@ def test_that_another_name_is_engraved_at_once_only_where_names_are(shown: MainW
 
 
 def test_that_the_choice_is_saved_and_in_the_file(shown: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
-    controller = shown.controller
+    services = shown.services
     shown.fabrication.options.engrave.click()
-    with qtbot.waitSignal(controller.cutting.exported, timeout=30_000) as written:
-        controller.export(tmp_path / "named.dxf")
+    with qtbot.waitSignal(services.exporter.exported, timeout=30_000) as written:
+        services.exporter.export(tmp_path / "named.dxf")
     layers = [entity.dxf.layer for entity in ezdxf.readfile(tmp_path / "named.dxf").modelspace()]
     assert layers[0] == "NAME"
     (verification,) = written.args[0].verifications
     assert verification.ok and "verify.name" in [finding.code for finding in verification.findings]
-    with qtbot.waitSignal(controller.saved, timeout=30_000):
-        controller.save(tmp_path / "named.kiri")
+    with qtbot.waitSignal(services.project.saved, timeout=30_000):
+        services.project.save(tmp_path / "named.kiri")
     assert store.load(tmp_path / "named.kiri").fabrication.engrave
     assert store.load(tmp_path / "named.dxf").fabrication.engrave

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.pdf import read_pages
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.gui.files.file_dialogs import follow_filter
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -30,7 +30,7 @@ FIRST_BYTES = {
 
 
 def test_that_the_window_offers_what_the_exporters_write() -> None:
-    assert [kind.extension for kind in FILE_KINDS] == list(exporters())
+    assert [kind.extension for kind in FILE_KINDS] == list(WRITERS)
 
 
 @pytest.mark.parametrize("extension", [kind.extension for kind in FILE_KINDS])
@@ -63,7 +63,7 @@ def test_that_the_animation_shows_the_sheet_as_cut_unless_the_ideal_motion_is_as
         ("heart-ideal.gif", designed.fabrication.exports.ideal),
     ):
         files.answer = tmp_path / name  # type: ignore[attr-defined]
-        with qtbot.waitSignal(designed.controller.cutting.exported, timeout=30_000):
+        with qtbot.waitSignal(designed.services.exporter.exported, timeout=30_000):
             action.trigger()
         sentences.append(designed.messages.messages[-1].sentence)
     assert sentences == [
@@ -113,59 +113,59 @@ def test_that_picking_a_file_type_renames_the_proposal(qtbot: QtBot, tmp_path: P
 def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
     designed: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
-    controller, cutting = designed.controller, designed.controller.cutting
+    services, exporter = designed.services, designed.services.exporter
     pick = designed.fabrication.options.paper
     pick.setCurrentIndex(pick.findData("a4"))
     pick.activated.emit(pick.currentIndex())
-    assert controller.document.fabrication.paper == "a4"
-    with qtbot.waitSignal(cutting.exported, timeout=30_000):
-        controller.export(tmp_path / "small.pdf")
-    controller.fabrication.change(width_mm=1500.0)
-    controller.export(tmp_path / "large.pdf")
+    assert services.session.document.fabrication.paper == "a4"
+    with qtbot.waitSignal(exporter.exported, timeout=30_000):
+        exporter.export(tmp_path / "small.pdf")
+    services.fabrication.change(width_mm=1500.0)
+    exporter.export(tmp_path / "large.pdf")
     until(lambda: any(message.actions for message in designed.messages.messages))
     asked = next(message for message in designed.messages.messages if message.actions)
     assert asked.tone is Tone.WARNING and "pages of a4" in asked.sentence
     assert not (tmp_path / "large.pdf").exists()
     ((words, write),) = asked.actions
     assert words == "Write all pages"
-    with qtbot.waitSignal(cutting.exported, timeout=60_000):
+    with qtbot.waitSignal(exporter.exported, timeout=60_000):
         write()
     assert len(read_pages(tmp_path / "large.pdf")) > 20
     assert len(read_pages(tmp_path / "small.pdf")) == 1
     designed.commands["undo"].trigger()
     designed.commands["undo"].trigger()
-    assert controller.document.fabrication.paper == "none"
+    assert services.session.document.fabrication.paper == "none"
 
 
 def test_that_markers_of_connectors_are_a_choice_that_is_saved(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
-    controller = designed.controller
+    services = designed.services
     for name, marked in (("plain", False), ("marked", True)):
         if marked:
             designed.fabrication.options.markers.click()
-        with qtbot.waitSignal(controller.cutting.exported, timeout=30_000):
-            controller.export(tmp_path / f"{name}.lbrn2")
+        with qtbot.waitSignal(services.exporter.exported, timeout=30_000):
+            services.exporter.export(tmp_path / f"{name}.lbrn2")
         assert ("Ellipse" in (tmp_path / f"{name}.lbrn2").read_text()) is marked
-    with qtbot.waitSignal(controller.saved, timeout=30_000):
-        controller.save(tmp_path / "marked.kiri")
+    with qtbot.waitSignal(services.project.saved, timeout=30_000):
+        services.project.save(tmp_path / "marked.kiri")
     assert store.load(tmp_path / "marked.kiri").fabrication.markers
 
 
 def test_that_files_of_an_earlier_export_which_are_gone_are_told(
     designed: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
-    controller = designed.controller
+    services = designed.services
     for profile in ("any", "slots"):  # no LightBurn project holds slots
-        controller.fabrication.change(profile=profile)
-        with qtbot.waitSignal(controller.cutting.exported, timeout=60_000):
-            controller.export_all(tmp_path, "cut")
+        services.fabrication.change(profile=profile)
+        with qtbot.waitSignal(services.exporter.exported, timeout=60_000):
+            services.exporter.export_all(tmp_path, "cut")
     told = [message.sentence for message in designed.messages.messages]
     assert "Removed files of an earlier export that this one does not have: cut.lbrn2." in told
     assert not (tmp_path / "cut.lbrn2").exists()
     (tmp_path / "cut.lbrn2").write_text("another program's")
-    with qtbot.waitSignal(controller.cutting.exported, timeout=60_000):
-        controller.export_all(tmp_path, "cut")
+    with qtbot.waitSignal(services.exporter.exported, timeout=60_000):
+        services.exporter.export_all(tmp_path, "cut")
     told = [message.sentence for message in designed.messages.messages]
     assert any("files of an earlier export: cut.lbrn2. Delete" in sentence for sentence in told)
     assert (tmp_path / "cut.lbrn2").exists()
@@ -175,16 +175,16 @@ def test_that_files_of_an_earlier_export_which_are_gone_are_told(
 def test_that_an_exported_cut_file_opens_as_its_design(
     name: str, designed: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
 ) -> None:
-    controller, path = designed.controller, tmp_path / name
-    chosen = controller.document.candidate
-    controller.export(path)
+    services, path = designed.services, tmp_path / name
+    chosen = services.session.document.candidate
+    services.exporter.export(path)
     until(path.exists)
-    until(lambda: not controller.queue.busy)
-    controller.new_project()
+    until(lambda: not services.session.queue.busy)
+    services.project.new()
     designed.files.open(str(path))
-    until(lambda: controller.document.candidate is not None)
-    assert controller.document.candidate == chosen and controller.document.target is not None
-    assert controller.path is None and controller.history.unsaved
+    until(lambda: services.session.document.candidate is not None)
+    assert services.session.document.candidate == chosen and services.session.document.target is not None
+    assert services.session.path is None and services.session.history.unsaved
     assert designed.status_text.text() == f"Opened the design that {name} was cut from."
-    controller.history.mark_saved()
-    until(lambda: not controller.queue.busy)
+    services.session.history.mark_saved()
+    until(lambda: not services.session.queue.busy)

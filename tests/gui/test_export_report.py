@@ -45,7 +45,7 @@ BAD = replace(GOOD, ok=False, findings=(*GOOD.findings, Finding.judged(False, "v
 
 
 def export(window: MainWindow, path: Path, until: Until) -> ExportReport:
-    window.controller.export(path)
+    window.services.exporter.export(path)
     until(lambda: window.dialogs.report is not None)
     assert window.dialogs.report is not None
     return window.dialogs.report
@@ -69,14 +69,14 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
 
 def test_that_a_second_export_replaces_the_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     first = export(designed, tmp_path / "a.dxf", until)
-    designed.controller.export(tmp_path / "b.svg")
+    designed.services.exporter.export(tmp_path / "b.svg")
     until(lambda: designed.dialogs.report is not first)
     report = designed.dialogs.report
     assert report is not None and report.shown.path.name == "b.svg"
 
 
 def test_that_a_picture_has_no_report(designed: MainWindow, until: Until, tmp_path: Path) -> None:
-    designed.controller.export(tmp_path / "a.png")
+    designed.services.exporter.export(tmp_path / "a.png")
     until(lambda: bool(designed.messages.messages))
     assert designed.messages.messages[-1].tone is Tone.DONE and designed.dialogs.report is None
 
@@ -132,7 +132,7 @@ def test_that_show_in_folder_opens_the_files_folder(
 
 
 def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow, until: Until, tmp_path: Path) -> None:
-    designed.controller.fabrication.change(profile="lightburn", dxf_version="R12")
+    designed.services.fabrication.change(profile="lightburn", dxf_version="R12")
     export(designed, tmp_path / "cut.dxf", until)
     drawing = ezdxf.readfile(tmp_path / "cut.dxf")
     assert drawing.dxfversion == "AC1009"
@@ -142,7 +142,7 @@ def test_that_the_chosen_profile_and_version_reach_the_file(designed: MainWindow
 def test_that_one_file_for_each_layer_is_reported_as_its_folder(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
-    designed.controller.fabrication.change(profile="layers")
+    designed.services.fabrication.change(profile="layers")
     report = export(designed, tmp_path / "cut.dxf", until)
     assert report.shown.ok and report.shown.path == tmp_path / "cut"
     assert len(list((tmp_path / "cut").iterdir())) == 3
@@ -152,30 +152,30 @@ def test_that_a_new_project_starts_with_the_machine_material_and_size_of_the_las
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
     kept = tmp_path / "preferences.toml"
-    designed.controller.use_preferences(kept)
-    assert not kept.exists() and designed.controller.document.candidates
-    designed.controller.fabrication.change(profile="lightburn")
-    designed.controller.fabrication.change(material="card-co2", connector_mm=None, kerf_mm=None)
-    designed.controller.fabrication.set_opened_size(140.0)
+    designed.services.preferences.use(kept)
+    assert not kept.exists() and designed.session.document.candidates
+    designed.services.fabrication.change(profile="lightburn")
+    designed.services.fabrication.change(material="card-co2", connector_mm=None, kerf_mm=None)
+    designed.services.fabrication.set_opened_size(140.0)
     wanted = Preferences("lightburn", material="card-co2", opened_mm=140.0)
     assert preferences.load(kept) == wanted
-    designed.controller.new_project()
-    fabrication = designed.controller.document.fabrication
+    designed.services.project.new()
+    fabrication = designed.session.document.fabrication
     assert (fabrication.profile, fabrication.material, fabrication.opened_mm) == ("lightburn", "card-co2", 140.0)
-    assert not designed.controller.history.unsaved
-    designed.controller.fabrication.change(width_mm=90.0)
-    designed.controller.new_project()
-    assert designed.controller.document.fabrication.width_mm == 90.0
-    assert designed.controller.document.fabrication.opened_mm is None
+    assert not designed.session.history.unsaved
+    designed.services.fabrication.change(width_mm=90.0)
+    designed.services.project.new()
+    assert designed.session.document.fabrication.width_mm == 90.0
+    assert designed.session.document.fabrication.opened_mm is None
 
 
 def test_that_a_cut_file_makes_its_machine_that_of_new_projects(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
     kept = tmp_path / "preferences.toml"
-    designed.controller.use_preferences(kept)
-    change = edits.set_fabrication(designed.controller.document, profile="lightburn")
-    designed.controller.session.apply(change)  # as in a project that was opened: nobody chose it here
+    designed.services.preferences.use(kept)
+    change = edits.set_fabrication(designed.session.document, profile="lightburn")
+    designed.session.apply(change)  # as in a project that was opened: nobody chose it here
     assert not kept.exists()
     export(designed, tmp_path / "cut.dxf", until)
     assert preferences.load(kept) == Preferences("lightburn", "R2010")
@@ -183,14 +183,14 @@ def test_that_a_cut_file_makes_its_machine_that_of_new_projects(
 
 def test_that_a_material_that_is_gone_gives_way_to_the_usual_one(window: MainWindow, tmp_path: Path) -> None:
     preferences.save(Preferences(material="my-lost-film"), tmp_path / "preferences.toml")
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    assert window.controller.document.fabrication.material == DEFAULT_PRESET
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    assert window.session.document.fabrication.material == DEFAULT_PRESET
 
 
 def test_that_the_window_starts_with_the_preferences(window: MainWindow, tmp_path: Path) -> None:
     preferences.save(Preferences("lightburn", "R12"), tmp_path / "preferences.toml")
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    assert window.controller.document == Preferences("lightburn", "R12").new_document() != Document()
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    assert window.session.document == Preferences("lightburn", "R12").new_document() != Document()
     assert window.fabrication.options.dxf_version.currentData() == "R12"
 
 
@@ -213,8 +213,8 @@ def test_that_damaged_preferences_are_told_and_left_alone(window: MainWindow, tm
     path.write_text(content, encoding="utf-8")
     with pytest.raises(ProjectError):
         preferences.load(path)
-    window.controller.use_preferences(path)
-    window.controller.preferences.remember(Preferences("lightburn").new_document())
+    window.services.preferences.use(path)
+    window.services.preferences.remember(Preferences("lightburn").new_document())
     assert window.messages.messages[-1].tone is Tone.WARNING and path.read_text(encoding="utf-8") == content
 
 

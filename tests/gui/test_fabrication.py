@@ -46,7 +46,7 @@ def test_that_numbers_follow_the_settings_and_one_field_is_one_undo_step(designe
     for width in (110.0, 130.0, 200.0):
         box.setValue(width)
     until(lambda: designed.fabrication.numbers["length"].text() != length)
-    assert designed.controller.document.fabrication.width_mm == 200.0
+    assert designed.session.document.fabrication.width_mm == 200.0
     designed.commands["undo"].trigger()
     assert box.value() == 100.0
     until(lambda: designed.fabrication.numbers["length"].text() == length)
@@ -58,7 +58,7 @@ def test_that_a_material_brings_its_own_connector_and_kerf(designed: MainWindow,
     index = panel.material.findData("drag-knife")
     panel.material.setCurrentIndex(index)
     panel.material.activated.emit(index)
-    settings = designed.controller.document.fabrication
+    settings = designed.session.document.fabrication
     assert (settings.material, settings.connector_mm, settings.kerf_mm) == ("drag-knife", None, None)
     assert panel.lengths["kerf_mm"].value() == 0.0
     assert panel.lengths["connector_mm"].value() != 0.33
@@ -94,9 +94,9 @@ def test_that_slots_are_summed_up_with_the_length_that_their_file_has(
 ) -> None:
     panel, said = designed.fabrication, designed.fabrication.numbers["length"]
     open_cuts = said.text()
-    designed.controller.fabrication.change(profile="slots")
+    designed.services.fabrication.change(profile="slots")
     until(lambda: said.text() != open_cuts)
-    designed.controller.export(tmp_path / "slots.dxf")
+    designed.services.exporter.export(tmp_path / "slots.dxf")
     until(lambda: designed.dialogs.report is not None)
     entities = ezdxf.readfile(tmp_path / "slots.dxf").modelspace()
     drawn = sum(length(entity.flattening(0.001)) for entity in map(make_path, entities))
@@ -116,8 +116,8 @@ def test_that_undo_names_the_material_that_was_changed(designed: MainWindow) -> 
     other = next(row for row in range(box.count()) if row != box.currentIndex())
     box.setCurrentIndex(other)
     box.activated.emit(other)
-    assert designed.controller.document.fabrication.material == box.itemData(other)
-    assert designed.controller.history.undo_label == "Change the material"
+    assert designed.session.document.fabrication.material == box.itemData(other)
+    assert designed.session.history.undo_label == "Change the material"
 
 
 def test_that_the_summary_no_longer_says_trimmed_once_the_trim_is_off(designed: MainWindow, until: Until) -> None:

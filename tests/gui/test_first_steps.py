@@ -26,10 +26,10 @@ LEFT = Qt.MouseButton.LeftButton
 
 def test_that_the_sample_opens_and_is_saved_elsewhere(window: MainWindow, until: Until, files: object) -> None:
     window.commands["sample"].trigger()
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
-    document = window.controller.document
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
+    document = window.session.document
     assert document.target is not None and len(document.candidates) >= 6 and document.provenance["model_sha256"]
-    assert window.controller.path is None
+    assert window.session.path is None
     bundled = resource("examples", "heart.kiri").read_bytes()
     window.commands["save"].trigger()
     assert files.proposals == ["heart.kiri"]  # type: ignore[attr-defined]
@@ -70,19 +70,19 @@ def test_that_a_sheet_of_other_commands_shows_those(qtbot: QtBot, window: MainWi
 
 def test_that_a_chosen_look_stays_until_the_desktop_is_followed_again(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     window.commands["theme"].trigger()
-    assert window.palette_ is DARK and preferences.load(kept).theme == "dark"
+    assert window.appearance.palette is DARK and preferences.load(kept).theme == "dark"
     assert not window.commands["theme_system"].isChecked()
     window.commands["theme_system"].trigger()
-    assert window.palette_ is LIGHT and preferences.load(kept).theme == "system"
+    assert window.appearance.palette is LIGHT and preferences.load(kept).theme == "system"
     window.commands["theme_system"].trigger()
     assert preferences.load(kept).theme == "light" and not window.commands["theme_system"].isChecked()
     preferences.save(replace(preferences.load(kept), theme="dark"), kept)
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     window.appearance.refresh()
-    assert window.palette_ is DARK
-    assert window.controller.document == Preferences().new_document()
+    assert window.appearance.palette is DARK
+    assert window.session.document == Preferences().new_document()
 
 
 @pytest.mark.parametrize("entry", ['theme = "pink"', "theme = 3", 'machine_asked = "yes"', "machine_asked = 1"])
@@ -93,7 +93,7 @@ def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
     kept.write_text(f"{entry}\n", encoding="utf-8")
     with pytest.raises(ProjectError, match=entry.split()[0]):
         preferences.load(kept)
-    window.controller.use_preferences(kept)
+    window.services.preferences.use(kept)
     assert entry.split()[0] in window.messages.messages[-1].sentence
     window.commands["theme"].trigger()
     assert kept.read_text(encoding="utf-8") == f"{entry}\n"
@@ -102,8 +102,8 @@ def test_that_a_wrong_preference_is_named_and_the_file_left_alone(
 def test_that_an_entry_of_an_earlier_version_is_read_past_and_dropped(window: MainWindow, tmp_path: Path) -> None:
     kept = tmp_path / "preferences.toml"
     kept.write_text('profile = "lightburn"\ntour_seen = true\nmachine_asked = true\n', encoding="utf-8")
-    window.controller.use_preferences(kept)
-    assert window.controller.preferences.present == Preferences("lightburn", machine_asked=True)
+    window.services.preferences.use(kept)
+    assert window.services.preferences.present == Preferences("lightburn", machine_asked=True)
     assert window.messages.messages == ()
     window.commands["theme"].trigger()
     assert "tour" not in kept.read_text(encoding="utf-8")

@@ -27,7 +27,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.studio.making import ExportedFiles
 
 CONTROLS = (
     QAbstractButton,
@@ -114,8 +114,8 @@ def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow)
 
 def test_that_the_report_of_an_export_is_named_too(designed: MainWindow, files: object, until: Until, tmp_path) -> None:  # type: ignore[no-untyped-def]
     files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
-    told_: list[Exported] = []
-    designed.controller.cutting.exported.connect(told_.append)
+    told_: list[ExportedFiles] = []
+    designed.services.exporter.exported.connect(told_.append)
     designed.commands["export"].trigger()
     until(lambda: bool(told_) and designed.dialogs.report is not None)
     assert designed.dialogs.report is not None
@@ -175,7 +175,7 @@ def parts(window: MainWindow) -> tuple[QWidget, ...]:
 def test_that_the_focus_shows_on_every_control_that_tab_reaches(
     palette: Palette, designed: MainWindow, qtbot: QtBot
 ) -> None:
-    designed.set_theme(palette)
+    designed.appearance.set_theme(palette)
     designed.activateWindow()
     designed.settings.rows.setFocus()
     invisible = []
@@ -204,7 +204,7 @@ def test_that_alt_and_a_letter_of_a_menu_open_the_menu_and_nothing_else(window: 
 
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
 def test_that_one_letter_means_one_entry_in_each_menu(window: MainWindow, palette: Palette) -> None:
-    window.set_theme(palette)
+    window.appearance.set_theme(palette)
     for bar_entry in window.menuBar().actions():
         menu = bar_entry.menu()
         assert isinstance(menu, QMenu)

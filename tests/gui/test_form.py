@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QSpinBox
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.material import Material, find_material
-from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, STRAIGHT, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.gui.widgets.form import Form
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 
-CUTS = replace(CutOptions(), style=ConnectorStyle.ARC, order=CutOrder.SPREAD, tabs=4, tab_mm=0.7, copies=3)
+CUTS = replace(STRAIGHT, style=ConnectorStyle.ARC, order=CutOrder.SPREAD, tabs=4, tab_mm=0.7, copies=3)
 
 
 @pytest.fixture

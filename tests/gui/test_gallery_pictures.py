@@ -32,7 +32,7 @@ def test_that_cards_wait_for_their_pictures_and_get_them(
     monkeypatch.setattr(card_delegate, "PAINT_SECONDS", 0.0)
     monkeypatch.setattr(card_delegate, "candidate_pixmap", counted)
     monkeypatch.setattr(cards, "begin", begun)
-    window.controller.open_project(project_file)
+    window.services.project.open(project_file)
     until(lambda: len(drawn) == 3)
     assert len(set(drawn)) == 3  # one in each painting
     until(lambda: not cards.pending)
@@ -54,8 +54,6 @@ def test_that_pictures_outlive_a_change_and_go_with_their_designs(designed: Main
     designed.commands["next"].trigger()
     designed.commands["undo"].trigger()
     assert cards._pictures == before
-    designed.controller.targeting.open("star")
-    until(
-        lambda: designed.controller.document.target is not None and designed.controller.document.target.name == "star"
-    )
+    designed.services.targeting.open("star")
+    until(lambda: designed.session.document.target is not None and designed.session.document.target.name == "star")
     assert not cards._pictures.keys() & before.keys()

@@ -39,185 +39,185 @@ def test_that_generating_fills_the_gallery_best_first_and_is_one_undo_step(
     heart.settings.rows.setValue(4)
     heart.settings.columns.setValue(5)
     heart.settings.candidates.setValue(3)
-    before = heart.controller.document
+    before = heart.session.document
     qtbot.mouseClick(heart.run.generate, LEFT)
-    assert heart.controller.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
-    until(lambda: not heart.controller.running)
-    found = heart.controller.document.candidates
+    assert heart.services.run.running and heart.run.stop.isVisible() and not heart.run.generate.isEnabled()
+    until(lambda: not heart.services.run.running)
+    found = heart.session.document.candidates
     assert found == USUAL.ranked(found) and len(found) == 3 and found[0].sheet.grid == SMALL
     assert [entry.candidate for entry in heart.gallery.view.model_.entries] == list(found)
-    assert heart.controller.stage is not None and heart.controller.stage.candidate == found[0]
+    assert heart.session.stage is not None and heart.session.stage.candidate == found[0]
     assert heart.stage.view.phi == pytest.approx(0.0)
-    provenance = heart.controller.document.provenance
+    provenance = heart.session.document.provenance
     assert provenance["model"] == "balanced" and len(provenance["model_sha256"]) == 64
     assert any(candidate.polished for candidate in found)
     assert not heart.run.stop.isVisible()
     heart.commands["undo"].trigger()
-    assert heart.controller.document == before and heart.gallery.view.model_.rowCount() == 0
+    assert heart.session.document == before and heart.gallery.view.model_.rowCount() == 0
     heart.commands["redo"].trigger()
-    assert heart.controller.document.candidates == found
+    assert heart.session.document.candidates == found
 
 
 @pytest.mark.torch
 def test_that_a_run_given_up_for_the_same_target_leaves_nothing_in_sight(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
-    before = heart.controller.document
+    before = heart.session.document
     heart.commands["generate"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
-    heart.controller.targeting.open("heart")
-    until(lambda: not heart.controller.running)
-    assert heart.controller.document is before
-    assert heart.gallery.view.model_.rowCount() == 0 and heart.controller.stage is None
+    heart.services.targeting.open("heart")
+    until(lambda: not heart.services.run.running)
+    assert heart.session.document is before
+    assert heart.gallery.view.model_.rowCount() == 0 and heart.session.stage is None
 
 
 @pytest.mark.torch
 def test_that_designs_still_being_decoded_do_not_mix_with_those_of_a_run(
     window: MainWindow, project_file: Path, until: Until
 ) -> None:
-    controller, view = window.controller, window.gallery.view
+    services, view = window.services, window.gallery.view
     shown: list[int] = []
 
     def generate_at_once(said: str) -> None:
         if said.startswith("Opened"):  # the designs are being decoded from now on
-            assert controller.document.candidates and controller.stage is None
-            controller.change_settings(k=2)
-            controller.change_settings(polish=0)
-            controller.session.display.gallery_reset.connect(lambda _: shown.append(view.model_.rowCount()))
-            controller.generation.generate()
+            assert services.session.document.candidates and services.session.stage is None
+            services.settings.change(k=2)
+            services.settings.change(polish=0)
+            services.session.display.gallery_reset.connect(lambda _: shown.append(view.model_.rowCount()))
+            services.generation.generate()
 
-    controller.session.status_changed.connect(generate_at_once)
-    controller.open_project(project_file)
-    until(lambda: not controller.running and controller.stage is not None)
+    services.session.status_changed.connect(generate_at_once)
+    services.project.open(project_file)
+    until(lambda: not services.run.running and services.session.stage is not None)
     assert shown == [0, 2]
 
 
 @pytest.mark.torch
 def test_that_a_cancelled_run_leaves_the_document_unchanged(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
-    before = heart.controller.document
+    before = heart.session.document
     qtbot.keyClick(heart, Qt.Key.Key_G, Qt.KeyboardModifier.ControlModifier)
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
     qtbot.keyClick(heart, Qt.Key.Key_Escape)
-    until(lambda: not heart.controller.running)
-    assert heart.controller.document is before
+    until(lambda: not heart.services.run.running)
+    assert heart.session.document is before
     assert heart.gallery.view.model_.rowCount() == 0
-    assert heart.controller.stage is None
+    assert heart.session.stage is None
     assert "nothing changed" in heart.status_text.text()
 
 
 def stop_early(heart: MainWindow, until: Until, count: int = MANY) -> None:
     """Begin a run of many designs and stop it by Esc after the first few."""
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(count)
     heart.commands["generate"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > 2)
     heart.commands["cancel"].trigger()
-    until(lambda: not heart.controller.running)
+    until(lambda: not heart.services.run.running)
 
 
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_run_can_be_kept_as_one_undo_step(heart: MainWindow, until: Until) -> None:
-    before = heart.controller.document
+    before = heart.session.document
     stop_early(heart, until)
     (message,) = heart.messages.messages
     ((label, keep),) = message.actions
     assert message.tone is Tone.HINT and label == "Keep these designs"
     keep()
-    kept = heart.controller.document
+    kept = heart.session.document
     assert kept.candidates == USUAL.ranked(kept.candidates) and 2 < len(kept.candidates) < MANY
     assert f"after {len(kept.candidates)} designs" in message.sentence
     assert kept.provenance["model"] == "balanced" and heart.messages.messages == ()
     until(lambda: heart.fabrication.export.isEnabled())
     assert len(heart.gallery.view.model_.all_entries) == len(kept.candidates)
     keep()  # a click that came too late
-    assert heart.controller.document is kept
+    assert heart.session.document is kept
     heart.commands["undo"].trigger()
-    assert heart.controller.document.candidates == before.candidates == ()
+    assert heart.session.document.candidates == before.candidates == ()
 
 
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_run_are_offered_for_their_own_target_only(heart: MainWindow, until: Until) -> None:
     stop_early(heart, until)
     ((_, keep),) = heart.messages.messages[0].actions
-    heart.controller.targeting.open("star")
-    until(lambda: heart.controller.document.target.name == "star")  # type: ignore[union-attr]
+    heart.services.targeting.open("star")
+    until(lambda: heart.session.document.target.name == "star")  # type: ignore[union-attr]
     assert heart.messages.messages == ()
     keep()
-    assert heart.controller.document.candidates == ()
+    assert heart.session.document.candidates == ()
 
 
 @pytest.mark.torch
 def test_that_designs_of_a_stopped_further_run_join_those_that_are_there(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(2)
     heart.commands["generate"].trigger()
-    until(lambda: not heart.controller.running)
-    first = heart.controller.document
+    until(lambda: not heart.services.run.running)
+    first = heart.session.document
     heart.settings.candidates.setValue(MANY)
     heart.commands["again"].trigger()
     until(lambda: len(heart.gallery.view.model_.all_entries) > len(first.candidates) + 2)
     heart.commands["cancel"].trigger()
-    until(lambda: not heart.controller.running)
-    assert heart.controller.document.candidates is first.candidates
+    until(lambda: not heart.services.run.running)
+    assert heart.session.document.candidates is first.candidates
     ((_, keep),) = heart.messages.messages[-1].actions
     keep()
-    found = heart.controller.document.candidates
+    found = heart.session.document.candidates
     assert set(first.candidates) < set(found) and len(found) > len(first.candidates) + 2
 
 
 @pytest.mark.torch
 def test_that_the_same_designs_again_are_no_undo_step_and_can_still_be_cut(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(1)
-    heart.controller.change_settings(polish=0)
+    heart.services.settings.change(polish=0)
     heart.commands["generate"].trigger()
-    until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
-    found = heart.controller.document
+    until(lambda: heart.fabrication.export.isEnabled() and not heart.services.run.running)
+    found = heart.session.document
     heart.commands["generate"].trigger()
-    assert heart.controller.running and not heart.fabrication.export.isEnabled()
-    until(lambda: heart.fabrication.export.isEnabled() and not heart.controller.running)
-    assert heart.controller.document is found
+    assert heart.services.run.running and not heart.fabrication.export.isEnabled()
+    until(lambda: heart.fabrication.export.isEnabled() and not heart.services.run.running)
+    assert heart.session.document is found
     heart.commands["undo"].trigger()
-    assert heart.controller.document.candidates == ()
+    assert heart.session.document.candidates == ()
 
 
 @pytest.mark.torch
 def test_that_another_target_ends_the_run_for_the_old_one(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(MANY)
     heart.commands["generate"].trigger()
     until(lambda: heart.gallery.view.model_.rowCount() > 0)
-    heart.controller.targeting.open("star")
-    until(lambda: heart.controller.document.target is not None and heart.controller.document.target.name == "star")
-    assert not heart.controller.running
-    until(lambda: not heart.controller.queue.busy)
-    assert heart.controller.document.candidates == () and heart.gallery.view.model_.rowCount() == 0
+    heart.services.targeting.open("star")
+    until(lambda: heart.session.document.target is not None and heart.session.document.target.name == "star")
+    assert not heart.services.run.running
+    until(lambda: not heart.session.queue.busy)
+    assert heart.session.document.candidates == () and heart.gallery.view.model_.rowCount() == 0
 
 
 def test_that_an_unknown_model_is_refused_with_a_sentence(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(variant="of-tomorrow")
-    before = heart.controller.document
+    heart.services.settings.change(variant="of-tomorrow")
+    before = heart.session.document
     heart.commands["generate"].trigger()
-    until(lambda: not heart.controller.running)
+    until(lambda: not heart.services.run.running)
     message = heart.messages.messages[-1]
     assert message.tone is Tone.ERROR and "of-tomorrow" in message.sentence
-    assert heart.controller.document is before and heart.run.generate.isEnabled()
+    assert heart.session.document is before and heart.run.generate.isEnabled()
 
 
 def test_that_generate_without_a_target_says_what_to_do_first(window: MainWindow) -> None:
     assert not window.run.generate.isEnabled() and not window.commands["generate"].isEnabled()
-    window.controller.generation.generate()
+    window.services.generation.generate()
     assert "target first" in window.messages.messages[-1].sentence
-    assert not window.controller.running
+    assert not window.services.run.running
 
 
 def test_that_a_click_on_a_card_chooses_its_design(designed: MainWindow, qtbot: QtBot) -> None:
     view = designed.gallery.view
     place = view.visualRect(view.model_.index(1, 0)).center()
     qtbot.mouseClick(view.viewport(), LEFT, pos=place)
-    assert designed.controller.document.chosen == 1
+    assert designed.session.document.chosen == 1
     assert designed.stage.title.text() == "Design A2"
 
 
@@ -225,13 +225,13 @@ def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: Q
     view = designed.gallery.view
     view.setFocus()
     qtbot.keyClick(view, Qt.Key.Key_Right)
-    assert designed.controller.document.chosen == 1
+    assert designed.session.document.chosen == 1
     qtbot.keyClick(view, Qt.Key.Key_Left)
-    assert designed.controller.document.chosen == 0
+    assert designed.session.document.chosen == 0
     qtbot.keyClick(designed, Qt.Key.Key_PageDown)
-    assert designed.controller.document.chosen == 1
+    assert designed.session.document.chosen == 1
     designed.commands["undo"].trigger()
-    assert designed.controller.document.chosen == 0 and view.currentIndex().row() == 0
+    assert designed.session.document.chosen == 0 and view.currentIndex().row() == 0
 
 
 def test_that_a_card_tells_its_numbers_to_screen_readers(designed: MainWindow, designs: Document) -> None:
@@ -244,26 +244,26 @@ def test_that_a_card_tells_its_numbers_to_screen_readers(designed: MainWindow, d
 def test_that_a_changed_setting_shows_in_the_document_and_back(heart: MainWindow, qtbot: QtBot) -> None:
     heart.settings.angle.setValue(30.0)
     heart.settings.columns.setValue(12)
-    assert heart.controller.document.settings.grid == (10, 12)
-    assert heart.controller.document.settings.phi == pytest.approx(0.5235987)
+    assert heart.session.document.settings.grid == (10, 12)
+    assert heart.session.document.settings.phi == pytest.approx(0.5235987)
     heart.commands["undo"].trigger()
     heart.commands["undo"].trigger()
     assert (heart.settings.angle.value(), heart.settings.columns.value()) == (0.0, 10)
     seed = heart.settings.seed.value()
     qtbot.mouseClick(heart.settings.dice, LEFT)
-    assert heart.controller.document.settings.seed == heart.settings.seed.value() != seed
+    assert heart.session.document.settings.seed == heart.settings.seed.value() != seed
 
 
 @pytest.mark.torch
 def test_that_polish_off_leaves_designs_as_drawn(heart: MainWindow, qtbot: QtBot, until: Until) -> None:
-    heart.controller.change_settings(grid=SMALL)
+    heart.services.settings.change(grid=SMALL)
     heart.settings.candidates.setValue(1)
     heart.settings.polish.setFocus()
     qtbot.keyClick(heart.settings.polish, Qt.Key.Key_Home)
     heart.settings.polish.activated.emit(heart.settings.polish.currentIndex())
-    assert heart.controller.document.settings.polish == 0
+    assert heart.session.document.settings.polish == 0
     qtbot.mouseClick(heart.run.generate, LEFT)
-    until(lambda: not heart.controller.running)
-    (drawn,) = heart.controller.document.candidates
+    until(lambda: not heart.services.run.running)
+    (drawn,) = heart.session.document.candidates
     assert not drawn.polished
-    assert heart.controller.document.provenance["polish"] == "0"
+    assert heart.session.document.provenance["polish"] == "0"

@@ -50,7 +50,7 @@ def started_again(until: Until) -> Iterator[Callable[[MainWindow], MainWindow]]:
 
     yield start
     for window in made:
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         assert window.close()
         window.deleteLater()
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
@@ -61,8 +61,8 @@ def earlier(until: Until, project_file: Path) -> MainWindow:
     """A window with three designs that is going to be started again."""
     window = create_window(LIGHT)
     window.show()
-    window.controller.open_project(project_file)
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    window.services.project.open(project_file)
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
     return window
 
 
@@ -82,12 +82,12 @@ def test_that_another_language_is_offered_for_the_next_start(window: MainWindow)
 def test_that_starting_again_loses_nothing(
     earlier: MainWindow, started_again: Callable[[MainWindow], MainWindow], until: Until
 ) -> None:
-    controller = earlier.controller
-    controller.choose(controller.document.candidates[1])
-    controller.change_settings(k=5)
-    controller.fabrication.change(width_mm=123.0)
-    controller.undo()
-    document, path, steps = controller.document, controller.path, controller.history.steps
+    services = earlier.services
+    services.chosen.choose(services.session.document.candidates[1])
+    services.settings.change(k=5)
+    services.fabrication.change(width_mm=123.0)
+    services.project.undo()
+    document, path, steps = services.session.document, services.session.path, services.session.history.steps
     earlier.language_menu.choices["de"].trigger()
     (offer,) = offers(earlier)
     assert offer.actions[0][1] == earlier.start_again
@@ -96,17 +96,17 @@ def test_that_starting_again_loses_nothing(
     assert window.commands["save"].text().replace("&", "") == "Projekt speichern"
     assert "Strg+S" in window.commands["save"].toolTip()
     assert window.run.generate.text() == "Erzeugen"
-    controller = window.controller
-    assert controller.document is document and controller.path == path and window.isWindowModified()
-    assert controller.history.steps == steps and controller.history.unsaved
-    until(lambda: controller.stage is not None and window.fabrication.export.isEnabled())
-    assert controller.stage is not None and controller.stage.candidate is document.candidates[1]
+    services = window.services
+    assert services.session.document is document and services.session.path == path and window.isWindowModified()
+    assert services.session.history.steps == steps and services.session.history.unsaved
+    until(lambda: services.session.stage is not None and window.fabrication.export.isEnabled())
+    assert services.session.stage is not None and services.session.stage.candidate is document.candidates[1]
     assert len(window.gallery.view.model_.all_entries) == 3
     window.commands["redo"].trigger()
-    assert controller.document.fabrication.width_mm == 123.0
+    assert services.session.document.fabrication.width_mm == 123.0
     for _ in range(3):
         window.commands["undo"].trigger()
-    assert controller.document.settings.k != 5 and not controller.history.unsaved
+    assert services.session.document.settings.k != 5 and not services.session.history.unsaved
 
 
 def test_that_the_picture_behind_a_target_is_still_known(
@@ -114,28 +114,28 @@ def test_that_the_picture_behind_a_target_is_still_known(
 ) -> None:
     first = create_window(LIGHT)
     first.show()
-    first.controller.targeting.open(str(photo))
-    until(lambda: first.controller.document.target is not None)
+    first.services.targeting.open(str(photo))
+    until(lambda: first.session.document.target is not None)
     again = started_again(started_again(first))
-    controller = again.controller
-    assert controller.targeting.tracer.picture_of(controller.document.target) is not None
-    before = controller.document.target
-    controller.targeting.change_threshold(0.75)
-    until(lambda: controller.document.target != before)
-    again.controller.save(tmp_path / "traced.kiri")
-    until(lambda: not controller.history.unsaved)
+    services = again.services
+    assert services.targeting.tracer.picture_of(services.session.document.target) is not None
+    before = services.session.document.target
+    services.targeting.change_threshold(0.75)
+    until(lambda: services.session.document.target != before)
+    again.services.project.save(tmp_path / "traced.kiri")
+    until(lambda: not services.session.history.unsaved)
     assert [one.sentence for one in again.messages.messages if "picture" in one.sentence] == []
 
 
 def test_that_a_run_is_not_lost_by_starting_again(heart: MainWindow, until: Until) -> None:
-    heart.controller.change_settings(k=2, grid=(4, 4), auto_grid=False, polish=0)
+    heart.services.settings.change(k=2, grid=(4, 4), auto_grid=False, polish=0)
     heart.run.generate.click()
     heart.language_menu.choices["de"].trigger()
     offers(heart)[0].actions[0][1]()
-    assert heart.isVisible() and heart.controller.running and not heart.starts_again
+    assert heart.isVisible() and heart.services.run.running and not heart.starts_again
     assert len(offers(heart)) == 1 and heart.status_text.text().startswith("Wait for the run")
-    until(lambda: not heart.controller.running)
-    assert len(heart.controller.document.candidates) == 2
+    until(lambda: not heart.services.run.running)
+    assert len(heart.session.document.candidates) == 2
 
 
 #: The program as it is started; while something is unsaved it is asked for German, then for English, and says what
@@ -148,17 +148,17 @@ from kirigami_studio.gui.window import application
 
 told = []
 def use(window):
-    controller = window.controller
-    if controller.stage is None:
+    session, services = window.session, window.services
+    if session.stage is None:
         return QTimer.singleShot(50, partial(use, window))
     if not told:
-        controller.change_settings(k=5)
-    told.append([window.menuBar().actions()[0].text(), controller.document.settings.k])
+        services.settings.change(k=5)
+    told.append([window.menuBar().actions()[0].text(), session.document.settings.k])
     if len(told) < 3:
         window.appearance.choose_language("de" if len(told) == 1 else "en")
         return window.start_again()
-    controller.undo()
-    told.append(controller.history.unsaved)
+    services.project.undo()
+    told.append(session.history.unsaved)
     window.close()
 open_window = application.open_window
 def opened(*arguments):
@@ -258,7 +258,7 @@ def test_that_qts_own_buttons_speak_the_language(window: MainWindow, qtbot: QtBo
 
 def test_that_the_language_is_remembered(window: MainWindow, tmp_path: Path) -> None:
     path = tmp_path / "preferences.toml"
-    window.controller.use_preferences(path)
+    window.services.preferences.use(path)
     window.language_menu.choices["de"].trigger()
     assert preferences.load(path).language == "de"
     window.language_menu.choices[SYSTEM].trigger()

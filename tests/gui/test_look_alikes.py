@@ -48,7 +48,7 @@ def similar(designs: Document) -> Document:
 
 @pytest.fixture
 def stacked(window: MainWindow, similar: Document, until: Until) -> MainWindow:
-    window.controller.session.restart(similar, None)
+    window.session.restart(similar, None)
     until(lambda: len(window.gallery.view.model_.all_entries) == 5)
     return window
 
@@ -77,13 +77,13 @@ def test_that_look_alikes_are_one_card_that_opens_and_closes_by_a_click(stacked:
     tip = str(model.index(head(stacked), 0).data(Qt.ItemDataRole.ToolTipRole))
     assert "2 more designs look the same" in tip and "Rank: " in tip
     assert stacked.gallery.count.text().startswith(f"{sum(one.score.feasible for one in similar.candidates)} of 5")
-    row, document = head(stacked), stacked.controller.document
+    row, document = head(stacked), stacked.session.document
     QTest.mouseClick(view.viewport(), LEFT, NONE, mark_of_alike(stacked))
     assert len(shown(stacked)) == 5 and model.index(row, 0).data(OPEN_ROLE)
     alike = shown(stacked)[row : row + 3]
     assert {one.index for one in alike} >= {10, 11} or {one.index for one in alike[1:]} & {10, 11}
     QTest.mouseClick(view.viewport(), LEFT, NONE, mark_of_alike(stacked))
-    assert len(shown(stacked)) == 3 and stacked.controller.document is document
+    assert len(shown(stacked)) == 3 and stacked.session.document is document
 
 
 def test_that_enter_opens_the_stack_and_arrows_walk_through_it(stacked: MainWindow, qtbot: QtBot) -> None:
@@ -95,16 +95,16 @@ def test_that_enter_opens_the_stack_and_arrows_walk_through_it(stacked: MainWind
     assert len(shown(stacked)) == 5
     qtbot.keyClick(view, Qt.Key.Key_Right)
     member = shown(stacked)[row + 1]
-    assert stacked.controller.document.candidate == member
+    assert stacked.session.document.candidate == member
     view.toggle_alike(shown(stacked)[row])  # what was chosen under it gives way to the card
-    assert len(shown(stacked)) == 3 and stacked.controller.document.candidate == shown(stacked)[row]
+    assert len(shown(stacked)) == 3 and stacked.session.document.candidate == shown(stacked)[row]
     assert view.currentIndex().row() == row
 
 
 def test_that_a_hidden_design_shows_when_it_is_chosen_or_compared(stacked: MainWindow) -> None:
     model = stacked.gallery.view.model_
-    hidden = next(one for one in stacked.controller.document.candidates if model.row_of(one) < 0)
-    stacked.controller.choose(hidden)
+    hidden = next(one for one in stacked.session.document.candidates if model.row_of(one) < 0)
+    stacked.services.chosen.choose(hidden)
     assert model.row_of(hidden) >= 0 and stacked.gallery.view.currentIndex().row() == model.row_of(hidden)
     stacked.commands["undo"].trigger()
     stacked.gallery.view.toggle_alike(shown(stacked)[head(stacked)])
@@ -116,10 +116,10 @@ def test_that_a_hidden_design_shows_when_it_is_chosen_or_compared(stacked: MainW
 def test_that_pinning_and_rejecting_mean_the_card_alone(stacked: MainWindow) -> None:
     model = stacked.gallery.view.model_
     first = shown(stacked)[head(stacked)]
-    stacked.controller.marks.pin(first)
-    marks = dict(zip(stacked.controller.document.candidates, stacked.controller.document.marks, strict=True))
+    stacked.services.marks.pin(first)
+    marks = dict(zip(stacked.session.document.candidates, stacked.session.document.marks, strict=True))
     assert marks[first] is Mark.PINNED and list(marks.values()).count(Mark.PINNED) == 1
-    stacked.controller.marks.reject(first, None)
+    stacked.services.marks.reject(first, None)
     assert first not in shown(stacked) and model.index(head(stacked), 0).data(ALIKE_ROLE) == 1
     assert len(shown(stacked)) == 3
     stacked.commands["undo"].trigger()
@@ -156,7 +156,7 @@ def test_that_many_designs_are_compared_in_the_worker(
     window: MainWindow, similar: Document, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(look_alikes, "COMPARED_AT_ONCE", 2)
-    window.controller.session.restart(similar, None)
+    window.session.restart(similar, None)
     model = window.gallery.view.model_
     until(lambda: len(model.all_entries) == 5)
     until(lambda: model.rowCount() == 3)
@@ -166,7 +166,7 @@ def test_that_many_designs_are_compared_in_the_worker(
 @pytest.mark.usefixtures("german")
 def test_that_the_mark_of_look_alikes_has_room_for_its_words_in_german(stacked: MainWindow) -> None:
     stacked.commands["all_designs"].trigger()
-    page = stacked.connections.all_designs.page
+    page = stacked.presenters.all_designs.page
     assert page is not None
     table = page.table
     index = next(at for row in range(table.model_.rowCount()) if (at := table.model_.index(row, 0)).data(ALIKE_ROLE))

@@ -56,7 +56,7 @@ def test_that_saved_numbers_reach_the_plan(
     designed: MainWindow, editor: MaterialEditor, qtbot: QtBot, until: Until
 ) -> None:
     press(editor, qtbot, "copy")
-    designed.controller.fabrication.change(material="film-uv-2", connector_mm=None, kerf_mm=None)
+    designed.services.fabrication.change(material="film-uv-2", connector_mm=None, kerf_mm=None)
     editor.form.numbers["connector_mm"].setValue(0.44)
     press(editor, qtbot, "save")
     assert library().materials["film-uv-2"].connector_mm == 0.44 and not editor.buttons["save"].isEnabled()
@@ -89,7 +89,7 @@ def test_that_a_deleted_material_that_is_in_use_is_told(
     designed: MainWindow, editor: MaterialEditor, qtbot: QtBot, until: Until, own_materials: Path
 ) -> None:
     press(editor, qtbot, "copy")
-    designed.controller.fabrication.change(material="film-uv-2")
+    designed.services.fabrication.change(material="film-uv-2")
     until(designed.fabrication.export.isEnabled)
     press(editor, qtbot, "delete")
     assert list(own_materials.iterdir()) == [] and editor.chosen.key == "film-uv"
@@ -120,10 +120,10 @@ def test_that_a_form_that_nobody_touched_changes_nothing(qtbot: QtBot) -> None:
     form = MaterialForm()
     qtbot.addWidget(form)
     for material in presets().values():
-        form.show_material(material, editable=True)
+        form.show_value(material, editable=True)
         assert form.changes() == {}, material.key
-    form.numbers["strain_limit"].setValue(12.5)
-    assert form.changes() == {"strain_limit": 0.125}
+    form.numbers["break_strain"].setValue(12.5)
+    assert form.changes() == {"break_strain": 0.125}
 
 
 def test_that_every_number_says_its_unit(editor: MaterialEditor) -> None:

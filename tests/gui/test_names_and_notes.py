@@ -47,7 +47,7 @@ def test_that_the_key_renames_the_chosen_design_on_card_stage_and_files(designed
     QTest.keyClick(editor.name, Qt.Key.Key_Return)
     assert designed.dialogs.label is None or not designed.dialogs.label.isVisible()
     assert names(designed) == ["Wide heart", "A2", "A3"] and designed.stage.title.text() == "Design Wide heart"
-    assert designed.controller.history.undo_label == "Rename design A1"
+    assert designed.session.history.undo_label == "Rename design A1"
     tip = designed.gallery.view.model_.index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert "Design Wide heart:" in tip and "Note: For the fair." in tip
     designed.commands["export"].trigger()
@@ -60,15 +60,15 @@ def test_that_escape_leaves_name_and_note_as_they_were(designed: MainWindow, des
     editor = opened(designed)
     type_into(editor, "Nothing")
     QTest.keyClick(editor.name, Qt.Key.Key_Escape)
-    assert designed.controller.document == designs and designed.controller.history.undo_label is None
+    assert designed.session.document == designs and designed.session.history.undo_label is None
 
 
 def test_that_a_click_elsewhere_keeps_what_was_typed(designed: MainWindow) -> None:
     editor = opened(designed)
     editor.note.setPlainText("Too thin at the top.")
     editor.close()  # as Qt does with a popup
-    assert designed.controller.document.labels[0] == Label("A1", "", "Too thin at the top.")
-    assert designed.controller.history.undo_label == "Note on design A1"
+    assert designed.session.document.labels[0] == Label("A1", "", "Too thin at the top.")
+    assert designed.session.history.undo_label == "Note on design A1"
 
 
 def test_that_a_name_that_is_taken_is_told_and_nothing_typed_is_lost(designed: MainWindow, designs: Document) -> None:
@@ -76,13 +76,13 @@ def test_that_a_name_that_is_taken_is_told_and_nothing_typed_is_lost(designed: M
     type_into(editor, "a3")
     QTest.keyClick(editor.name, Qt.Key.Key_Return)
     assert editor.isVisible() and editor.problem.text() == "Another design is already called a3."
-    assert designed.controller.document == designs and editor.name.text() == "a3"
+    assert designed.session.document == designs and editor.name.text() == "a3"
     QTest.keyClick(editor.name, Qt.Key.Key_Escape)
     assert not editor.isVisible()
 
 
 def test_that_every_run_draws_from_a_seed_of_its_own_unless_it_is_kept(designed: MainWindow) -> None:
-    planner, document = designed.controller.generation.planner, designed.controller.document
+    planner, document = designed.services.generation.planner, designed.session.document
     assert document.target is not None
     planner.keeps_seed = True
     assert {planner.anew(document.target).request.seed for _ in range(3)} == {document.settings.seed}
@@ -90,14 +90,14 @@ def test_that_every_run_draws_from_a_seed_of_its_own_unless_it_is_kept(designed:
     seeds = [planner.anew(document.target).request.seed for _ in range(3)]
     seeds += [planner.more(document.target).request.seed, planner.alike(document.target, 0.5).request.seed]
     assert len(set(seeds)) == 5, "also where earlier runs were stopped or undone"
-    assert designed.controller.document == document
+    assert designed.session.document == document
 
 
 @pytest.mark.parametrize(("apart", "told"), [(1.001, True), (4.0, False)])
 def test_that_designs_that_came_too_near_are_told_with_the_way_out(
     designed: MainWindow, apart: float, told: bool
 ) -> None:
-    session, planner = designed.controller.session, designed.controller.generation.planner
+    session, planner = designed.session, designed.services.generation.planner
     before, origin = session.document, session.document.candidates[0]
     assert before.target is not None
     request = planner.alike(before.target, 0.9).request

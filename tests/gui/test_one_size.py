@@ -30,7 +30,7 @@ def told(window: MainWindow) -> list[tuple[float, float]]:
 
 def assert_one_size(window: MainWindow) -> tuple[float, float]:
     """Check that all of them agree with the sheet, and return it."""
-    size = size_of(window.controller.document)
+    size = size_of(window.session.document)
     assert size is not None
     for one in told(window):
         assert one == pytest.approx(size.opened, abs=0.051)
@@ -38,35 +38,35 @@ def assert_one_size(window: MainWindow) -> tuple[float, float]:
 
 
 def test_that_a_shape_of_the_library_lies_on_the_board_as_large_as_it_opens(heart: MainWindow) -> None:
-    heart.controller.fabrication.change(opened_mm=150.0)
-    heart.controller.targeting.open("star")
+    heart.services.fabrication.change(opened_mm=150.0)
+    heart.services.targeting.open("star")
     assert max(assert_one_size(heart)) == pytest.approx(150.0)
 
 
 def test_that_the_board_follows_a_flat_width_that_is_typed_and_the_chosen_design(designed: MainWindow) -> None:
-    controller, sizes = designed.controller, set()
+    services, sizes = designed.services, set()
     for width, chosen in ((60.0, 0), (240.0, 0), (240.0, 2)):
-        controller.fabrication.change(width_mm=width)
-        controller.choose(controller.document.candidates[chosen])
+        services.fabrication.change(width_mm=width)
+        services.chosen.choose(services.session.document.candidates[chosen])
         sizes.add(round(max(assert_one_size(designed)), 2))
     assert len(sizes) == 3
 
 
 def test_that_moving_a_shape_leaves_its_size_and_its_designs(designed: MainWindow) -> None:
-    designed.controller.fabrication.change(width_mm=240.0)
+    designed.services.fabrication.change(width_mm=240.0)
     before = assert_one_size(designed)
     designed.target.set_tool(Tool.POSE)
     designed.target.tools.options.pose.x_.setValue(12.0)
-    assert designed.controller.document.fabrication.width_mm == 240.0 and designed.controller.document.candidates
+    assert designed.session.document.fabrication.width_mm == 240.0 and designed.session.document.candidates
     assert assert_one_size(designed) == pytest.approx(before)
 
 
 def test_that_a_size_typed_on_the_board_is_that_of_the_opened_shape(designed: MainWindow) -> None:
-    designed.controller.fabrication.change(width_mm=240.0)
+    designed.services.fabrication.change(width_mm=240.0)
     designed.target.set_tool(Tool.POSE)
     designed.target.refine.width_.setValue(80.0)
     assert assert_one_size(designed)[0] == pytest.approx(80.0)
-    assert designed.controller.document.fabrication.opened_mm == pytest.approx(max(assert_one_size(designed)))
+    assert designed.session.document.fabrication.opened_mm == pytest.approx(max(assert_one_size(designed)))
 
 
 def test_that_several_objects_keep_their_places_to_one_another(heart: MainWindow, qtbot: QtBot) -> None:
@@ -81,7 +81,7 @@ def test_that_several_objects_keep_their_places_to_one_another(heart: MainWindow
         return float(np.linalg.norm(one - other)) / context.drawing.objects[0].size[0]
 
     before = apart()
-    heart.controller.fabrication.change(width_mm=55.0)
+    heart.services.fabrication.change(width_mm=55.0)
     assert_one_size(heart)
     assert apart() == pytest.approx(before)
 
@@ -89,16 +89,16 @@ def test_that_several_objects_keep_their_places_to_one_another(heart: MainWindow
 def test_that_a_picture_at_another_threshold_is_as_large_as_it_opens(
     window: MainWindow, photo: Path, until: Until
 ) -> None:
-    window.controller.fabrication.change(opened_mm=130.0)
-    window.controller.targeting.open(str(photo))
+    window.services.fabrication.change(opened_mm=130.0)
+    window.services.targeting.open(str(photo))
     until(lambda: window.target.threshold.isVisible())
     assert max(assert_one_size(window)) == pytest.approx(130.0)
-    before = window.controller.document.target
+    before = window.session.document.target
     window.target.threshold.slider.setValue(160)
-    until(lambda: window.controller.document.target != before and not window.controller.queue.busy)
+    until(lambda: window.session.document.target != before and not window.session.queue.busy)
     assert max(assert_one_size(window)) == pytest.approx(130.0)
     under, placed = window.target.view.underlay, window.target.view.context.placed
-    picture = window.controller.targeting.tracer.picture_of(window.controller.document.target)
+    picture = window.services.targeting.tracer.picture_of(window.session.document.target)
     assert under is not None and placed is not None and picture is not None and picture.traced is not None
     assert under.place(picture.traced).scale == pytest.approx(placed.scale)  # the picture lies under its contour
 
@@ -106,13 +106,13 @@ def test_that_a_picture_at_another_threshold_is_as_large_as_it_opens(
 def test_that_a_contour_that_grows_on_a_picture_on_the_open_board_makes_the_sheet_grow(
     window: MainWindow, photo: Path, until: Until
 ) -> None:
-    window.controller.fabrication.change(opened_mm=130.0)
-    window.controller.targeting.open(str(photo))
+    window.services.fabrication.change(opened_mm=130.0)
+    window.services.targeting.open(str(photo))
     until(lambda: window.target.threshold.isVisible())
     window.target.set_editing(True)
-    under, before = window.target.view.underlay, window.controller.document.target
+    under, before = window.target.view.underlay, window.session.document.target
     window.target.threshold.slider.setValue(160)
-    until(lambda: window.controller.document.target != before and not window.controller.queue.busy)
+    until(lambda: window.session.document.target != before and not window.session.queue.busy)
     assert window.target.view.underlay is under and max(assert_one_size(window)) > 131.0
     window.commands["undo"].trigger()
     assert window.target.view.underlay is under and max(assert_one_size(window)) == pytest.approx(130.0)
@@ -123,7 +123,7 @@ def test_that_a_drawing_in_mm_given_at_the_start_is_as_large_as_drawn(
 ) -> None:
     logo = tmp_path / "logo.svg"
     logo.write_text(LOGO, encoding="utf-8")
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    window.controller.start_with(str(logo))
-    until(lambda: window.controller.document.target is not None)
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    window.services.targeting.start_with(str(logo))
+    until(lambda: window.session.document.target is not None)
     assert assert_one_size(window) == pytest.approx((160.0, 100.0))

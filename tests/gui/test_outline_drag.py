@@ -50,8 +50,8 @@ def large_document() -> Document:
 def large(window: MainWindow, large_document: Document, until: Until, tmp_path: Path) -> MainWindow:
     """A studio with those, half open, in the mode."""
     store.save(large_document, tmp_path / "large.kiri")
-    window.controller.open_project(tmp_path / "large.kiri")
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    window.services.project.open(tmp_path / "large.kiri")
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
     window.stage.deployment.set_phi(OPEN)
     window.commands["hand"].trigger()
     return window
@@ -77,7 +77,7 @@ def let_go(window: MainWindow, place: QPoint) -> None:
 
 def gestures_done(window: MainWindow) -> bool:
     """Whether the thread of gestures has nothing left to say."""
-    queues = window.controller.hand.findChildren(JobQueue)
+    queues = window.services.hand.findChildren(JobQueue)
     return bool(queues) and not any(queue.busy for queue in queues)
 
 
@@ -95,18 +95,18 @@ def test_that_the_last_place_is_reached_after_letting_go_and_all_of_it_is_one_st
 ) -> None:
     view, before, vertex = large.stage.view, chosen(large), top_of(large)
     drafts: list[PosedDesign] = []
-    large.controller.hand.drafted.connect(drafts.append)
+    large.services.hand.drafted.connect(drafts.append)
     place = take(large, vertex, *UP)
     let_go(large, place)  # before anything could be shown
-    assert seen(large) == before.sheet.field and large.controller.hand.busy
+    assert seen(large) == before.sheet.field and large.services.hand.busy
     settle(large, until)
     vertices = [design.outline(design.nodes(OPEN), OPEN)[vertex] for design in drafts]
     transform = view.transform()
     assert transform is not None
     assert np.hypot(*(transform.to_pixels(np.array(vertices[-1])) - (place.x(), place.y()))) <= 2.0
-    assert large.controller.history.undo_label == LABEL and chosen(large).sheet.field == drafts[-1].deployment.field
+    assert large.session.history.undo_label == LABEL and chosen(large).sheet.field == drafts[-1].deployment.field
     large.commands["undo"].trigger()
-    assert chosen(large) == before and large.controller.history.undo_label is None
+    assert chosen(large) == before and large.session.history.undo_label is None
 
 
 def test_that_the_outline_follows_while_the_worker_is_in_a_long_step(by_hand: MainWindow, until: Until) -> None:
@@ -117,20 +117,20 @@ def test_that_the_outline_follows_while_the_worker_is_in_a_long_step(by_hand: Ma
         begun.set()
         yield go_on.wait(60.0)
 
-    by_hand.controller.queue.start("waiting", long_step, JobCallbacks())
+    by_hand.session.queue.start("waiting", long_step, JobCallbacks())
     until(begun.is_set)
     place = take(by_hand, vertex, *UP)
     until(lambda: (vertex_at(view, vertex) - place).manhattanLength() <= 2)
     let_go(by_hand, place)
     until(lambda: gestures_done(by_hand))
-    assert chosen(by_hand) == before and by_hand.controller.hand.busy  # the score waits, the hand did not
+    assert chosen(by_hand) == before and by_hand.services.hand.busy  # the score waits, the hand did not
     go_on.set()
     settle(by_hand, until)
-    assert by_hand.controller.history.undo_label == LABEL
+    assert by_hand.session.history.undo_label == LABEL
 
 
 def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainWindow, until: Until) -> None:
-    view, history, before = large.stage.view, large.controller.history, chosen(large)
+    view, history, before = large.stage.view, large.session.history, chosen(large)
     void, vertex = (LARGE // 2, LARGE // 2), top_of(large)
     place, middle = take(large, vertex, *UP), middle_of(view, void)
     let_go(large, place)
@@ -151,10 +151,10 @@ def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainW
 def test_that_undo_right_after_letting_go_takes_the_whole_drag_back(large: MainWindow, until: Until) -> None:
     before = chosen(large)
     let_go(large, take(large, top_of(large), *UP))
-    large.controller.undo()
+    large.services.project.undo()
     assert chosen(large) == before
     settle(large, until)
-    assert chosen(large) == before and large.controller.history.redo_label == LABEL
+    assert chosen(large) == before and large.session.history.redo_label == LABEL
     until(lambda: gestures_done(large))
     assert seen(large) == before.sheet.field
 
@@ -167,53 +167,53 @@ def test_that_escape_in_the_middle_of_a_step_leaves_the_design_as_it_was(large: 
             until(lambda: seen(large) != before.sheet.field)
             QTest.mouseMove(view, place + QPoint(0, -9))
         QTest.keyClick(view, Qt.Key.Key_Escape)
-        assert seen(large) == before.sheet.field and not large.controller.hand.busy
+        assert seen(large) == before.sheet.field and not large.services.hand.busy
         let_go(large, place)
         until(lambda: gestures_done(large))
         assert seen(large) == before.sheet.field and chosen(large) == before
-        assert not large.controller.hand.busy and large.controller.history.undo_label is None
+        assert not large.services.hand.busy and large.session.history.undo_label is None
 
 
 def test_that_another_design_never_gets_a_result_that_comes_late(large: MainWindow, until: Until) -> None:
-    controller, document = large.controller, large.controller.document
+    services, document = large.services, large.session.document
     place = take(large, top_of(large), *UP)
-    controller.choose(document.candidates[1])  # nothing of the drag was seen: it never was
-    assert controller.document.chosen == 1 and not controller.hand.busy
+    services.chosen.choose(document.candidates[1])  # nothing of the drag was seen: it never was
+    assert services.session.document.chosen == 1 and not services.hand.busy
     QTest.mouseMove(large.stage.view, place + QPoint(0, -4))
     until(lambda: gestures_done(large))
     let_go(large, place)
-    assert controller.document.candidates == document.candidates
-    assert seen(large) == document.candidates[1].sheet.field and not controller.hand.busy
+    assert services.session.document.candidates == document.candidates
+    assert seen(large) == document.candidates[1].sheet.field and not services.hand.busy
 
 
 def test_that_choosing_another_design_keeps_what_was_seen_of_a_drag_as_one_step(
     by_hand: MainWindow, until: Until
 ) -> None:
-    controller, document = by_hand.controller, by_hand.controller.document
+    services, document = by_hand.services, by_hand.session.document
     place = take(by_hand, top_of(by_hand), *UP)
     until(lambda: seen(by_hand) != document.candidates[0].sheet.field)
-    controller.choose(document.candidates[1])
+    services.chosen.choose(document.candidates[1])
     QTest.mouseMove(by_hand.stage.view, place + QPoint(0, -4))
     settle(by_hand, until)
     let_go(by_hand, place)
     until(lambda: gestures_done(by_hand))
-    assert controller.history.steps == (LABEL, "Choose design A2")
-    assert controller.document.chosen == 1 and seen(by_hand) == document.candidates[1].sheet.field
-    assert controller.document.candidates[1:] == document.candidates[1:]
+    assert services.session.history.steps == (LABEL, "Choose design A2")
+    assert services.session.document.chosen == 1 and seen(by_hand) == document.candidates[1].sheet.field
+    assert services.session.document.candidates[1:] == document.candidates[1:]
 
 
 def test_that_a_project_that_is_opened_during_a_drag_gets_nothing_of_it(
     large: MainWindow, until: Until, designs: Document, project_file: Path
 ) -> None:
-    controller = large.controller
+    services = large.services
     place = take(large, top_of(large), *UP)
-    controller.open_project(project_file)
-    until(lambda: controller.document.candidates == designs.candidates)
+    services.project.open(project_file)
+    until(lambda: services.session.document.candidates == designs.candidates)
     QTest.mouseMove(large.stage.view, place + QPoint(0, -4))
     until(lambda: gestures_done(large))
     let_go(large, place)
-    until(lambda: controller.stage is not None and not controller.queue.busy)
-    assert controller.document == designs and not controller.history.unsaved and not controller.hand.busy
+    until(lambda: services.session.stage is not None and not services.session.queue.busy)
+    assert services.session.document == designs and not services.session.history.unsaved and not services.hand.busy
     assert designs.candidate is not None and seen(large) == designs.candidate.sheet.field
 
 
@@ -221,15 +221,15 @@ def test_that_undo_during_a_drag_of_which_nothing_was_seen_undoes_the_step_befor
     large: MainWindow, until: Until
 ) -> None:
     before = chosen(large)
-    large.controller.hand.set_ratio(frozenset({(3, 3)}), 2.0)
-    large.controller.hand.commit()
+    large.services.hand.set_ratio(frozenset({(3, 3)}), 2.0)
+    large.services.hand.commit()
     settle(large, until)
     place = take(large, top_of(large), *UP)
-    large.controller.undo()
-    assert chosen(large) == before and not large.controller.hand.busy
+    large.services.project.undo()
+    assert chosen(large) == before and not large.services.hand.busy
     until(lambda: gestures_done(large))
     let_go(large, place)
-    assert seen(large) == before.sheet.field and large.controller.history.undo_label is None
+    assert seen(large) == before.sheet.field and large.session.history.undo_label is None
 
 
 def test_that_the_window_closes_in_the_middle_of_a_step(large: MainWindow) -> None:
@@ -240,7 +240,7 @@ def test_that_the_window_closes_in_the_middle_of_a_step(large: MainWindow) -> No
 
 
 def test_that_a_vertex_that_cannot_move_says_so_and_holds_nothing_back(by_hand: MainWindow, until: Until) -> None:
-    hand, before = by_hand.controller.hand, chosen(by_hand)
+    hand, before = by_hand.services.hand, chosen(by_hand)
     hand.lock_all(True)
     place = take(by_hand, top_of(by_hand), *UP)
     until(lambda: "can't reach that far" in by_hand.status_text.text())
@@ -250,7 +250,7 @@ def test_that_a_vertex_that_cannot_move_says_so_and_holds_nothing_back(by_hand: 
     assert hand.postpones(lambda: done.append(True))  # it is still on its way
     until(lambda: bool(done))
     assert chosen(by_hand) == before and not hand.busy
-    assert by_hand.controller.history.undo_label == "Lock all voids"
+    assert by_hand.session.history.undo_label == "Lock all voids"
 
 
 def start_of(shape: tuple[int, int], vertex: int) -> DragStart:

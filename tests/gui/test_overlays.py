@@ -71,12 +71,12 @@ def test_that_a_narrow_header_shows_whole_buttons_only(designed: MainWindow) -> 
 
 
 def test_that_lengths_follow_the_width_of_the_flat_sheet(designed: MainWindow) -> None:
-    view, stage = designed.stage.view, designed.controller.stage
+    view, stage = designed.stage.view, designed.session.stage
     assert stage is not None
     corners = stage.design.deployment.compact
     across = np.ptp(stage.design.pose.apply(corners) @ _back(stage.design.pose.angle), axis=0)[0]
     assert view.mm_per_unit * across == pytest.approx(100.0)
-    designed.controller.fabrication.change(width_mm=250.0)
+    designed.services.fabrication.change(width_mm=250.0)
     assert view.mm_per_unit * across == pytest.approx(250.0)
 
 
@@ -131,11 +131,11 @@ def test_that_the_greatest_distance_of_two_squares_is_where_they_differ_most() -
 
 
 def test_that_the_mean_distance_agrees_with_a_dense_search(designed: MainWindow) -> None:
-    view, stage = designed.stage.view, designed.controller.stage
+    view, stage = designed.stage.view, designed.session.stage
     view.grab()
-    assert view.areas is not None and stage is not None and designed.controller.document.target is not None
+    assert view.areas is not None and stage is not None and designed.session.document.target is not None
     sheet = shapely.Polygon(stage.design.outline(stage.design.nodes(0.0), 0.0)).exterior
-    target = shapely.Polygon(designed.controller.document.target.points).exterior
+    target = shapely.Polygon(designed.session.document.target.points).exterior
     dense = [
         shapely.distance(shapely.line_interpolate_point(one, np.linspace(0, 1, 20_000), normalized=True), other)
         for one, other in ((sheet, target), (target, sheet))
@@ -145,7 +145,7 @@ def test_that_the_mean_distance_agrees_with_a_dense_search(designed: MainWindow)
 
 
 def test_that_the_smallest_parts_are_those_of_the_cut_plan(designed: MainWindow) -> None:
-    view, stage = designed.stage.view, designed.controller.stage
+    view, stage = designed.stage.view, designed.session.stage
     assert stage is not None
     sheet = stage.design.deployment
     kept: list[None] = [None] * sheet.topology.panel_nodes[..., 0].size
@@ -166,12 +166,12 @@ def test_that_the_smallest_parts_are_those_of_the_cut_plan(designed: MainWindow)
 
 
 def test_that_a_fault_is_brought_to_the_middle_by_key_and_by_click(designed: MainWindow, qtbot: QtBot) -> None:
-    stage, entry = designed.stage, designed.controller.stage
+    stage, entry = designed.stage, designed.session.stage
     assert entry is not None
     score = entry.candidate.score
     place = tuple(entry.design.deployment.nodes(0.9)[7].tolist())
     score = replace(score, contact=Contact(0.9, place))
-    stage.view.show_design(entry.design, score, designed.controller.document.target)
+    stage.view.show_design(entry.design, score, designed.session.document.target)
     qtbot.keyClick(designed, Qt.Key.Key_F3)
     assert stage.view.phi == pytest.approx(0.9, abs=math.radians(0.051))
     transform = stage.view.transform()

@@ -16,7 +16,7 @@ Until = Callable[[Callable[[], bool]], None]
 
 
 def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: MainWindow, until: Until) -> None:
-    controller = window.controller
+    session = window.session
     window.target.start.entries["pairs"].trigger()
     gallery = window.dialogs.pairs
     assert gallery is not None and gallery.isVisible() and not gallery.complete
@@ -28,13 +28,13 @@ def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: Mai
     gallery.list.setCurrentRow(0)
     gallery.list.setFocus()
     QTest.keyClick(gallery.list, Qt.Key.Key_Return)
-    until(lambda: controller.stage is not None)
+    until(lambda: session.stage is not None)
     assert not gallery.isVisible()
-    document = controller.document
+    document = session.document
     assert document.target is not None
     assert (document.settings.start.name, document.target.name) == ("circle", "heart")
     assert window.target.start.name == "circle" and window.stage.ends.start.accessibleName().startswith("circle")
-    assert controller.path is None and not controller.history.unsaved  # saved elsewhere, if at all
+    assert session.path is None and not session.history.unsaved  # saved elsewhere, if at all
     assert window.run.generate.isEnabled() and window.stage.deployment.slider.isEnabled()
     until(lambda: window.fabrication.export.isEnabled())
 
@@ -42,25 +42,25 @@ def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: Mai
 def test_that_pairs_are_drawn_in_the_colours_of_the_theme_and_ask_before_work_is_lost(
     window: MainWindow, until: Until
 ) -> None:
-    controller = window.controller
+    services = window.services
     window.commands["pairs"].trigger()
     gallery = window.dialogs.pairs
     assert gallery is not None
     until(lambda: gallery.complete)
     light = gallery.list.item(5).icon().pixmap(294, 98).toImage()
-    window.set_theme(DARK)
+    window.appearance.set_theme(DARK)
     until(lambda: gallery.complete)
     dark = gallery.list.item(5).icon().pixmap(294, 98).toImage()
     assert light.size() == dark.size() and light != dark
 
-    controller.change_settings(k=3)
+    services.settings.change(k=3)
     gallery.list.itemClicked.emit(gallery.list.item(2))
     message = window.messages.messages[-1]
     assert message.tone is Tone.WARNING and "before you open an example" in message.sentence
-    assert controller.document.settings.k == 3 and controller.document.target is None
+    assert services.session.document.settings.k == 3 and services.session.document.target is None
     message.actions[-1][1]()
-    until(lambda: controller.stage is not None)
-    assert controller.document.settings.start.name == "triangle"
+    until(lambda: services.session.stage is not None)
+    assert services.session.document.settings.start.name == "triangle"
 
 
 def test_that_every_bundled_pair_is_listed(window: MainWindow, until: Until) -> None:

@@ -87,21 +87,21 @@ def test_that_start_and_second_target_are_chosen_among_the_parts_of_a_drawing_to
     picker = opened(window, until)
     assert names(picker) == {"disc"} and asks in picker.about.text() and picker.take.text() == button
     assert picker.size_.text() == "The outline is 40.0 \N{MULTIPLICATION SIGN} 40.0 mm; only its shape counts."
-    before = window.controller.document
+    before = window.session.document
     picker.reject()
-    assert window.controller.document is before and window.status_text.text() == "No part was taken; nothing changed."
+    assert window.session.document is before and window.status_text.text() == "No part was taken; nothing changed."
     reader.file_dropped.emit(str(logo))
     opened(window, until)
     click_part(picker, 30, -40)
     click_part(picker, 75, -40)
     settled(picker, until)
     picker.take.click()
-    settings = lambda: window.controller.document.settings  # noqa: E731
+    settings = lambda: window.session.document.settings  # noqa: E731
     if purpose == "start":
         until(lambda: settings().start.name == "plate")
     else:
         until(lambda: settings().second is not None and settings().second.outline.name == "plate")
-    assert window.controller.document.target is None and len(window.controller.history.steps) == 1
+    assert window.session.document.target is None and len(window.session.history.steps) == 1
 
 
 def test_that_the_picker_for_a_start_is_that_for_a_target_the_next_time(
@@ -113,8 +113,8 @@ def test_that_the_picker_for_a_start_is_that_for_a_target_the_next_time(
     picker = opened(window, until)
     assert picker.take.text() == "&Use as target" and told(picker) == (40.0, 40.0)
     picker.take.click()
-    until(lambda: window.controller.document.target is not None)
-    assert window.controller.document.settings.start.is_plain
+    until(lambda: window.session.document.target is not None)
+    assert window.session.document.settings.start.is_plain
 
 
 def test_that_parts_too_hollow_for_a_start_are_refused(window: MainWindow, until: Until, tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_that_parts_too_hollow_for_a_start_are_refused(window: MainWindow, until
     window.target.start.file_dropped.emit(str(written(tmp_path, ring)))
     opened(window, until).take.click()
     until(lambda: any("hollow" in message.sentence for message in window.messages.messages))
-    assert window.controller.document.settings.start.is_plain
+    assert window.session.document.settings.start.is_plain
 
 
 def test_that_a_drawing_of_several_parts_asks_with_the_largest_checked(window, picker) -> None:
@@ -142,11 +142,11 @@ def test_that_every_part_has_a_picture(picker, until) -> None:
 def test_that_return_takes_what_is_checked_as_one_step(window, picker, until) -> None:
     QTest.keyClick(picker.list, Qt.Key.Key_Return)
     until(lambda: window.target.view.outline is not None)
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and target.name == "disc" and target.size == pytest.approx((40, 40), rel=1e-3)
     assert not picker.isVisible()
-    window.controller.undo()
-    assert window.controller.document.target is None
+    window.services.project.undo()
+    assert window.session.document.target is None
 
 
 def test_that_a_click_in_the_picture_takes_a_part_in_and_bridges_it(window, picker, until) -> None:
@@ -182,13 +182,13 @@ def test_that_cancel_changes_nothing(window, heart_and_logo, until) -> None:
     click_part(picker, 75, -40)
     QTest.keyClick(picker, Qt.Key.Key_Escape)
     assert not picker.isVisible()
-    assert window.controller.document is before
+    assert window.session.document is before
     assert window.status_text.text() == "No part was taken; nothing changed."
 
 
 @pytest.fixture
 def heart_and_logo(heart: MainWindow, logo: Path, until: Until):
-    before = heart.controller.document
+    before = heart.session.document
     heart.files.open(str(logo))
     return opened(heart, until), before
 
@@ -258,7 +258,7 @@ def test_that_parts_can_be_chosen_again(window, picker, until) -> None:
     settled(picker, until)
     picker.take.click()
     QApplication.processEvents()
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and target.size == pytest.approx((80, 40), rel=1e-3)
 
 
@@ -269,10 +269,10 @@ def test_that_parts_of_a_library_silhouette_cannot_be_chosen(heart) -> None:
 def test_that_a_damaged_drawing_says_so_and_asks_nothing(heart, tmp_path, until) -> None:
     path = tmp_path / "broken.svg"
     path.write_text("<svg><g></svg>")
-    before = heart.controller.document
+    before = heart.session.document
     heart.files.open(str(path))
     until(lambda: bool(heart.messages.messages))
-    assert heart.controller.document is before and heart.dialogs.parts is None
+    assert heart.session.document is before and heart.dialogs.parts is None
 
 
 def test_that_a_picture_of_two_shapes_asks_and_the_usual_one_keeps_its_threshold(window, tmp_path, until) -> None:
@@ -294,25 +294,25 @@ def test_that_a_picture_of_two_shapes_asks_and_the_usual_one_keeps_its_threshold
     settled(picker, until)
     picker.take.click()
     QApplication.processEvents()
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and target.size is not None and target.size[0] == pytest.approx(200, abs=2)
 
 
 def test_that_a_cut_file_is_the_second_target_of_its_design_or_a_start_like_its_sheet_unasked(
     designed: MainWindow, until: Until, tmp_path: Path
 ) -> None:
-    controller, path = designed.controller, tmp_path / "cut.dxf"
-    controller.export(path)
-    until(lambda: path.exists() and not controller.queue.busy)
-    target, stage = controller.document.target, controller.stage
+    services, path = designed.services, tmp_path / "cut.dxf"
+    services.exporter.export(path)
+    until(lambda: path.exists() and not services.session.queue.busy)
+    target, stage = services.session.document.target, services.session.stage
     assert target is not None and stage is not None
     designed.settings.second.file_dropped.emit(str(path))
-    until(lambda: controller.document.settings.second is not None)
-    second = controller.document.settings.second
+    until(lambda: services.session.document.settings.second is not None)
+    second = services.session.document.settings.second
     assert second is not None and second.outline == target
     designed.target.start.file_dropped.emit(str(path))
-    until(lambda: not controller.document.settings.start.is_plain)
-    start = controller.document.settings.start.outline
+    until(lambda: not services.session.document.settings.start.is_plain)
+    start = services.session.document.settings.start.outline
     assert start is not None and designed.dialogs.parts is None
     sheet, outline = np.ptp(stage.design.deployment.compact, axis=0), np.ptp(start.points, axis=0)
     assert outline[1] / outline[0] == pytest.approx(sheet[1] / sheet[0], rel=0.01)

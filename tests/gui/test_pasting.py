@@ -30,8 +30,8 @@ def pasted(window: MainWindow, content: QMimeData, until: Until) -> tuple[float,
     """Width and height of the target that pasting leads to."""
     QGuiApplication.clipboard().setMimeData(content)
     window.commands["paste"].trigger()
-    until(lambda: window.controller.document.target is not None)
-    width, height = np.ptp(window.controller.document.target.points, axis=0)  # type: ignore[union-attr]
+    until(lambda: window.session.document.target is not None)
+    width, height = np.ptp(window.session.document.target.points, axis=0)  # type: ignore[union-attr]
     return float(width), float(height)
 
 
@@ -51,7 +51,7 @@ def test_that_svg_under_its_own_type_is_pasted_in_mm(window: MainWindow, until: 
     mime = QMimeData()
     mime.setData("image/svg+xml", QByteArray(SVG.encode()))
     pasted(window, mime, until)
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and target.unit == "mm" and target.size == pytest.approx((40, 20))
 
 
@@ -67,10 +67,10 @@ def test_that_a_picture_is_pasted_and_its_threshold_can_be_moved(window: MainWin
     width, height = pasted(window, mime, until)
     assert width / height == pytest.approx(2.0, rel=0.05)
     assert window.target.threshold.isVisible()
-    before = window.controller.document.target
+    before = window.session.document.target
     window.target.threshold.slider.setValue(180)
-    until(lambda: not window.controller.queue.busy)
-    assert window.controller.document.target is not None and before is not None
+    until(lambda: not window.session.queue.busy)
+    assert window.session.document.target is not None and before is not None
 
 
 def test_that_a_copied_file_is_opened(window: MainWindow, until: Until, tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_that_a_copied_file_is_opened(window: MainWindow, until: Until, tmp_path
     mime = QMimeData()
     mime.setUrls([QUrl.fromLocalFile(str(path))])
     pasted(window, mime, until)
-    assert window.controller.document.target is not None and window.controller.document.target.name == "bar"
+    assert window.session.document.target is not None and window.session.document.target.name == "bar"
 
 
 @pytest.mark.parametrize("content", ["", "My holidays in 2021", "12.5", '"text"'])
@@ -94,7 +94,7 @@ def test_that_a_path_that_is_broken_leads_to_a_sentence(window: MainWindow, unti
     QGuiApplication.clipboard().setMimeData(text("M 0 0 L 10 0"))
     window.commands["paste"].trigger()
     until(lambda: bool(window.messages.messages))
-    assert window.messages.messages[-1].tone is Tone.ERROR and window.controller.document.target is None
+    assert window.messages.messages[-1].tone is Tone.ERROR and window.session.document.target is None
 
 
 def test_that_a_text_dropped_on_the_target_is_taken_like_a_pasted_one(window: MainWindow, until: Until) -> None:
@@ -102,8 +102,8 @@ def test_that_a_text_dropped_on_the_target_is_taken_like_a_pasted_one(window: Ma
     copy, left, plain = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
     QApplication.sendEvent(window.target.view, QDragEnterEvent(place, copy, mime, left, plain))
     QApplication.sendEvent(window.target.view, QDropEvent(QPointF(place), copy, mime, left, plain))
-    until(lambda: window.controller.document.target is not None)
-    assert len(window.controller.document.target.points) == 4  # type: ignore[union-attr]
+    until(lambda: window.session.document.target is not None)
+    assert len(window.session.document.target.points) == 4  # type: ignore[union-attr]
 
 
 def test_that_text_nested_beyond_reason_is_no_target() -> None:

@@ -34,7 +34,7 @@ def test_that_a_drag_pulls_a_curve_and_a_click_sets_a_corner(board: MainWindow, 
     np.testing.assert_allclose(np.abs(nodes.handles[top] * placed(board).scale), [[20, 0], [20, 0]], atol=1e-9)
     triangle = 0.5 * 40 * 30
     assert placed(board).polygon.area > 1.2 * triangle
-    assert board.controller.history.position == 1 and board.controller.history.undo_label == "Draw polygon"
+    assert board.session.history.position == 1 and board.session.history.undo_label == "Draw polygon"
 
 
 def test_that_points_of_the_pen_can_be_edited_afterwards(board: MainWindow, qtbot: QtBot) -> None:
@@ -45,7 +45,7 @@ def test_that_points_of_the_pen_can_be_edited_afterwards(board: MainWindow, qtbo
     click(board, (-20, 0))  # on the first point: closes
     use(board, Tool.POINTS)
     drag(board, (0, 30), (0, 40))
-    assert board.controller.history.undo_label == "Move point"
+    assert board.session.history.undo_label == "Move point"
     assert placed(board).polygon.bounds[3] == pytest.approx(40, abs=0.5)
 
 
@@ -77,4 +77,4 @@ def test_that_backspace_takes_the_last_point_back_and_escape_all_of_them(board: 
     click(board, (0, 0))
     qtbot.keyClick(view, Qt.Key.Key_Escape)
     qtbot.keyClick(view, Qt.Key.Key_Return)
-    assert board.controller.history.position == 1 and view.tool is Tool.POLYGON
+    assert board.session.history.position == 1 and view.tool is Tool.POLYGON

@@ -139,7 +139,7 @@ def test_that_a_picture_of_the_window_shows_its_views_on_plain_ground(
     drawn, seen = pixels(picturing.record(designed).image(1)), pixels(designed.grab().toImage())
     corner = view.mapTo(designed, view.rect().topLeft())
     empty = np.s_[corner.y() + 8 : corner.y() + 60, corner.x() + 8 : corner.x() + 60]
-    canvas = QColor(designed.palette_.canvas).getRgb()[:3]
+    canvas = QColor(designed.appearance.palette.canvas).getRgb()[:3]
     assert (drawn[empty] == canvas).all()
     assert not (seen[empty] == canvas).all(), "the screen has its dots"
     assert not view.rendering
@@ -166,8 +166,8 @@ def test_that_copied_cuts_are_the_exported_file(
     data = QGuiApplication.clipboard().mimeData()
     content = bytes(data.data("image/svg+xml").data())
     assert data.text().encode() == content
-    with qtbot.waitSignal(designed.controller.cutting.exported, timeout=30_000):
-        designed.controller.export(tmp_path / "cut.svg")
+    with qtbot.waitSignal(designed.services.exporter.exported, timeout=30_000):
+        designed.services.exporter.export(tmp_path / "cut.svg")
     assert (tmp_path / "cut.svg").read_bytes() == content
     (tmp_path / "copied.svg").write_bytes(content)
     assert read_with_svgelements(tmp_path / "copied.svg").extent == pytest.approx((100.3, 80.3), abs=20.0)

@@ -94,22 +94,22 @@ def hostile(window: MainWindow, designs: Document, name: str, tmp_path: Path, un
     folder.mkdir()
     path = folder / "<img src='p.png'>.kiri"
     store.save(document, path)
-    window.controller.filing.recent.load(tmp_path / "recent.toml")
-    window.controller.open_project(path)
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
-    window.controller.session.apply(Edit(name, replace(window.controller.document, chosen=1)))
-    window.controller.undo()
-    assert window.controller.document.target is not None and window.controller.document.target.name == name
-    until(lambda: not window.controller.queue.busy)
+    window.services.project.recent.load(tmp_path / "recent.toml")
+    window.services.project.open(path)
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
+    window.session.apply(Edit(name, replace(window.session.document, chosen=1)))
+    window.services.project.undo()
+    assert window.session.document.target is not None and window.session.document.target.name == name
+    until(lambda: not window.session.queue.busy)
     return window
 
 
 def test_that_no_label_takes_a_name_for_html(hostile: MainWindow, name: str) -> None:
-    session = hostile.controller.session
+    session = hostile.session
     session.post(Message(f"{name} could not be read.", Tone.ERROR, name, ((name, lambda: None),)))
     session.set_status(f"Opened {name}.")
     hostile.dialogs.show_history()
-    hostile.connections.all_designs.rename_current()
+    hostile.presenters.all_designs.rename_current()
     QApplication.processEvents()
     said = [one.text() for one in QApplication.allWidgets() if isinstance(one, QLabel) and name[:17] in one.text()]
     assert len(said) >= 3, said  # message, status line and title: else nothing is tested
@@ -152,10 +152,10 @@ def test_that_names_have_no_mnemonics_and_no_placeholders(
 ) -> None:
     path = tmp_path / "Tom & Jerry[*].kiri"
     store.save(designs, path)
-    window.controller.filing.recent.take_project(path)
+    window.services.project.recent.take_project(path)
     assert next(iter(window.recent_menu.entries.values())).text() == "&1  Tom && Jerry[*].kiri"
-    window.controller.session.path = path
-    window.controller.session.document_changed.emit(designs)
+    window.session.path = path
+    window.session.document_changed.emit(designs)
     assert window.windowTitle() == "Tom & Jerry[*][*].kiri[*] \N{EN DASH} Kirigami Studio"
 
 
@@ -184,11 +184,11 @@ def test_that_without_the_rule_a_label_takes_a_name_for_html(hostile: MainWindow
 def test_that_a_project_that_names_a_device_opens(window: MainWindow, repository: Path, until: Until) -> None:
     """Before, the window read the device to no end."""
     path = repository / "tests" / "data" / "attacks" / "rich_text_dev_zero.kiri"
-    window.controller.open_project(path)
-    until(lambda: window.controller.document.target is not None)
-    until(lambda: not window.controller.queue.busy)
-    assert window.controller.document.target is not None
-    assert "/dev/zero" in window.controller.document.target.name
+    window.services.project.open(path)
+    until(lambda: window.session.document.target is not None)
+    until(lambda: not window.session.queue.busy)
+    assert window.session.document.target is not None
+    assert "/dev/zero" in window.session.document.target.name
     assert [label.text() for label in html_labels()] == []
 
 

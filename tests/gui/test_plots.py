@@ -77,13 +77,13 @@ def test_that_the_curves_of_100_voids_are_read_while_one_looks() -> None:
 
 
 def test_that_nothing_is_read_while_the_plots_are_closed(designed: MainWindow, until: Until) -> None:
-    plotting_, stage = designed.controller.curves, designed.stage
+    plotting_, stage = designed.services.curves, designed.stage
     assert not plotting_.busy and not stage.plots.isVisible() and not stage.plots.charts
     designed.commands["plots"].trigger()
     assert plotting_.busy and stage.plots.isVisible()
     designed.commands["plots"].trigger()
     assert not plotting_.busy and not stage.plots.isVisible()
-    until(lambda: not designed.controller.queue.busy)
+    until(lambda: not designed.session.queue.busy)
     assert not stage.plots.complete
 
 
@@ -101,11 +101,11 @@ def test_that_charts_are_made_one_in_each_turn_and_then_drawn(designed: MainWind
 def test_that_another_design_gets_curves_of_its_own_and_old_ones_are_kept(plotted: MainWindow, until: Until) -> None:
     stage, first = plotted.stage, plotted.stage.plots.charts[0].curves[0].getData()[1].copy()
     plotted.commands["next"].trigger()
-    assert not stage.plots.complete and plotted.controller.curves.busy
+    assert not stage.plots.complete and plotted.services.curves.busy
     until(lambda: stage.plots.complete)
     assert not np.allclose(stage.plots.charts[0].curves[0].getData()[1], first)
     plotted.commands["previous"].trigger()
-    assert stage.plots.complete and not plotted.controller.curves.busy
+    assert stage.plots.complete and not plotted.services.curves.busy
     assert stage.plots.charts[0].curves[0].getData()[1] == pytest.approx(first)
 
 
@@ -159,7 +159,7 @@ def test_that_a_mouse_drags_the_line_and_a_click_moves_it(plotted: MainWindow, q
 
 
 def test_that_numbers_are_those_of_the_angle_they_name_and_in_mm(plotted: MainWindow) -> None:
-    stage, entry = plotted.stage, plotted.controller.stage
+    stage, entry = plotted.stage, plotted.session.stage
     assert entry is not None
     stage.deployment.set_phi(math.radians(61.0))
     degrees, (area,) = stage.plots.charts[1].nearest or (0.0, (0.0,))
@@ -167,7 +167,7 @@ def test_that_numbers_are_those_of_the_angle_they_name_and_in_mm(plotted: MainWi
     cell = 100.0 / (entry.design.deployment.field.columns + 1)
     assert area == pytest.approx(entry.design.deployment.area(math.radians(60.0)) * cell**2)
     assert f"{area:.0f} mm²" in stage.plots.charts[1].numbers.text() and "60.0°" in stage.plots.charts[1].numbers.text()
-    plotted.controller.fabrication.change(width_mm=200.0)
+    plotted.services.fabrication.change(width_mm=200.0)
     assert (stage.plots.charts[1].nearest or (0, (0,)))[1][0] == pytest.approx(4 * area)
 
 
@@ -186,7 +186,7 @@ def test_that_the_charts_follow_the_theme_and_open_plots_are_remembered(plotted:
     chart = plotted.stage.plots.charts[0]
     corner = QPoint(chart.width() - 2, chart.height() - 2)
     for palette in (LIGHT, DARK):
-        plotted.set_theme(palette)
+        plotted.appearance.set_theme(palette)
         assert chart.grab().toImage().pixelColor(corner).name() == palette.surface
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     plotted.remember(state)

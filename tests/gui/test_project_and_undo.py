@@ -29,15 +29,15 @@ def test_that_a_saved_project_opens_as_it_was(
     designed.commands["next"].trigger()
     assert designed.isWindowModified()
     designed.commands["save_as"].trigger()
-    until(lambda: not designed.controller.history.unsaved)
-    assert store.load(tmp_path / "mine.kiri") == designed.controller.document
+    until(lambda: not designed.session.history.unsaved)
+    assert store.load(tmp_path / "mine.kiri") == designed.session.document
     assert "mine.kiri" in designed.windowTitle() and not designed.isWindowModified()
     designed.commands["new"].trigger()
-    assert designed.controller.document == NEW and designed.gallery.view.model_.rowCount() == 0
+    assert designed.session.document == NEW and designed.gallery.view.model_.rowCount() == 0
     designed.commands["open_project"].trigger()
-    until(lambda: designed.controller.stage is not None)
-    assert designed.controller.document.chosen == 1
-    assert designed.controller.document.candidates == designs.candidates
+    until(lambda: designed.session.stage is not None)
+    assert designed.session.document.chosen == 1
+    assert designed.session.document.candidates == designs.candidates
     assert designed.target.view.outline == designs.target
 
 
@@ -46,7 +46,7 @@ def test_that_save_writes_to_the_known_place_without_asking(
 ) -> None:
     designed.commands["next"].trigger()
     qtbot.keyClick(designed, Qt.Key.Key_S, CONTROL)
-    until(lambda: not designed.controller.history.unsaved)
+    until(lambda: not designed.session.history.unsaved)
     assert store.load(project_file).chosen == 1
     assert files.proposals == []  # type: ignore[attr-defined]
 
@@ -54,11 +54,11 @@ def test_that_save_writes_to_the_known_place_without_asking(
 def test_that_a_damaged_project_leaves_the_open_one_alone(designed: MainWindow, until: Until, tmp_path: Path) -> None:
     broken = tmp_path / "broken.kiri"
     broken.write_bytes(b"PK no zip at all")
-    before = designed.controller.document
-    designed.controller.open_project(broken)
+    before = designed.session.document
+    designed.services.project.open(broken)
     until(lambda: bool(designed.messages.messages))
     assert designed.messages.messages[-1].tone is Tone.ERROR
-    assert designed.controller.document is before
+    assert designed.session.document is before
 
 
 def test_that_closing_with_unsaved_work_asks_without_blocking(designed: MainWindow, qtbot: QtBot, until: Until) -> None:
@@ -84,9 +84,9 @@ def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
     dict(heart.messages.messages[-1].actions)["Save and quit"]()  # no file is chosen
     files.answer = tmp_path / "later.kiri"  # type: ignore[attr-defined]
     heart.commands["save"].trigger()
-    until(lambda: not heart.controller.history.unsaved)
+    until(lambda: not heart.session.history.unsaved)
     assert heart.isVisible()
-    heart.controller.fabrication.change(width_mm=77.0)
+    heart.services.fabrication.change(width_mm=77.0)
     assert not heart.close()
     dict(heart.messages.messages[-1].actions)["Save and quit"]()
     until(lambda: not heart.isVisible())
@@ -95,11 +95,11 @@ def test_that_a_save_and_quit_that_was_called_off_does_not_quit_later(
 
 def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None:
     designed.commands["next"].trigger()
-    before = designed.controller.document
+    before = designed.session.document
     designed.commands["new"].trigger()
-    assert designed.controller.document is before
+    assert designed.session.document is before
     dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
-    assert designed.controller.document == NEW
+    assert designed.session.document == NEW
 
 
 def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before_quitting(
@@ -108,31 +108,31 @@ def test_that_work_that_went_on_while_the_file_was_written_is_asked_about_before
     designed.commands["next"].trigger()
     assert not designed.close()
     dict(designed.messages.messages[-1].actions)["Save and quit"]()
-    designed.controller.fabrication.change(width_mm=77.0)  # before the worker has written
-    until(lambda: not designed.controller.queue.busy)
-    assert designed.isVisible() and designed.controller.history.unsaved
+    designed.services.fabrication.change(width_mm=77.0)  # before the worker has written
+    until(lambda: not designed.session.queue.busy)
+    assert designed.isVisible() and designed.session.history.unsaved
     assert [label for label, _ in designed.messages.messages[-1].actions] == ["Save and quit", "Quit without saving"]
 
 
 def test_that_a_file_still_being_written_is_not_taken_for_the_place_of_the_next_project(
     designed: MainWindow, project_file: Path, until: Until, tmp_path: Path
 ) -> None:
-    controller = designed.controller
-    controller.save(tmp_path / "old.kiri")
-    controller.new_project()
-    until(lambda: not controller.queue.busy)
+    services = designed.services
+    services.project.save(tmp_path / "old.kiri")
+    services.project.new()
+    until(lambda: not services.session.queue.busy)
     assert (tmp_path / "old.kiri").exists()
-    assert controller.path is None, "Save would have put the new project over the old one"
-    controller.save(tmp_path / "new.kiri")
-    until(lambda: controller.path == tmp_path / "new.kiri")
+    assert services.session.path is None, "Save would have put the new project over the old one"
+    services.project.save(tmp_path / "new.kiri")
+    until(lambda: services.session.path == tmp_path / "new.kiri")
 
 
 def test_that_a_gesture_which_waits_for_its_score_is_unsaved_work(designed: MainWindow, until: Until) -> None:
-    controller = designed.controller
-    controller.hand.nudge(frozenset({(1, 1)}), 0.02)
+    services = designed.services
+    services.hand.nudge(frozenset({(1, 1)}), 0.02)
     designed.commands["new"].trigger()
-    until(lambda: not controller.hand.busy)
-    assert controller.document.candidates and controller.history.unsaved
+    until(lambda: not services.hand.busy)
+    assert services.session.document.candidates and services.session.history.unsaved
     assert "unsaved changes" in designed.messages.messages[-1].sentence
 
 
@@ -145,19 +145,19 @@ def test_that_a_question_about_unsaved_work_is_asked_once_and_closed_when_there_
         assert len(designed.messages.messages) == before + 1, name
     assert not designed.close()
     designed.commands["undo"].trigger()
-    assert not designed.controller.history.unsaved
+    assert not designed.session.history.unsaved
     assert not any("unsaved changes" in message.sentence for message in designed.messages.messages)
 
 
 def test_that_undo_names_its_step_and_every_shortcut_reaches_it(heart: MainWindow, qtbot: QtBot) -> None:
     assert heart.commands["undo"].text().replace("&", "") == "Undo: Set target heart"
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
-    assert heart.controller.document.target is None and not heart.commands["undo"].isEnabled()
+    assert heart.session.document.target is None and not heart.commands["undo"].isEnabled()
     qtbot.keyClick(heart, Qt.Key.Key_Y, CONTROL)
-    assert heart.controller.document.target is not None
+    assert heart.session.document.target is not None
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL)
     qtbot.keyClick(heart, Qt.Key.Key_Z, CONTROL | Qt.KeyboardModifier.ShiftModifier)
-    assert heart.controller.document.target is not None
+    assert heart.session.document.target is not None
 
 
 def test_that_the_guide_opens_beside_the_work(window: MainWindow, qtbot: QtBot) -> None:
@@ -181,5 +181,5 @@ def test_that_saving_onto_a_link_writes_the_project_behind_it(
     files.answer = link  # type: ignore[attr-defined]
     designed.commands["next"].trigger()
     designed.commands["save_as"].trigger()
-    until(lambda: not designed.controller.history.unsaved)
-    assert link.is_symlink() and store.load(kept) == designed.controller.document == store.load(link)
+    until(lambda: not designed.session.history.unsaved)
+    assert link.is_symlink() and store.load(kept) == designed.session.document == store.load(link)

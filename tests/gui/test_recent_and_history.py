@@ -35,18 +35,18 @@ def file_menu(window: MainWindow) -> QMenu:
 def test_that_what_was_opened_stands_first_and_survives_the_session(
     window: MainWindow, project_file: Path, tmp_path: Path, until: Until
 ) -> None:
-    kept, controller = tmp_path / "recent.toml", window.controller
-    controller.filing.recent.load(kept)
+    kept, services = tmp_path / "recent.toml", window.services
+    services.project.recent.load(kept)
     assert not window.recent_menu.menuAction().isEnabled()
     target = tmp_path / "triangle.json"
     target.write_text("[[0, 0], [50, 0], [25, 40]]")
-    controller.targeting.open("heart")  # of the library: no file of the user's
-    until(lambda: controller.document.target is not None)
-    controller.targeting.open(str(target))
-    until(lambda: controller.document.target is not None and controller.document.target.name == "triangle")
-    controller.open_project(project_file)
-    until(lambda: controller.stage is not None)
-    controller.save(tmp_path / "second.kiri")
+    services.targeting.open("heart")  # of the library: no file of the user's
+    until(lambda: services.session.document.target is not None)
+    services.targeting.open(str(target))
+    until(lambda: services.session.document.target is not None and services.session.document.target.name == "triangle")
+    services.project.open(project_file)
+    until(lambda: services.session.stage is not None)
+    services.project.save(tmp_path / "second.kiri")
     until(lambda: len(recent.load(kept).projects) == 2)
     assert recent.load(kept) == Recent((str(tmp_path / "second.kiri"), str(project_file)), (str(target),))
     menu = window.recent_menu
@@ -59,8 +59,8 @@ def test_that_what_was_opened_stands_first_and_survives_the_session(
 
 
 def test_that_the_menu_says_which_are_projects_and_which_targets(window: MainWindow, tmp_path: Path) -> None:
-    window.controller.filing.recent.take_project(tmp_path / "one.kiri")
-    window.controller.filing.recent.take_target(str(tmp_path / "two.svg"))
+    window.services.project.recent.take_project(tmp_path / "one.kiri")
+    window.services.project.recent.take_target(str(tmp_path / "two.svg"))
     captions = [action for action in window.recent_menu.actions() if isinstance(action, QWidgetAction)]
     labels = [caption.defaultWidget() for caption in captions]
     assert [label.text() for label in labels if isinstance(label, QLabel)] == ["Projects", "Targets"]
@@ -72,13 +72,13 @@ def test_that_a_missing_file_is_grey_and_a_present_one_opens(
 ) -> None:
     gone, kept = tmp_path / "gone.kiri", tmp_path / "recent.toml"
     recent.save(Recent((str(gone), str(project_file))), kept)
-    window.controller.filing.recent.load(kept)
+    window.services.project.recent.load(kept)
     menu = window.recent_menu
     menu.aboutToShow.emit()
     until(lambda: not menu.entries[str(gone)].isEnabled())
     assert menu.entries[str(project_file)].isEnabled() and "no longer exists" in menu.entries[str(gone)].toolTip()
     menu.entries[str(project_file)].trigger()
-    until(lambda: window.controller.document.candidates == designs.candidates)
+    until(lambda: window.session.document.candidates == designs.candidates)
     next(action for action in menu.actions() if action.objectName() == "clearRecent").trigger()
     assert recent.load(kept) == Recent() and menu.entries == {}
 
@@ -91,8 +91,8 @@ def test_that_pasted_pictures_are_not_remembered_as_files(window: MainWindow, un
             image.setPixelColor(x, y, Qt.GlobalColor.black)
     QGuiApplication.clipboard().setImage(image)
     window.commands["paste"].trigger()
-    until(lambda: window.controller.document.target is not None)
-    assert window.controller.filing.recent.present == Recent()
+    until(lambda: window.session.document.target is not None)
+    assert window.services.project.recent.present == Recent()
 
 
 def test_that_a_list_of_recent_files_holds_ten_of_each_kind_and_none_twice() -> None:
@@ -108,21 +108,21 @@ def test_that_a_spoilt_list_is_told_and_left_as_it_is(text: str, tmp_path: Path,
     kept.write_text(text)
     with pytest.raises(ProjectError, match="list of recent files"):
         recent.load(kept)
-    window.controller.filing.recent.load(kept)
+    window.services.project.recent.load(kept)
     assert "list of recent" in window.messages.messages[-1].sentence
-    window.controller.filing.recent.take_project(tmp_path / "new.kiri")
+    window.services.project.recent.take_project(tmp_path / "new.kiri")
     assert kept.read_text() == text
 
 
 def second_session(window: MainWindow, kept: Path) -> RecentFiles:
     """The list as another session of the program has it."""
-    other = RecentFiles(window.controller.session, window)
+    other = RecentFiles(window.session, window)
     other.load(kept)
     return other
 
 
 def test_that_two_sessions_keep_each_others_recent_files(window: MainWindow, tmp_path: Path) -> None:
-    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    kept, mine = tmp_path / "recent.toml", window.services.project.recent
     mine.load(kept)
     other = second_session(window, kept)
     mine.take_project(tmp_path / "mine.kiri")
@@ -140,8 +140,8 @@ def test_that_two_sessions_keep_each_others_recent_files(window: MainWindow, tmp
 
 def test_that_the_menu_shows_what_another_session_has_added(window: MainWindow, tmp_path: Path, until: Until) -> None:
     kept = tmp_path / "recent.toml"
-    window.controller.filing.recent.load(kept)
-    window.controller.filing.recent.take_project(tmp_path / "mine.kiri")
+    window.services.project.recent.load(kept)
+    window.services.project.recent.take_project(tmp_path / "mine.kiri")
     second_session(window, kept).take_project(tmp_path / "other.kiri")
     menu = window.recent_menu
     menu.aboutToShow.emit()
@@ -150,7 +150,7 @@ def test_that_the_menu_shows_what_another_session_has_added(window: MainWindow, 
 
 
 def test_that_a_list_that_was_cleared_elsewhere_stays_cleared(window: MainWindow, tmp_path: Path) -> None:
-    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    kept, mine = tmp_path / "recent.toml", window.services.project.recent
     mine.load(kept)
     other = second_session(window, kept)
     for name in ("one.kiri", "two.kiri"):
@@ -175,7 +175,7 @@ def test_that_sessions_which_write_at_once_lose_nothing(tmp_path: Path) -> None:
 
 
 def test_that_a_list_that_another_program_spoilt_is_told_once_and_left(window: MainWindow, tmp_path: Path) -> None:
-    kept, mine = tmp_path / "recent.toml", window.controller.filing.recent
+    kept, mine = tmp_path / "recent.toml", window.services.project.recent
     mine.load(kept)
     kept.write_text("projects = [")
     before = len(window.messages.messages)
@@ -190,8 +190,8 @@ def steps(designed: MainWindow, qtbot: QtBot) -> HistoryList:
     """The list of the history, over a project with three steps."""
     designed.commands["next"].trigger()
     for width in (88.0, 99.0):
-        designed.controller.fabrication.change(width_mm=width)
-        designed.controller.end_drag()
+        designed.services.fabrication.change(width_mm=width)
+        designed.session.history.end_drag()
     qtbot.keyClick(designed, Qt.Key.Key_H, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
     shown = designed.dialogs.history
     assert shown is not None and shown.isVisible() and not shown.isModal()
@@ -206,16 +206,16 @@ def test_that_the_history_names_every_step_and_a_click_goes_there(
     assert rows.currentRow() == 3 and "3 steps" in steps.counted.text()
     place = rows.visualItemRect(rows.item(1)).center()
     qtbot.mouseClick(rows.viewport(), Qt.MouseButton.LeftButton, pos=place)
-    document = designed.controller.document
+    document = designed.session.document
     assert document.chosen == 1 and document.fabrication.width_mm == 100.0
     assert rows.currentRow() == 1 and rows.count() == 4 and "2 undone" in steps.counted.text()
     assert rows.item(3).font().italic() and not rows.item(1).font().italic()
     rows.setCurrentRow(3)
     qtbot.keyClick(rows, Qt.Key.Key_Return)
-    assert designed.controller.document.fabrication.width_mm == 99.0
+    assert designed.session.document.fabrication.width_mm == 99.0
     rows.setCurrentRow(0)
     qtbot.keyClick(rows, Qt.Key.Key_Return)
-    assert designed.controller.document == designs and not designed.isWindowModified()
+    assert designed.session.document == designs and not designed.isWindowModified()
 
 
 def test_that_the_history_follows_the_work(steps: HistoryList, designed: MainWindow) -> None:

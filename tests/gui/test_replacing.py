@@ -39,13 +39,13 @@ def open_and_wait(window: MainWindow, source: str, until: Until) -> None:
 
 
 def test_that_several_objects_are_replaced_only_after_a_question(pair: MainWindow, until: Until) -> None:
-    before = pair.controller.document
+    before = pair.session.document
     open_and_wait(pair, "star", until)
     assert "several objects" in asked(pair)
-    assert pair.controller.document is before
+    assert pair.session.document is before
     answer(pair, "Replace")
-    target = pair.controller.document.target
-    assert target is not None and target.name == "star" and pair.controller.document.drawing == ()
+    target = pair.session.document.target
+    assert target is not None and target.name == "star" and pair.session.document.drawing == ()
     assert not asked(pair)
     pair.commands["undo"].trigger()
     assert len(bounds(pair)) == 2
@@ -61,7 +61,7 @@ def test_that_the_shape_may_be_added_beside_what_was_drawn(pair: MainWindow, unt
     assert left > 40 and max(right - left, top - bottom) == pytest.approx(30)  # half as long as the two
     assert 0.5 * (bottom + top) == pytest.approx(10)
     assert drawing(pair).selected == {2} and pair.target.editing and pair.target.view.tool is Tool.POSE
-    assert pair.controller.history.undo_label == "Add star beside"
+    assert pair.session.history.undo_label == "Add star beside"
     box = pair.target.view.scene_bounds()
     assert box is not None and box.right > right
     pair.commands["undo"].trigger()
@@ -77,10 +77,10 @@ def test_that_a_file_in_mm_is_added_in_its_own_size(plate: MainWindow, until: Un
 
 
 def test_that_cancel_leaves_everything_as_it_is(pair: MainWindow, until: Until) -> None:
-    before, steps = pair.controller.document, pair.controller.history.steps
+    before, steps = pair.session.document, pair.session.history.steps
     open_and_wait(pair, "star", until)
     answer(pair, "Cancel")
-    assert pair.controller.document is before and pair.controller.history.steps == steps
+    assert pair.session.document is before and pair.session.history.steps == steps
     assert not asked(pair) and pair.status_text.text() == "Nothing changed."
 
 
@@ -89,13 +89,13 @@ def test_that_a_newer_shape_is_asked_about_instead(pair: MainWindow, until: Unti
     pair.files.open("heart")
     until(lambda: "heart" in asked(pair).lower())
     answer(pair, "Replace")
-    target = pair.controller.document.target
+    target = pair.session.document.target
     assert target is not None and target.name == "heart"
 
 
 def test_that_one_library_shape_follows_another_without_a_question(heart: MainWindow, until: Until) -> None:
     heart.files.open("star")
-    until(lambda: heart.controller.document.target.name == "star")
+    until(lambda: heart.session.document.target.name == "star")
     assert not asked(heart)
 
 
@@ -127,31 +127,31 @@ def test_that_other_parts_of_the_same_drawing_replace_them_without_a_question(
     two = '<circle id="a" cx="60" cy="50" r="15" fill="black"/><rect x="5" y="5" width="20" height="10" fill="red"/>'
     window.files.open(str(written(tmp_path, two)))
     opened(window, until).take.click()
-    until(lambda: window.controller.document.target is not None)
+    until(lambda: window.session.document.target is not None)
     use(window, Tool.POSE)
     drag(window, (0, 0), (10, 0))
-    assert window.controller.document.drawn_by_hand
-    window.controller.targeting.choose_parts()
+    assert window.session.document.drawn_by_hand
+    window.services.targeting.choose_parts()
     picker = opened(window, until)
     picker.all.click()
     until(lambda: not picker._job.busy)
     picker.take.click()
-    until(lambda: not window.controller.document.drawn_by_hand)
+    until(lambda: not window.session.document.drawn_by_hand)
     assert not asked(window)
 
 
 def test_that_a_question_about_a_closed_project_goes(pair: MainWindow, until: Until, tmp_path: Path) -> None:
     path = tmp_path / "drawn.kiri"
-    store.save(pair.controller.document, path)
+    store.save(pair.session.document, path)
     open_and_wait(pair, "star", until)
-    pair.controller.open_project(path)
+    pair.services.project.open(path)
     until(lambda: not asked(pair))
     assert len(bounds(pair)) == 2
 
 
 def test_that_a_question_whose_drawing_is_gone_is_not_dropped_in_silence(pair: MainWindow, until: Until) -> None:
     open_and_wait(pair, "star", until)
-    pair.controller.targeting.clear()
+    pair.services.targeting.clear()
     assert not asked(pair)
     assert [m.sentence for m in pair.messages.messages] == ["star was not taken. Open it again to use it."]
 
@@ -159,5 +159,5 @@ def test_that_a_question_whose_drawing_is_gone_is_not_dropped_in_silence(pair: M
 def test_that_an_answered_question_is_not_spoken_of_later(pair: MainWindow, until: Until) -> None:
     open_and_wait(pair, "star", until)
     answer(pair, "Cancel")
-    pair.controller.targeting.clear()
+    pair.services.targeting.clear()
     assert pair.messages.messages == ()

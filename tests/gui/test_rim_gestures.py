@@ -62,8 +62,8 @@ def test_that_an_edge_cut_follows_the_pointer_on_the_flat_sheet_and_is_one_undo_
     assert f"{seen.rim.positions[TOP]:.2f} cells" in by_hand.status_text.text()
     QTest.mouseRelease(view, LEFT, NONE, end)
     settle(by_hand, until)
-    after, target = chosen(by_hand), by_hand.controller.document.target
-    assert after.sheet == seen and by_hand.controller.history.steps == ("Move edge cut",)
+    after, target = chosen(by_hand), by_hand.session.document.target
+    assert after.sheet == seen and by_hand.session.history.steps == ("Move edge cut",)
     assert target is not None and after.score == evaluate(deploy(after.sheet), target, 0.0)
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
@@ -90,8 +90,8 @@ def test_that_the_cut_stays_at_the_pointer_while_the_sheet_is_open(
         assert sign * moved > 0.1
         QTest.keyClick(view, Qt.Key.Key_Escape)
         QTest.mouseRelease(view, LEFT, NONE, aim)
-        assert by_hand.status_text.text() == "Drag cancelled." and not by_hand.controller.hand.busy
-    assert by_hand.controller.history.undo_label is None
+        assert by_hand.status_text.text() == "Drag cancelled." and not by_hand.services.hand.busy
+    assert by_hand.session.history.undo_label is None
 
 
 def test_that_edge_cuts_keep_their_distance_from_neighbours_and_corners(by_hand: MainWindow, until: Until) -> None:
@@ -117,7 +117,7 @@ def test_that_arrow_keys_reach_an_edge_cut_and_move_it(by_hand: MainWindow, unti
         QTest.keyClick(view, key, modifier)
     settle(by_hand, until)
     assert positions(by_hand)[TOP] == pytest.approx(2.095)
-    assert by_hand.controller.history.steps == ("Move edge cut",)
+    assert by_hand.session.history.steps == ("Move edge cut",)
     QTest.keyClick(view, Qt.Key.Key_Down)
     assert gestures.rim.selected is None and gestures.selected == frozenset({(0, 1)})
     gestures.select(frozenset({(3, 4)}))
@@ -129,7 +129,7 @@ def test_that_arrow_keys_reach_an_edge_cut_and_move_it(by_hand: MainWindow, unti
 
 
 def test_that_even_rim_puts_all_cuts_back_in_one_step(by_hand: MainWindow, until: Until) -> None:
-    hand, history = by_hand.controller.hand, by_hand.controller.history
+    hand, history = by_hand.services.hand, by_hand.session.history
     by_hand.commands["even_rim"].trigger()
     assert by_hand.status_text.text() == "The edge cuts are evenly spaced already." and not history.steps
     for mouth in (TOP, RIGHT, LEFT_SIDE):
@@ -145,7 +145,7 @@ def test_that_even_rim_puts_all_cuts_back_in_one_step(by_hand: MainWindow, until
 
 
 def test_that_ratios_and_rim_are_edited_one_after_the_other(by_hand: MainWindow, until: Until) -> None:
-    hand = by_hand.controller.hand
+    hand = by_hand.services.hand
     hand.nudge_mouth(TOP, 0.2)
     hand.set_ratio(frozenset({(1, 1)}), 1.5)
     hand.nudge_mouth(BOTTOM, -0.2)
@@ -153,7 +153,7 @@ def test_that_ratios_and_rim_are_edited_one_after_the_other(by_hand: MainWindow,
     settle(by_hand, until)
     sheet = chosen(by_hand).sheet
     assert sheet.field.ratio[1, 1] == 1.5 and sheet.rim.positions[[TOP, BOTTOM]] == pytest.approx([2.2, 0.8])
-    assert len(by_hand.controller.history.steps) == 3
+    assert len(by_hand.session.history.steps) == 3
 
 
 def test_that_handles_belong_to_the_mode_and_name_themselves_under_the_pointer(by_hand: MainWindow) -> None:
@@ -169,7 +169,7 @@ def test_that_handles_belong_to_the_mode_and_name_themselves_under_the_pointer(b
 
 
 def test_that_a_selected_edge_cut_is_forgotten_with_its_design(by_hand: MainWindow) -> None:
-    view, document = by_hand.stage.view, by_hand.controller.document
+    view, document = by_hand.stage.view, by_hand.session.document
     view.voids.rim.select(TOP)
-    by_hand.controller.session.apply(edits.choose(document, None))
+    by_hand.session.apply(edits.choose(document, None))
     assert view.voids.rim.selected is None

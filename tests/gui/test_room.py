@@ -96,7 +96,7 @@ def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot)
 def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, until: Until) -> None:
     resized(designed, 1000, 640)
     assert "cuts" in designed.fabrication.summary.text()
-    designed.controller.fabrication.change(connector_mm=20.0)
+    designed.services.fabrication.change(connector_mm=20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     assert designed.fabrication.warnings.isVisible() and "connector" in designed.fabrication.warnings.text()
     assert designed.fabrication.summary.text() == ""
@@ -104,11 +104,11 @@ def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, unti
 
 def test_that_moved_columns_stay_when_the_window_is_resized(designed: MainWindow) -> None:
     resized(designed, 1300, 800)
-    designed.columns.splitterMoved.emit(400, 1)
-    designed.columns.setSizes([420, 500, 360])
-    left = designed.columns.sizes()[0]
+    designed.columns.splitter.splitterMoved.emit(400, 1)
+    designed.columns.splitter.setSizes([420, 500, 360])
+    left = designed.columns.splitter.sizes()[0]
     resized(designed, 1400, 800)
-    assert abs(designed.columns.sizes()[0] - left) <= 2
+    assert abs(designed.columns.splitter.sizes()[0] - left) <= 2
 
 
 def test_that_the_title_of_a_narrow_stage_is_never_cut_off(designed: MainWindow, qtbot: QtBot) -> None:

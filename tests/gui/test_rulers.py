@@ -26,7 +26,7 @@ def pull(window: MainWindow, start: tuple[float, float], end: tuple[float, float
 
 
 def test_that_guides_come_out_of_both_rulers_and_go_back_into_them(plate: MainWindow) -> None:
-    context, target = plate.target.view.context, plate.controller.document.target
+    context, target = plate.target.view.context, plate.session.document.target
     pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
     pull(plate, (5, 200), (pixel(plate, (31.7, 0))[0], 200))
     assert [*context.guides[0], *context.guides[1]] == pytest.approx([31.7, 23.3])
@@ -36,11 +36,11 @@ def test_that_guides_come_out_of_both_rulers_and_go_back_into_them(plate: MainWi
     assert context.guides[0][0] > 32
     pull(plate, (x + 30, 200), (5, 200))
     assert context.guides[0] == () and len(context.guides[1]) == 1
-    assert plate.controller.document.target is target
+    assert plate.session.document.target is target
 
 
 def test_that_a_guide_is_a_step_that_is_undone_and_done_again(plate: MainWindow) -> None:
-    context, history = plate.target.view.context, plate.controller.history
+    context, history = plate.target.view.context, plate.session.history
     steps = len(history.steps)
     pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
     assert history.steps[steps:] == ("Add guide",)
@@ -60,9 +60,9 @@ def test_that_a_guide_is_a_step_that_is_undone_and_done_again(plate: MainWindow)
 
 
 def test_that_a_guide_that_goes_back_into_its_ruler_at_once_is_no_step(plate: MainWindow) -> None:
-    before = plate.controller.document
+    before = plate.session.document
     pull(plate, (200, 5), (200, 9))
-    assert plate.controller.document is before and plate.target.view.context.guides == ((), ())
+    assert plate.session.document is before and plate.target.view.context.guides == ((), ())
 
 
 def test_that_guides_are_saved_with_the_project_and_come_back_with_it(
@@ -70,14 +70,14 @@ def test_that_guides_are_saved_with_the_project_and_come_back_with_it(
 ) -> None:
     context, path = plate.target.view.context, tmp_path / "plate.kiri"
     pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
-    assert plate.controller.history.unsaved
-    plate.controller.save(path)
-    until(lambda: not plate.controller.history.unsaved)
+    assert plate.session.history.unsaved
+    plate.services.project.save(path)
+    until(lambda: not plate.session.history.unsaved)
     kept = context.guides
-    plate.controller.new_project()
+    plate.services.project.new()
     assert context.guides == ((), ())
-    plate.controller.open_project(path)
-    until(lambda: plate.controller.document.target is not None)
+    plate.services.project.open(path)
+    until(lambda: plate.session.document.target is not None)
     assert context.guides == kept != ((), ())
     assert placed(plate).polygon.bounds == pytest.approx((-20, -10, 20, 10))
 
@@ -85,8 +85,8 @@ def test_that_guides_are_saved_with_the_project_and_come_back_with_it(
 def test_that_guides_stay_while_the_target_is_another_one(plate: MainWindow) -> None:
     pull(plate, (200, 5), (200, pixel(plate, (0, 23.3))[1]))
     kept = plate.target.view.context.guides
-    plate.controller.targeting.clear()
-    assert plate.target.view.context.guides == kept == plate.controller.document.guides
+    plate.services.targeting.clear()
+    assert plate.target.view.context.guides == kept == plate.session.document.guides
 
 
 def test_that_guides_catch_what_is_drawn_and_what_is_moved(plate: MainWindow) -> None:
@@ -114,11 +114,11 @@ def test_that_a_guide_in_a_drag_follows_an_undo_and_is_put_down_nowhere(plate: M
     view = plate.target.view
     send(view, QEvent.Type.MouseButtonPress, 200, y, LEFT, CTRL)
     send(view, QEvent.Type.MouseMove, 200, y - 40, LEFT, CTRL)
-    plate.controller.undo()
-    steps = len(plate.controller.history.steps)
+    plate.services.project.undo()
+    steps = len(plate.session.history.steps)
     send(view, QEvent.Type.MouseButtonRelease, 200, y - 40, NONE, CTRL)
-    assert context.guides == plate.controller.document.guides == ((), ())
-    assert len(plate.controller.history.steps) == steps
+    assert context.guides == plate.session.document.guides == ((), ())
+    assert len(plate.session.history.steps) == steps
 
 
 def test_that_one_guide_too_many_leaves_those_that_are_there(
@@ -129,4 +129,4 @@ def test_that_one_guide_too_many_leaves_those_that_are_there(
         pull(plate, (5, 200), (pixel(plate, (place, 0))[0], 200))
     context = plate.target.view.context
     assert list(context.guides[0]) == pytest.approx([25.0, 31.7])
-    assert context.guides == plate.controller.document.guides
+    assert context.guides == plate.session.document.guides

@@ -56,7 +56,7 @@ def take(window: MainWindow, until: Until, name: str) -> None:
 
 
 def present(window: MainWindow) -> SecondTarget:
-    second = window.controller.document.settings.second
+    second = window.session.document.settings.second
     assert second is not None
     return second
 
@@ -77,8 +77,8 @@ def passing() -> Document:
 def shown(window: MainWindow, passing: Document, until: Until) -> MainWindow:
     """A studio with these designs, large enough for the line below the slider."""
     window.resize(1440, 900)
-    window.controller.session.restart(passing, None)
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    window.session.restart(passing, None)
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
     return window
 
 
@@ -96,12 +96,12 @@ def test_that_it_lies_under_more_until_there_is_one(window: MainWindow, until: U
     qtbot.mouseClick(settings.more, Qt.MouseButton.LeftButton)
     assert row.isVisible()  # what is asked for stays in sight
     qtbot.mouseClick(row.remove, Qt.MouseButton.LeftButton)
-    assert window.controller.document.settings.second is None and not row.isVisible()
-    assert window.controller.history.undo_label == "Remove the second target"
+    assert window.session.document.settings.second is None and not row.isVisible()
+    assert window.session.history.undo_label == "Remove the second target"
 
 
 def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, until: Until) -> None:
-    row, controller = window.settings.second, window.controller
+    row, session = window.settings.second, window.session
     window.settings.more.setChecked(True)
     take(window, until, "hexagon")
     for value in (50.0, 60.0, 70.0):
@@ -112,10 +112,10 @@ def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, 
     take(window, until, "egg")  # angle and weight stay
     assert (present(window).outline.name, present(window).weight) == ("egg", 1.5)
     assert math.degrees(present(window).phi) == pytest.approx(70.0)
-    assert controller.history.steps == ("Change the second target",) * 4
+    assert session.history.steps == ("Change the second target",) * 4
     names = []
     for _ in range(4):
-        second = controller.document.settings.second
+        second = session.document.settings.second
         assert second is not None
         names.append((second.outline.name, round(math.degrees(second.phi)), second.weight))
         window.commands["undo"].trigger()
@@ -124,13 +124,13 @@ def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, 
 
 
 def test_that_it_lies_between_the_flat_sheet_and_the_target(heart: MainWindow, until: Until) -> None:
-    row, settings, controller = heart.settings.second, heart.settings, heart.controller
+    row, settings, session = heart.settings.second, heart.settings, heart.session
     settings.more.setChecked(True)
     settings.angle.setValue(80.0)
     take(heart, until, "hexagon")
     assert row.angle.value() == 130.0  # halfway, as the usual angle is not passed
     row.angle.setValue(1.0)
-    assert row.angle.value() == pytest.approx(80.1) and controller.document.settings.phi < present(heart).phi
+    assert row.angle.value() == pytest.approx(80.1) and session.document.settings.phi < present(heart).phi
     settings.angle.setValue(120.0)
     assert heart.messages.messages[-1].tone is Tone.ERROR
     assert "not at 80.1 degrees on its way" in heart.messages.messages[-1].sentence
@@ -152,14 +152,14 @@ def test_that_a_file_falls_on_the_row_or_is_opened_and_a_bad_one_changes_nothing
     assert row.drops.here
     QApplication.sendEvent(row, QDropEvent(QPointF(9, 9), copy, content, left, none))
     until(lambda: row.shape.currentText() == "kite")
-    assert window.controller.document.target is None
-    before = window.controller.document
+    assert window.session.document.target is None
+    before = window.session.document
     files.answer = tmp_path / "bad.json"  # type: ignore[attr-defined]
     files.answer.write_text("[1]", encoding="utf-8")  # type: ignore[attr-defined]
     choose(window, "file")
     assert row.shape.currentText() == "kite"  # until another one was read
     until(lambda: bool(window.messages.messages))
-    assert window.messages.messages[-1].tone is Tone.ERROR and window.controller.document is before
+    assert window.messages.messages[-1].tone is Tone.ERROR and window.session.document is before
     files.answer = drawn  # type: ignore[attr-defined]
     choose(window, "file")
     until(lambda: window.messages.messages == ())  # what was wrong no longer applies
@@ -172,7 +172,7 @@ def test_that_it_is_drawn_on_a_board_of_its_own(window: MainWindow) -> None:
     assert board is not None and board.isVisible() and not board.take.isEnabled()
     assert board.view.tool is Tool.POLYGON and board.tools.buttons[Tool.STAR].isVisible()
     board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOUSE, "house")))
-    assert board.take.isEnabled() and window.controller.history.steps == ()
+    assert board.take.isEnabled() and window.session.history.steps == ()
     board.take.click()
     assert not board.isVisible() and present(window).outline.name == "house"
     assert window.settings.second.shape.currentText() == "house"
@@ -182,7 +182,7 @@ def test_that_it_is_drawn_on_a_board_of_its_own(window: MainWindow) -> None:
 
 
 def test_that_the_stage_shows_it_near_its_angle(shown: MainWindow) -> None:
-    view, candidate = shown.stage.view, shown.controller.document.candidates[0]
+    view, candidate = shown.stage.view, shown.session.document.candidates[0]
     design, second = view.design, candidate.second
     assert design is not None and second is not None and view.second is not None
     angle, line = view.second
@@ -194,7 +194,7 @@ def test_that_the_stage_shows_it_near_its_angle(shown: MainWindow) -> None:
     same = {}
     for degrees in (60.0, 66.0, 75.0):
         view.set_phi(math.radians(degrees))
-        view.show_design(design, None, shown.controller.document.target, second)
+        view.show_design(design, None, shown.session.document.target, second)
         with_line = view.grab().toImage()
         view.show_draft(design)  # nothing else changes but that the line goes: it is that of the design before
         assert view.second is None
@@ -203,7 +203,7 @@ def test_that_the_stage_shows_it_near_its_angle(shown: MainWindow) -> None:
 
 
 def test_that_slider_line_status_and_cards_tell_it(shown: MainWindow, qtbot: QtBot) -> None:
-    stage, second = shown.stage, shown.controller.document.candidates[0].second
+    stage, second = shown.stage, shown.session.document.candidates[0].second
     assert second is not None
     (mark,) = [mark for mark in stage.deployment.slider.marks() if mark.kind is MarkKind.SECOND]
     assert mark.phi == HEXAGON.phi and mark.words == "60° second"
@@ -214,15 +214,15 @@ def test_that_slider_line_status_and_cards_tell_it(shown: MainWindow, qtbot: QtB
     assert stage.deployment.slider.phi == HEXAGON.phi
     card = shown.gallery.view.model_.index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert "On its way, at 60°: hexagon, " in card and f"match {share:.2f} %" in card
-    shown.controller.choose(shown.controller.document.candidates[1])
+    shown.services.chosen.choose(shown.session.document.candidates[1])
     assert not stage.ends.passed.isVisible() and "hexagon" not in shown.facts.text()
     assert all(mark.kind is not MarkKind.SECOND for mark in stage.deployment.slider.marks())
 
 
 def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, until: Until) -> None:
-    shown.controller.trim(True)
-    until(lambda: not shown.controller.trimming.busy)
-    stage = shown.controller.stage
+    shown.services.chosen.trim(True)
+    until(lambda: not shown.services.chosen.trimming.busy)
+    stage = shown.session.stage
     assert stage is not None and stage.candidate.trim is not None and stage.candidate.second is not None
     assert shown.stage.ends.passed.accessibleName().endswith("% untrimmed") and shown.stage.view.second is None
     assert "untrimmed" in shown.facts.text()
@@ -232,28 +232,28 @@ def test_that_a_trimmed_design_is_told_as_it_is_untrimmed(shown: MainWindow, unt
 def test_that_generate_uses_it_and_the_project_keeps_it(
     heart: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
-    controller = heart.controller
+    services = heart.services
     for change in ({"grid": (4, 5)}, {"k": 2}, {"polish": 2}):
-        controller.change_settings(**change)  # type: ignore[arg-type]
+        services.settings.change(**change)  # type: ignore[arg-type]
     heart.settings.more.setChecked(True)
     take(heart, until, "hexagon")
     heart.settings.second.angle.setValue(60.0)
     QTest.keyClick(heart.settings.second.angle, Qt.Key.Key_Return)
     heart.commands["generate"].trigger()
-    until(lambda: not controller.running and len(controller.document.candidates) == 2)
+    until(lambda: not services.run.running and len(services.session.document.candidates) == 2)
     wanted = present(heart)
-    for candidate in controller.document.candidates:
+    for candidate in services.session.document.candidates:
         assert candidate.second is not None and candidate.second.target == wanted
         (again,) = second_matches([deploy(candidate.sheet)], wanted)
         assert again is not None and again.match.iou_exact == pytest.approx(candidate.second.match.iou_exact, abs=1e-9)
     files.answer = tmp_path / "passing.kiri"  # type: ignore[attr-defined]
     heart.commands["save_as"].trigger()
-    until(lambda: not controller.history.unsaved)
-    saved = controller.document
+    until(lambda: not services.session.history.unsaved)
+    saved = services.session.document
     assert store.load(tmp_path / "passing.kiri") == saved
     heart.commands["new"].trigger()
     assert not heart.settings.second.remove.isVisible()
-    controller.open_project(tmp_path / "passing.kiri")
-    until(lambda: controller.stage is not None)
-    assert controller.document == saved and heart.settings.second.shape.currentText() == "hexagon"
+    services.project.open(tmp_path / "passing.kiri")
+    until(lambda: services.session.stage is not None)
+    assert services.session.document == saved and heart.settings.second.shape.currentText() == "hexagon"
     assert heart.settings.second.angle.value() == pytest.approx(60.0)

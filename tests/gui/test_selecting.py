@@ -51,7 +51,7 @@ def test_that_cards_are_sorted_by_what_was_asked(designed: MainWindow, designs: 
 
 
 def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> None:
-    before = designed.controller.document
+    before = designed.session.document
     sort_by(designed, order)
     chosen = designs.candidates[0].sheet.field
     values = {
@@ -65,7 +65,7 @@ def check_order(designed: MainWindow, designs: Document, order: SortOrder) -> No
         SortOrder.UNLIKE: lambda one: -float(distances(chosen, [one.sheet.field])[0]),
     }[order]
     assert shown(designed) == sorted(designs.candidates, key=values)
-    assert designed.controller.document is before and not designed.controller.history.unsaved
+    assert designed.session.document is before and not designed.session.history.unsaved
     model = designed.gallery.view.model_
     names = [model.data(model.index(row, 0), NAME_ROLE) for row in range(3)]
     assert names == [f"A{designs.candidates.index(one) + 1}" for one in shown(designed)]
@@ -99,7 +99,7 @@ def test_that_cards_tell_the_number_they_are_sorted_by_at_the_sheets_width(
     told = [str(model.data(model.index(row, 0), VALUE_ROLE)) for row in range(3)]
     assert told == [f"roughness {one.score.tv:.2f}" for one in shown(designed)]
     sort_by(designed, SortOrder.PANEL)
-    designed.controller.fabrication.change(width_mm=250.0)
+    designed.services.fabrication.change(width_mm=250.0)
     sizes = [250.0 * least_panel_share(deploy(one.sheet.field)) for one in shown(designed)]
     told = [model.data(model.index(row, 0), VALUE_ROLE) for row in range(3)]
     assert told == [f"smallest {size:.1f} mm" for size in sizes]
@@ -111,7 +111,7 @@ def test_that_unlike_stays_with_its_design_until_it_is_asked_for_again(designed:
     sort_by(designed, SortOrder.UNLIKE)
     first = shown(designed)
     assert first[-1] == designs.candidates[0] and "design A1" in designed.gallery.bar.order.currentText()
-    designed.controller.choose(designs.candidates[2])
+    designed.services.chosen.choose(designs.candidates[2])
     assert shown(designed) == first
     sort_by(designed, SortOrder.UNLIKE)
     assert shown(designed)[-1] == designs.candidates[2] and "design A3" in designed.gallery.bar.order.currentText()
@@ -128,9 +128,8 @@ def test_that_filters_leave_designs_out_and_the_head_counts_them(
     bar.filters.least.setValue(100 * sorted(matches)[1] - 0.05)
     taken = [one for one in designs.candidates if one.score.iou_exact >= 0.01 * bar.filters.least.value()]
     assert shown(designed) == taken and len(taken) == 2
-    feasible = sum(one.score.feasible for one in taken)
-    assert designed.gallery.count.text() == f"2 of 3 shown · {feasible} feasible"
-    designed.controller.marks.pin(best)
+    assert designed.gallery.count.text() == "2 of 3 shown"
+    designed.services.marks.pin(best)
     bar.filters.pinned.setChecked(True)
     assert shown(designed) == [best]
     qtbot.mouseClick(bar.filter, LEFT)
@@ -153,21 +152,23 @@ def test_that_an_empty_gallery_offers_to_take_the_filter_off(designed: MainWindo
     view, bar = designed.gallery.view, designed.gallery.bar
     bar.filters.pinned.setChecked(True)
     assert shown(designed) == [] and view.hint[0] == "No design matches the filter"
-    assert designed.controller.stage is not None and designed.controller.document.chosen == 0
+    assert designed.session.stage is not None and designed.session.document.chosen == 0
     qtbot.mouseClick(view.viewport(), LEFT, pos=view.viewport().rect().center())
     assert len(shown(designed)) == 3 and not bar.filters.pinned.isChecked()
     assert view.currentIndex().row() == 0
 
 
-def test_that_infeasible_designs_can_be_left_out(qtbot: QtBot, qtmodeltester: ModelTester, designs: Document) -> None:
+def test_that_designs_that_will_not_work_can_be_left_out(
+    qtbot: QtBot, qtmodeltester: ModelTester, designs: Document
+) -> None:
     model = GalleryModel()
     qtmodeltester.check(model)
     bad = replace(designs.candidates[1], score=replace(designs.candidates[1].score, feasible=False))
     good = [
-        replace(one, score=replace(one.score, feasible=True, contact=None))
+        replace(one, score=replace(one.score, feasible=True, contact=None, iou_exact=0.8))
         for one in (designs.candidates[0], designs.candidates[2])
     ]
-    model.select(Selection(feasible_only=True))
+    model.select(Selection(works_only=True))
     model.replace([decoded(one) for one in (good[0], good[1], bad)])
     assert [entry.candidate for entry in model.entries] == good
     assert len(model.all_entries) == 3 and model.number_of(bad) == 3 and model.row_of(bad) == -1

@@ -103,9 +103,9 @@ def test_that_overlays_follow_buttons_menu_and_keys(designed: MainWindow, qtbot:
 def test_that_missing_and_extra_area_agree_with_the_exact_iou(designed: MainWindow) -> None:
     designed.stage.view.grab()
     areas = designed.stage.view.areas
-    assert areas is not None and designed.controller.stage is not None
+    assert areas is not None and designed.session.stage is not None
     overlap = 1.0 - areas.missing_share
-    expected = designed.controller.stage.candidate.score.iou_exact
+    expected = designed.session.stage.candidate.score.iou_exact
     assert overlap / (1.0 + areas.extra_share) == pytest.approx(expected, abs=1e-6)
 
 
@@ -136,11 +136,11 @@ def test_that_the_wheel_zooms_about_the_pointer_and_zero_fits(designed: MainWind
 def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:
     light = designed.grab().toImage()
     designed.commands["theme"].trigger()
-    assert designed.palette_ is DARK
+    assert designed.appearance.palette is DARK
     dark = designed.grab().toImage()
     for area in (designed.stage.view, designed.target.view, designed.gallery.view):
         place = area.mapTo(designed, area.rect().center())
         spot = place if area is not designed.stage.view else area.mapTo(designed, QPoint(12, 12))
         assert light.pixelColor(spot) != dark.pixelColor(spot)
     designed.commands["theme"].trigger()
-    assert designed.palette_ is LIGHT
+    assert designed.appearance.palette is LIGHT

@@ -43,22 +43,22 @@ def roundness(sheet: Sheet) -> float:
 
 
 def test_that_the_start_is_a_choice_of_named_outlines_and_one_undo_step(window: MainWindow) -> None:
-    settings, controller = window.settings, window.controller
+    settings, session = window.settings, window.session
     assert [settings.start.itemData(row) for row in range(len(LISTED))] == LISTED
     assert settings.start.isVisible() and settings.start.currentText() == "Rectangle"
     for name in LISTED[1:]:
         choose(window, name)
-        assert controller.document.settings.start == start_shape(name)
+        assert session.document.settings.start == start_shape(name)
         assert settings.start.currentData() == name and settings.start.itemData(LISTED.index(name), 3)
-    assert controller.history.undo_label == "Change the start outline"
+    assert session.history.undo_label == "Change the start outline"
     for name in reversed(LISTED[:-1]):
         window.commands["undo"].trigger()
         assert settings.start.currentData() == name
-    assert controller.document.settings.start == RECTANGLE
+    assert session.document.settings.start == RECTANGLE
 
 
 def test_that_a_start_that_is_not_a_rectangle_can_be_held_more_softly(window: MainWindow) -> None:
-    settings, controller = window.settings, window.controller
+    settings, session = window.settings, window.session
     settings.more.setChecked(True)
     weight = settings.start_weight
     assert not weight.isEnabled() and weight.value() == 1.0
@@ -66,24 +66,24 @@ def test_that_a_start_that_is_not_a_rectangle_can_be_held_more_softly(window: Ma
     assert weight.isEnabled()
     weight.setValue(0.05)
     weight.editingFinished.emit()
-    assert controller.document.settings.start == replace(start_shape("circle"), weight=0.05)
+    assert session.document.settings.start == replace(start_shape("circle"), weight=0.05)
     assert settings.start.currentData() == "circle", "a listed start stays one at another weight"
     choose(window, "hexagon")
-    assert controller.document.settings.start == replace(start_shape("hexagon"), weight=0.05)
+    assert session.document.settings.start == replace(start_shape("hexagon"), weight=0.05)
     window.commands["undo"].trigger()
     window.commands["undo"].trigger()
-    assert controller.document.settings.start == start_shape("circle") and weight.value() == 1.0
+    assert session.document.settings.start == start_shape("circle") and weight.value() == 1.0
     window.commands["redo"].trigger()
     assert weight.value() == 0.05
 
 
 def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: Until) -> None:
-    settings, controller = heart.settings, heart.controller
+    settings, session = heart.settings, heart.session
     until(lambda: settings.auto.accessibleDescription() != "")
     choose(heart, "ellipse:3:2")
     assert settings.auto.accessibleDescription() == ""  # it is being chosen again
     until(lambda: settings.auto.accessibleDescription() != "")
-    document = controller.document
+    document = session.document
     assert document.target is not None
     wanted = predicted_for(request_for(document.target, document.settings, document.fabrication))
     assert (settings.rows.value(), settings.columns.value()) == wanted.grid
@@ -94,21 +94,21 @@ def test_that_the_grid_to_be_chosen_follows_the_start(heart: MainWindow, until: 
 def test_that_a_circle_gives_round_sheets_that_are_saved_and_cut(
     heart: MainWindow, files: object, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
-    controller = heart.controller
-    controller.change_settings(grid=(4, 5))
-    controller.change_settings(k=2)
-    controller.change_settings(polish=3)
+    services = heart.services
+    services.settings.change(grid=(4, 5))
+    services.settings.change(k=2)
+    services.settings.change(polish=3)
     choose(heart, "circle")
     heart.commands["generate"].trigger()
-    until(lambda: not controller.running and len(controller.document.candidates) == 2)
-    for candidate in controller.document.candidates:
+    until(lambda: not services.run.running and len(services.session.document.candidates) == 2)
+    for candidate in services.session.document.candidates:
         assert roundness(candidate.final_sheet) < 1.0001
         assert candidate.final_sheet.grid == (4, 5)
-    assert controller.document.provenance["start"] == "circle"
+    assert services.session.document.provenance["start"] == "circle"
     until(lambda: heart.fabrication.export.isEnabled())
 
-    with qtbot.waitSignal(controller.cutting.exported, timeout=60_000) as waited:
-        controller.export(tmp_path / "disk.dxf")
+    with qtbot.waitSignal(services.exporter.exported, timeout=60_000) as waited:
+        services.exporter.export(tmp_path / "disk.dxf")
     (verification,) = waited.args[0].verifications
     width, height = verification.size_mm
     assert verification.ok and verification.path == tmp_path / "disk.dxf"
@@ -116,28 +116,28 @@ def test_that_a_circle_gives_round_sheets_that_are_saved_and_cut(
 
     files.answer = tmp_path / "disk.kiri"  # type: ignore[attr-defined]
     heart.commands["save_as"].trigger()
-    until(lambda: not controller.history.unsaved)
-    saved = controller.document
+    until(lambda: not services.session.history.unsaved)
+    saved = services.session.document
     assert store.load(tmp_path / "disk.kiri") == saved
     heart.commands["new"].trigger()
     assert heart.settings.start.currentText() == "Rectangle"
-    controller.open_project(tmp_path / "disk.kiri")
-    until(lambda: controller.stage is not None)
-    assert controller.document == saved and heart.settings.start.currentText() == "Circle"
+    services.project.open(tmp_path / "disk.kiri")
+    until(lambda: services.session.stage is not None)
+    assert services.session.document == saved and heart.settings.start.currentText() == "Circle"
 
 
 def test_that_a_shape_of_the_library_is_a_start_under_its_own_name(window: MainWindow, until: Until) -> None:
-    settings, controller = window.settings, window.controller
+    settings, session = window.settings, window.session
     choose(window, "library")
     assert settings.start.currentText() == "Rectangle"  # until one is chosen
     picker = window.dialogs.picker
     assert picker is not None and picker.isVisible()
     picker.chosen.emit("egg")
     picker.close()
-    until(lambda: controller.document.settings.start.name == "egg")
+    until(lambda: session.document.settings.start.name == "egg")
     assert settings.start.currentText() == "egg" and "egg" in settings.start.toolTip()
     choose(window, "loaded")
-    assert controller.document.settings.start.name == "egg" and len(controller.history.steps) == 1
+    assert session.document.settings.start.name == "egg" and len(session.history.steps) == 1
     choose(window, "hexagon")
     assert settings.start.findData("loaded") < 0
     window.commands["undo"].trigger()
@@ -149,7 +149,7 @@ def test_that_a_shape_of_the_library_is_a_start_under_its_own_name(window: MainW
 def test_that_a_hollow_start_is_refused_with_the_place_and_changes_nothing(
     window: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
-    before = window.controller.document
+    before = window.session.document
     corner = tmp_path / "corner.svg"
     corner.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 4 4"><path d="M0 0H4V1H1V4H0Z"/></svg>', encoding="utf-8"
@@ -159,7 +159,7 @@ def test_that_a_hollow_start_is_refused_with_the_place_and_changes_nothing(
     until(lambda: bool(window.messages.messages))
     message = window.messages.messages[-1]
     assert message.tone is Tone.ERROR and "'corner' is hollow" in message.sentence
-    assert window.controller.document is before and window.settings.start.currentText() == "Rectangle"
+    assert window.session.document is before and window.settings.start.currentText() == "Rectangle"
     corner.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 4 4"><path d="M0 0H4V2L2 4H0Z"/></svg>', encoding="utf-8"
     )
@@ -184,7 +184,7 @@ def test_that_edge_cuts_slide_between_the_corners_of_the_start(name: str) -> Non
 
 
 def test_that_an_edge_cut_at_a_corner_of_the_start_stays_there(heart: MainWindow, until: Until) -> None:
-    controller, target = heart.controller, heart.controller.document.target
+    services, target = heart.services, heart.session.document.target
     outline = start_shape("triangle").outline
     assert target is not None and outline is not None
     sheet = laid_sheet(outline.points, 6, 7)
@@ -192,15 +192,15 @@ def test_that_an_edge_cut_at_a_corner_of_the_start_stays_there(heart: MainWindow
     assert held.any() and not held.all()
     candidate = Candidate(sheet, evaluate(deploy(sheet), target, 0.0), seed=0, index=0)
     document = edits.set_candidates(Document(target), [candidate], {}).document
-    controller.session.restart(replace(document, chosen=0), None)
-    until(lambda: controller.stage is not None)
-    controller.hand.nudge_mouth(int(np.flatnonzero(held)[0]), 0.3)
-    controller.hand.commit()
+    services.session.restart(replace(document, chosen=0), None)
+    until(lambda: services.session.stage is not None)
+    services.hand.nudge_mouth(int(np.flatnonzero(held)[0]), 0.3)
+    services.hand.commit()
     assert "holds a corner of the flat sheet" in heart.status_text.text()
-    assert controller.history.steps == () and controller.document.candidates == (candidate,)
+    assert services.session.history.steps == () and services.session.document.candidates == (candidate,)
     free = int(np.flatnonzero(~held)[0])
-    controller.hand.nudge_mouth(free, 0.1)
-    controller.hand.commit()
-    until(lambda: controller.history.steps == ("Move edge cut",))
-    moved = controller.document.candidates[0].sheet
+    services.hand.nudge_mouth(free, 0.1)
+    services.hand.commit()
+    until(lambda: services.session.history.steps == ("Move edge cut",))
+    moved = services.session.document.candidates[0].sheet
     assert abs(moved.rim.positions[free] - sheet.rim.positions[free] - 0.1) < 1e-9

@@ -75,16 +75,16 @@ def of_two_starts() -> Document:
 
 
 def test_that_the_tile_names_the_start_and_its_size_and_goes_back_in_one_click(window: MainWindow) -> None:
-    tile, controller = window.target.start, window.controller
+    tile, services = window.target.start, window.services
     assert tile.isVisible() and tile.name == "rectangle" and not tile.back.isVisible()
     tile.entries["ellipse:3:2"].trigger()
-    assert controller.document.settings.start == start_shape("ellipse:3:2")
+    assert services.session.document.settings.start == start_shape("ellipse:3:2")
     assert (tile.name, tile.size_text) == ("ellipse 3:2", f"100 {TIMES} 66.7 mm")
     assert window.settings.start.currentText() == "Ellipse 3:2" and tile.back.isVisible()
-    controller.fabrication.change(width_mm=60.0)
+    services.fabrication.change(width_mm=60.0)
     assert tile.size_text == f"60 {TIMES} 40 mm" and f"60 {TIMES} 40 mm" in tile.accessibleName()
     tile.back.click()
-    assert controller.document.settings.start == RECTANGLE and controller.history.undo_label == (
+    assert services.session.document.settings.start == RECTANGLE and services.session.history.undo_label == (
         "Change the start outline"
     )
     window.commands["undo"].trigger()
@@ -144,14 +144,14 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
     assert board.take.isEnabled() and board.view.hollows == ()
     board.undo.click()
     board.undo.click()
-    assert not board.take.isEnabled() and window.controller.history.steps == ()
+    assert not board.take.isEnabled() and window.session.history.steps == ()
     board.redo.click()
     board.redo.click()
     board.take.click()
     until(lambda: window.target.start.name == "polygon")
     assert window.target.start.size_text == f"100 {TIMES} 100 mm" and not board.isVisible()
-    assert window.controller.history.steps == ("Change the start outline",)
-    assert window.controller.document.target is None  # the target's board is another one
+    assert window.session.history.steps == ("Change the start outline",)
+    assert window.session.document.target is None  # the target's board is another one
     window.settings.other_start_wanted.emit("draw")
     assert board.placed is not None and len(board.placed.outline.points) == 5  # to go on from
     board.cancel.click()
@@ -161,8 +161,8 @@ def test_that_a_start_is_drawn_on_its_own_board_which_says_where_it_is_hollow(wi
 
 
 def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWindow, until: Until) -> None:
-    controller = heart.controller
-    controller.change_settings(grid=(6, 6))
+    services = heart.services
+    services.settings.change(grid=(6, 6))
     heart.target.start.entries["draw"].trigger()
     board = heart.dialogs.start_board
     assert board is not None
@@ -179,7 +179,7 @@ def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWind
     until(lambda: heart.target.start_refusal.isVisible())
     assert heart.target.start_refusal.text() == refusal
     assert heart.target.start_refusal.drawn_text() == "The start folds on this grid"
-    controller.change_settings(grid=(8, 8))
+    services.settings.change(grid=(8, 8))
     until(lambda: heart.settings.auto.accessibleDescription() != "")  # it was read anew
     assert not heart.target.start_refusal.isVisible()
     heart.target.start.entries["draw"].trigger()
@@ -190,25 +190,25 @@ def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWind
 
 @pytest.mark.torch
 def test_that_the_run_refuses_it_in_the_same_words(heart: MainWindow, until: Until) -> None:
-    controller = heart.controller
-    controller.change_settings(grid=(4, 4))
-    controller.start.draw(Outline.from_points(SLOTTED, "polygon"))
+    services = heart.services
+    services.settings.change(grid=(4, 4))
+    services.start.draw(Outline.from_points(SLOTTED, "polygon"))
     until(lambda: heart.target.start_refusal.isVisible())
     heart.commands["generate"].trigger()
-    until(lambda: bool(heart.messages.messages) and not controller.running)
+    until(lambda: bool(heart.messages.messages) and not services.run.running)
     assert heart.messages.messages[-1].sentence == heart.target.start_refusal.text()
 
 
 def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     window: MainWindow, until: Until, of_two_starts: Document
 ) -> None:
-    controller, ends = window.controller, window.stage.ends
+    services, ends = window.services, window.stage.ends
     assert not ends.isVisible()
     window.resize(1600, 900)
-    controller.session.restart(of_two_starts, None)
-    until(lambda: controller.stage is not None)
-    assert controller.stage is not None and ends.isVisible()
-    deployment, score = controller.stage.design.deployment, controller.stage.candidate.score
+    services.session.restart(of_two_starts, None)
+    until(lambda: services.session.stage is not None)
+    assert services.session.stage is not None and ends.isVisible()
+    deployment, score = services.session.stage.design.deployment, services.session.stage.candidate.score
 
     flat = shapely.Polygon(deployment.compact[deployment.topology.outline_nodes])
     disk = shapely.Point(flat.centroid).buffer(math.sqrt(flat.area / math.pi), quad_segs=720)
@@ -227,26 +227,24 @@ def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     assert window.stage.deployment.slider.phi == math.pi
     ends.target.click()
     assert window.stage.deployment.slider.phi == 0.0
-    controller.fabrication.change(width_mm=50.0)
+    services.fabrication.change(width_mm=50.0)
     assert f"50 {TIMES} {0.5 * height:.1f} mm" in ends.start.accessibleName()
 
 
 def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
     window: MainWindow, until: Until, of_two_starts: Document
 ) -> None:
-    controller, model = window.controller, window.gallery.view.model_
-    controller.session.restart(of_two_starts, None)
-    until(lambda: controller.stage is not None)
+    services, model = window.services, window.gallery.view.model_
+    services.session.restart(of_two_starts, None)
+    until(lambda: services.session.stage is not None)
     assert window.target.start.name == "hexagon"  # of the next run
     for place, name in enumerate(("circle", "rectangle")):
-        controller.choose(of_two_starts.candidates[place])
+        services.chosen.choose(of_two_starts.candidates[place])
         assert window.stage.ends.start.accessibleName().startswith(f"{name}  ·  ")
         row = model.index(model.row_of(of_two_starts.candidates[place]), 0)
         assert row.data(START_ROLE) == name
         assert f"Flat: {name}, 100 {TIMES} " in row.data(Qt.ItemDataRole.ToolTipRole)
-    controller.session.restart(
-        replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=(), labels=()), None
-    )
+    services.session.restart(replace(of_two_starts, candidates=of_two_starts.candidates[:1], marks=(), labels=()), None)
     until(lambda: len(model.entries) == 1)
     assert model.index(0, 0).data(START_ROLE) == ""  # nothing to tell apart
 
@@ -254,40 +252,40 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
 def test_that_the_tile_tells_the_size_of_the_design_on_the_stage_where_it_starts_so(
     window: MainWindow, until: Until, of_two_starts: Document
 ) -> None:
-    controller, tile = window.controller, window.target.start
+    services, tile = window.services, window.target.start
     plain = edits.set_settings(of_two_starts, start=RECTANGLE).document
-    controller.session.restart(replace(plain, settings=replace(plain.settings, grid=(4, 14))), None)
-    until(lambda: controller.stage is not None)
+    services.session.restart(replace(plain, settings=replace(plain.settings, grid=(4, 14))), None)
+    until(lambda: services.session.stage is not None)
     of_the_next = tile.size_text  # the circle is on the stage
     assert of_the_next == f"100 {TIMES} 33.3 mm" and "on the stage" not in tile.toolTip()
-    controller.choose(of_two_starts.candidates[1])
-    assert controller.stage is not None
-    across, up = np.ptp(controller.stage.design.deployment.compact, axis=0).tolist()
+    services.chosen.choose(of_two_starts.candidates[1])
+    assert services.session.stage is not None
+    across, up = np.ptp(services.session.stage.design.deployment.compact, axis=0).tolist()
     assert tile.size_text == f"100 {TIMES} {100 * up / across:.3g} mm" != of_the_next
     assert tile.size_text in window.stage.ends.start.accessibleName() and "on the stage" in tile.toolTip()
-    controller.fabrication.change(width_mm=50.0)
+    services.fabrication.change(width_mm=50.0)
     assert tile.size_text == f"50 {TIMES} {50 * up / across:.3g} mm"
-    controller.targeting.clear()
-    until(lambda: controller.stage is None)
+    services.targeting.clear()
+    until(lambda: services.session.stage is None)
     assert "on the stage" not in tile.toolTip()
 
 
 @pytest.mark.torch
 def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart: MainWindow, until: Until) -> None:
-    controller, model = heart.controller, heart.gallery.view.model_
+    services, model = heart.services, heart.gallery.view.model_
     for changes in ({"grid": (4, 5)}, {"k": 2}, {"polish": 0}):
-        controller.change_settings(**changes)
+        services.settings.change(**changes)
     heart.target.start.entries["circle"].trigger()
     heart.commands["generate"].trigger()
-    until(lambda: not controller.running and len(controller.document.candidates) == 2)
-    pinned = controller.document.candidates[0]
-    controller.marks.pin(pinned)
+    until(lambda: not services.run.running and len(services.session.document.candidates) == 2)
+    pinned = services.session.document.candidates[0]
+    services.marks.pin(pinned)
     heart.target.start.entries["hexagon"].trigger()
     heart.commands["generate"].trigger()
-    until(lambda: not controller.running and len(controller.document.candidates) == 3)
+    until(lambda: not services.run.running and len(services.session.document.candidates) == 3)
     names = [model.index(row, 0).data(START_ROLE) for row in range(len(model.entries))]
     assert sorted(names) == ["circle", "hexagon", "hexagon"]
-    controller.choose(pinned)
+    services.chosen.choose(pinned)
     assert heart.stage.ends.start.accessibleName().startswith("circle  ·  ")
     assert heart.target.start.name == "hexagon"
 
@@ -330,7 +328,7 @@ def test_that_names_of_starts_are_words(name: str, words: str) -> None:
 
 
 def test_that_a_design_starts_as_its_own_outline_and_not_as_another_of_the_same_name(designed: MainWindow) -> None:
-    candidate = designed.controller.document.candidates[0]
+    candidate = designed.session.document.candidates[0]
     corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 4.0)]
     drawn, other = (
         StartShape("drawing", Outline.from_points([(side * x, y) for x, y in corners], name="drawing"))

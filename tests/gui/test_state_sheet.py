@@ -72,7 +72,7 @@ def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     sheet.starts()
     for name in ("start-menu", "start-board-dark", "pairs-light", "pair-1280x720-dark"):
         assert (tmp_path / f"{name}.png").exists()
-    assert sheet.window.target.start.name == "circle" and sheet.window.controller.document.candidates
+    assert sheet.window.target.start.name == "circle" and sheet.window.session.document.candidates
 
 
 @pytest.mark.torch
@@ -100,7 +100,7 @@ def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2])
-    sheet.window.controller.fabrication.change(width_mm=88.0)
+    sheet.window.services.fabrication.change(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
     for name in ("recovery-1280x720-dark", "menu-recent-light", "menu-pictures-dark", "history-light"):
@@ -120,8 +120,8 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
 
 
 def test_that_the_part_states_show_the_picker_and_take_nothing(sheet: StateSheet, tmp_path: Path) -> None:
-    before = sheet.window.controller.document
+    before = sheet.window.session.document
     sheet.parts()
-    assert sheet.window.controller.document is before
+    assert sheet.window.session.document is before
     for name in ("parts-largest-dark", "parts-bridges-light", "parts-hull-light"):
         assert (tmp_path / f"{name}.png").exists()

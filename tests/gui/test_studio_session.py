@@ -38,7 +38,7 @@ class Sitting:
 
     @property
     def document(self) -> Document:
-        return self.window.controller.document
+        return self.window.session.document
 
     def key(self, key: Qt.Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
         self.bot.keyClick(self.window, key, modifier)
@@ -81,8 +81,8 @@ class Sitting:
     def generate(self) -> None:
         """Ctrl+G with the bundled model."""
         self.key(Qt.Key.Key_G, CONTROL)
-        assert self.window.controller.running
-        self.until(lambda: not self.window.controller.running and self.window.fabrication.export.isEnabled())
+        assert self.window.services.run.running
+        self.until(lambda: not self.window.services.run.running and self.window.fabrication.export.isEnabled())
         assert len(self.document.candidates) == DESIGNS and self.document.chosen == 0
 
     def choose(self) -> None:
@@ -91,11 +91,11 @@ class Sitting:
         self.window.gallery.bar.filters.grouped.setChecked(False)
         self.bot.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model_.index(1, 0)).center())
         assert self.document.chosen == 1 and self.window.stage.title.text() == "Design A2"
-        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
+        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.session.queue.busy)
 
     def scrub(self) -> None:
         """Drag the slider from the target to the flat sheet and half the way back; the drawing follows exactly."""
-        slider, view, stage = self.window.stage.deployment.slider, self.window.stage.view, self.window.controller.stage
+        slider, view, stage = self.window.stage.deployment.slider, self.window.stage.view, self.window.session.stage
         assert stage is not None
         before, paints = self.document, PaintCounter(view)
         y, left, right = slider.height() // 2, 14, slider.width() - 15
@@ -130,7 +130,7 @@ class Sitting:
         self.key(Qt.Key.Key_L)
         assert self.document.locked == {void}
         self.key(Qt.Key.Key_H)
-        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.controller.queue.busy)
+        self.until(lambda: self.window.fabrication.export.isEnabled() and not self.window.session.queue.busy)
 
     def set_connectors(self) -> None:
         """Show the cuts, click on a connector, type its width, Return; then put another one off with Delete."""
@@ -174,12 +174,12 @@ class Sitting:
     def save(self) -> None:
         """Ctrl+S."""
         self.key(Qt.Key.Key_S, CONTROL)
-        self.until(lambda: not self.window.controller.history.unsaved)
+        self.until(lambda: not self.window.session.history.unsaved)
 
     def undo_everything(self) -> list[str]:
         """Ctrl+Z until there is nothing left; the steps' names, last first."""
         names = []
-        while (name := self.window.controller.history.undo_label) is not None and len(names) < MOST_STEPS:
+        while (name := self.window.session.history.undo_label) is not None and len(names) < MOST_STEPS:
             names.append(name)
             self.key(Qt.Key.Key_Z, CONTROL)
         return names
@@ -187,7 +187,7 @@ class Sitting:
     def redo_everything(self) -> None:
         """Ctrl+Y as often."""
         for _ in range(MOST_STEPS):
-            if self.window.controller.history.redo_label is not None:
+            if self.window.session.history.redo_label is not None:
                 self.key(Qt.Key.Key_Y, CONTROL)
 
 
@@ -196,7 +196,7 @@ def test_that_a_whole_sitting_ends_where_it_began(
     window: MainWindow, qtbot: QtBot, until: Until, files: object, tmp_path: Path
 ) -> None:
     window.resize(1440, 900)
-    at_work, start = Sitting(window, qtbot, until), window.controller.document
+    at_work, start = Sitting(window, qtbot, until), window.session.document
     at_work.draw_freehand()
     at_work.set_up()
     at_work.generate()
@@ -208,15 +208,15 @@ def test_that_a_whole_sitting_ends_where_it_began(
     at_work.export(tmp_path / "egg.dxf")
     files.answer = tmp_path / "egg.kiri"  # type: ignore[attr-defined]
     at_work.save()
-    kept = window.controller.document
+    kept = window.session.document
     assert reopened(tmp_path / "egg.kiri", until) == kept
     at_work.come_back()
     steps = at_work.undo_everything()
-    assert window.controller.document == start and window.gallery.view.model_.rowCount() == 0
+    assert window.session.document == start and window.gallery.view.model_.rowCount() == 0
     assert len(steps) >= 9 and len(set(steps)) >= 8
     at_work.redo_everything()
-    assert window.controller.document == kept and not window.controller.history.unsaved
-    until(lambda: not window.controller.queue.busy and window.fabrication.export.isEnabled())
+    assert window.session.document == kept and not window.session.history.unsaved
+    until(lambda: not window.session.queue.busy and window.fabrication.export.isEnabled())
 
 
 def reopened(path: Path, until: Until) -> Document:
@@ -224,8 +224,8 @@ def reopened(path: Path, until: Until) -> Document:
     other = create_window(LIGHT)
     other.show()
     other.files.open(str(path))
-    until(lambda: other.controller.stage is not None and other.fabrication.export.isEnabled())
-    document = other.controller.document
+    until(lambda: other.session.stage is not None and other.fabrication.export.isEnabled())
+    document = other.session.document
     assert len(other.gallery.view.model_.all_entries) == len(document.candidates)
     assert other.close()
     other.deleteLater()

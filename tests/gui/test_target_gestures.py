@@ -38,7 +38,7 @@ def test_that_a_silhouette_is_found_by_typing_its_name_in_the_library(
     qtbot.keyClicks(picker.search, "hexag")
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
     until(lambda: window.target.view.outline is not None)
-    assert window.controller.document.target == silhouettes.load("hexagon")
+    assert window.session.document.target == silhouettes.load("hexagon")
     assert window.run.generate.isEnabled()
 
 
@@ -49,8 +49,8 @@ def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, q
     qtbot.keyClicks(picker.search, "star")
     assert sum(not picker.list.item(row).isHidden() for row in range(picker.list.count())) > 1
     qtbot.keyClick(picker.search, Qt.Key.Key_Return)
-    until(lambda: window.controller.document.target is not None)
-    assert window.controller.document.target == silhouettes.load("star")
+    until(lambda: window.session.document.target is not None)
+    assert window.session.document.target == silhouettes.load("star")
 
 
 def test_that_the_key_that_opens_the_library_chooses_nothing_in_it(window: MainWindow, until: Until) -> None:
@@ -64,16 +64,16 @@ def test_that_the_key_that_opens_the_library_chooses_nothing_in_it(window: MainW
     QApplication.processEvents()
     QTest.keyClick(picker, Qt.Key.Key_Return)
     assert len(chosen) == 1
-    until(lambda: not window.controller.queue.busy)
+    until(lambda: not window.session.queue.busy)
 
 
 def test_that_the_first_target_is_no_unsaved_change(window: MainWindow, until: Until) -> None:
     open_first(window, "heart")
     until(lambda: window.target.view.outline is not None)
-    assert not window.controller.history.unsaved and not window.commands["undo"].isEnabled()
+    assert not window.session.history.unsaved and not window.commands["undo"].isEnabled()
     open_first(window, "star")
-    until(lambda: window.controller.document.target == silhouettes.load("star"))
-    assert window.controller.history.unsaved
+    until(lambda: window.session.document.target == silhouettes.load("star"))
+    assert window.session.history.unsaved
 
 
 def test_that_a_library_picture_is_chosen_by_click(window: MainWindow, qtbot: QtBot, until: Until) -> None:
@@ -82,8 +82,8 @@ def test_that_a_library_picture_is_chosen_by_click(window: MainWindow, qtbot: Qt
     assert picker is not None
     item = picker.list.item(2)
     qtbot.mouseClick(picker.list.viewport(), LEFT, pos=picker.list.visualItemRect(item).center())
-    until(lambda: window.controller.document.target is not None)
-    assert window.controller.document.target == silhouettes.load(silhouettes.names()[2])
+    until(lambda: window.session.document.target is not None)
+    assert window.session.document.target == silhouettes.load(silhouettes.names()[2])
 
 
 def test_that_an_image_file_becomes_the_target(window: MainWindow, files: object, tmp_path: Path, until: Until) -> None:
@@ -92,8 +92,8 @@ def test_that_an_image_file_becomes_the_target(window: MainWindow, files: object
     Image.fromarray(np.where(x**2 + (y / 0.6) ** 2 < 0.6, 0, 255).astype(np.uint8)).save(path)
     files.answer = path  # type: ignore[attr-defined]
     window.commands["open_target"].trigger()
-    until(lambda: window.controller.document.target is not None)
-    width, height = np.ptp(window.controller.document.target.points, axis=0)  # type: ignore[union-attr]
+    until(lambda: window.session.document.target is not None)
+    width, height = np.ptp(window.session.document.target.points, axis=0)  # type: ignore[union-attr]
     assert width / height == pytest.approx(1 / 0.6, rel=0.05)
     assert "blob" in window.target.facts.text()
 
@@ -108,8 +108,8 @@ def test_that_a_dropped_file_is_opened(window: MainWindow, tmp_path: Path, until
     receiver = window.target.view if on_target else window
     QApplication.sendEvent(receiver, QDragEnterEvent(place, copy, mime, LEFT, plain))
     QApplication.sendEvent(receiver, QDropEvent(QPointF(place), copy, mime, LEFT, plain))
-    until(lambda: window.controller.document.target is not None)
-    assert len(window.controller.document.target.points) == 4  # type: ignore[union-attr]
+    until(lambda: window.session.document.target is not None)
+    assert len(window.session.document.target.points) == 4  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(
@@ -121,13 +121,13 @@ def test_that_a_bad_file_leads_to_a_message_and_changes_nothing(
 ) -> None:
     path = tmp_path / name
     path.write_bytes(content)
-    before = heart.controller.document
-    heart.controller.targeting.open(str(path))
+    before = heart.session.document
+    heart.services.targeting.open(str(path))
     until(lambda: heart.messages.isVisible())
     message = heart.messages.messages[-1]
     assert message.tone is Tone.ERROR and message.sentence.endswith(".") and "Traceback" not in message.sentence
     assert "Traceback" in message.details
-    assert heart.controller.document is before
+    assert heart.session.document is before
 
 
 def test_that_messages_are_kept_until_closed_and_tell_details_on_demand(
@@ -135,7 +135,7 @@ def test_that_messages_are_kept_until_closed_and_tell_details_on_demand(
 ) -> None:
     for name in ("no such thing", "nor this one"):
         count = len(heart.messages.messages)
-        heart.controller.targeting.open(name)
+        heart.services.targeting.open(name)
         until(lambda count=count: len(heart.messages.messages) > count)  # type: ignore[misc]
     bar = heart.messages
     assert "nor this one" in bar.sentence.text() and bar.position.text() == "2 of 2"
@@ -158,10 +158,10 @@ def test_that_a_target_that_is_read_ends_what_was_said_of_those_that_were_not(
     bar.add(Message("The disk is full; free some space.", Tone.ERROR))
     (tmp_path / "nothing.svg").touch()
     for count, name in enumerate(("no such thing", str(tmp_path / "nothing.svg")), 2):
-        heart.controller.targeting.open(name)
+        heart.services.targeting.open(name)
         until(lambda count=count: len(bar.messages) == count)  # type: ignore[misc]
     assert bar.sentence.text().startswith("nothing.svg is empty")
-    heart.controller.targeting.open("star")
+    heart.services.targeting.open("star")
     until(lambda: len(bar.messages) == 1)
     assert bar.sentence.text().startswith("The disk is full")
 
@@ -185,7 +185,7 @@ def test_that_a_stroke_of_the_mouse_becomes_a_smooth_target(window: MainWindow, 
     for place in places[1:]:
         qtbot.mouseMove(view, place)
     qtbot.mouseRelease(view, LEFT, pos=places[-1])
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and target.name == "drawing"
     width, height = np.ptp(target.points, axis=0)
     assert width / height == pytest.approx(1 / 0.7, rel=0.08)
@@ -201,7 +201,7 @@ def test_that_clicked_corners_become_a_polygon_the_right_way_up(window: MainWind
         qtbot.mouseClick(view, LEFT, pos=at(x, y))
     qtbot.keyClick(view, Qt.Key.Key_Backspace)
     qtbot.keyClick(view, Qt.Key.Key_Return)
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and len(target.points) == 3
     # A right triangle with its right angle at the lower left: y is up in the target, down on the screen.
     lowest, leftmost = target.points[:, 1].min(), target.points[:, 0].min()
@@ -213,7 +213,7 @@ def test_that_a_polygon_closes_on_its_first_corner(window: MainWindow, qtbot: Qt
     qtbot.keyClick(window, Qt.Key.Key_P)
     for x, y in [(60, 40), (60, 140), (160, 140), (63, 42)]:
         qtbot.mouseClick(view, LEFT, pos=at(x, y))
-    target = window.controller.document.target
+    target = window.session.document.target
     assert target is not None and len(target.points) == 3
 
 
@@ -224,11 +224,11 @@ def test_that_too_few_corners_are_refused_with_a_sentence(window: MainWindow, qt
         qtbot.mouseClick(view, LEFT, pos=at(x, y))
     qtbot.keyClick(view, Qt.Key.Key_Return)
     assert window.messages.messages[-1].tone is Tone.ERROR
-    assert window.controller.document.target is None
+    assert window.session.document.target is None
 
 
 def test_that_escape_leaves_a_sketch_without_a_trace(heart: MainWindow, qtbot: QtBot) -> None:
-    before = heart.controller.document
+    before = heart.session.document
     view = heart.target.view
     qtbot.keyClick(heart, Qt.Key.Key_P)
     qtbot.mouseClick(view, LEFT, pos=at(60, 40))
@@ -236,11 +236,11 @@ def test_that_escape_leaves_a_sketch_without_a_trace(heart: MainWindow, qtbot: Q
     assert not view.active.busy and heart.target.buttons["polygon"].isChecked()
     qtbot.keyClick(view, Qt.Key.Key_Escape)
     assert not heart.target.buttons["polygon"].isChecked()
-    assert heart.controller.document is before
+    assert heart.session.document is before
 
 
 def test_that_clearing_a_target_can_be_undone(heart: MainWindow, qtbot: QtBot) -> None:
     qtbot.mouseClick(heart.target.buttons["clearTarget"], LEFT)
-    assert heart.controller.document.target is None and not heart.run.generate.isEnabled()
+    assert heart.session.document.target is None and not heart.run.generate.isEnabled()
     heart.commands["undo"].trigger()
     assert heart.target.view.outline == silhouettes.load("heart")

@@ -25,7 +25,7 @@ Until = Callable[[Callable[[], bool]], None]
 
 @pytest.fixture
 def traced(window: MainWindow, photo: Path, until: Until) -> MainWindow:
-    window.controller.targeting.open(str(photo))
+    window.services.targeting.open(str(photo))
     until(lambda: window.target.threshold.isVisible())
     return window
 
@@ -34,7 +34,7 @@ def test_that_a_picture_starts_at_its_automatic_threshold(traced: MainWindow, ph
     shown = traced.target.threshold
     assert shown.slider.value() == round(200 * automatic_threshold(photo))
     assert not shown.automatic.isEnabled()
-    assert traced.controller.document.target == read_image(photo)
+    assert traced.session.document.target == read_image(photo)
 
 
 def test_that_a_library_silhouette_has_no_threshold(heart: MainWindow) -> None:
@@ -44,72 +44,72 @@ def test_that_a_library_silhouette_has_no_threshold(heart: MainWindow) -> None:
 def test_that_the_contour_follows_and_one_drag_undoes_at_once(
     traced: MainWindow, photo: Path, until: Until, qtbot: QtBot
 ) -> None:
-    bar, controller = traced.target.threshold, traced.controller
-    before = controller.document.target
+    bar, session = traced.target.threshold, traced.session
+    before = session.document.target
     bar.slider.setSliderDown(True)
     for value in range(100, 161):
         bar.slider.setValue(value)
     bar.slider.setSliderDown(False)
-    until(lambda: controller.document.target == read_image(photo, 0.8))
-    until(lambda: not controller.queue.busy)
+    until(lambda: session.document.target == read_image(photo, 0.8))
+    until(lambda: not session.queue.busy)
     assert bar.slider.value() == 160 and bar.number.text() == "80.0 %"
-    assert controller.history.undo_label == "Change threshold"
+    assert session.history.undo_label == "Change threshold"
     qtbot.keyClick(traced, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    assert controller.document.target == before
+    assert session.document.target == before
     assert bar.slider.value() == round(200 * automatic_threshold(photo))
 
 
 def test_that_each_key_press_is_a_step_of_its_own(traced: MainWindow, photo: Path, until: Until) -> None:
-    bar, controller = traced.target.threshold, traced.controller
+    bar, services = traced.target.threshold, traced.services
     for value in (150, 160):
         bar.slider.setValue(value)
-        until(lambda value=value: controller.document.target == read_image(photo, value / 200))  # type: ignore[misc]
-        until(lambda: not controller.queue.busy)
-    controller.undo()
-    assert controller.document.target == read_image(photo, 0.75)
+        until(lambda value=value: services.session.document.target == read_image(photo, value / 200))  # type: ignore[misc]
+        until(lambda: not services.session.queue.busy)
+    services.project.undo()
+    assert services.session.document.target == read_image(photo, 0.75)
 
 
 def test_that_auto_brings_the_found_threshold_back(traced: MainWindow, photo: Path, until: Until, qtbot: QtBot) -> None:
-    bar, controller = traced.target.threshold, traced.controller
+    bar, session = traced.target.threshold, traced.session
     bar.slider.setValue(160)
-    until(lambda: bar.automatic.isEnabled() and not controller.queue.busy)
+    until(lambda: bar.automatic.isEnabled() and not session.queue.busy)
     qtbot.mouseClick(bar.automatic, Qt.MouseButton.LeftButton)
-    until(lambda: controller.document.target == read_image(photo))
+    until(lambda: session.document.target == read_image(photo))
     assert not bar.automatic.isEnabled()
 
 
 def test_that_a_threshold_without_shape_keeps_the_target_and_says_so(traced: MainWindow, until: Until) -> None:
-    before = traced.controller.document.target
+    before = traced.session.document.target
     traced.target.threshold.slider.setValue(1)
     until(lambda: "one colour" in traced.status_text.text())
-    assert traced.controller.document.target is before
+    assert traced.session.document.target is before
     assert not traced.messages.messages
 
 
 def test_that_a_new_target_ends_the_tracing_of_the_old_one(traced: MainWindow, until: Until) -> None:
     for value in (120, 140, 160):
         traced.target.threshold.slider.setValue(value)
-    traced.controller.targeting.open("heart")
-    until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
-    until(lambda: not traced.controller.queue.busy)
-    assert traced.controller.document.target is not None and traced.controller.document.target.name == "heart"
+    traced.services.targeting.open("heart")
+    until(lambda: traced.session.document.target is not None and traced.session.document.target.name == "heart")
+    until(lambda: not traced.session.queue.busy)
+    assert traced.session.document.target is not None and traced.session.document.target.name == "heart"
     assert not traced.target.threshold.isVisible()
 
 
 def test_that_a_drawing_wins_over_a_file_that_is_still_being_read(
     window: MainWindow, photo: Path, until: Until
 ) -> None:
-    window.controller.targeting.open(str(photo))
+    window.services.targeting.open(str(photo))
     corners = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 2.0]])
-    window.connections.target.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
-    until(lambda: not window.controller.queue.busy)
-    assert window.controller.document.target is not None and window.controller.document.target.name == "polygon"
+    window.presenters.target.reshaping.take(Change("Draw polygon", lambda: Placed.from_ring(corners, "polygon")))
+    until(lambda: not window.session.queue.busy)
+    assert window.session.document.target is not None and window.session.document.target.name == "polygon"
 
 
 def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
     traced: MainWindow, photo: Path, until: Until
 ) -> None:
-    view, controller = traced.target.view, traced.controller
+    view, session = traced.target.view, traced.session
     under = view.underlay
     assert under is not None and under.path == photo and under.size == (120, 100)
     traced.target.set_editing(True)
@@ -126,7 +126,7 @@ def test_that_the_contour_lies_on_the_picture_and_the_picture_lies_still(
     assert box()[1:] == pytest.approx([100 - 81, 101, 100 - 20], abs=0.6) and box()[0] == pytest.approx(40, abs=2)
     before = view.transform()
     traced.target.threshold.slider.setValue(160)
-    until(lambda: controller.document.target == read_image(photo, 0.8))
+    until(lambda: session.document.target == read_image(photo, 0.8))
     assert view.underlay is under and view.transform() == before
     assert box() == pytest.approx([10, 100 - 81, 101, 100 - 20], abs=1)
 
@@ -138,10 +138,10 @@ def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_tar
     traced.target.refine.sliders["smooth"].setValue(30)
     assert traced.target.view.underlay is not None and not traced.target.threshold.isVisible()
     shown = traced.target.view.grab().toImage()
-    traced.controller.targeting.open("heart")
+    traced.services.targeting.open("heart")
     until(lambda: bool(traced.messages.messages))  # it was smoothed by hand: the window asks
     next(button for button in traced.messages.findChildren(QPushButton) if button.text() == "Replace").click()
-    until(lambda: traced.controller.document.target is not None and traced.controller.document.target.name == "heart")
+    until(lambda: traced.session.document.target is not None and traced.session.document.target.name == "heart")
     assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown
 
 
@@ -158,12 +158,12 @@ def test_that_a_picture_goes_along_when_its_contour_is_moved_and_enlarged(
     width, height = view.context.placed.size
     traced.target.refine.width_.setValue(50.0)
     assert view.underlay.pixel == pytest.approx(pixel * 50.0 / width)
-    before = traced.controller.document.target
+    before = traced.session.document.target
     traced.target.threshold.slider.setValue(140)
-    until(lambda: traced.controller.document.target is not before)
+    until(lambda: traced.session.document.target is not before)
     # The new contour of the picture lies where the picture lies now.
     assert view.context.placed.scale == pytest.approx(
-        view.underlay.pixel * traced.controller.targeting.tracer.picture_of(view.outline).traced.scale  # type: ignore
+        view.underlay.pixel * traced.services.targeting.tracer.picture_of(view.outline).traced.scale  # type: ignore
     )
     for _ in range(3):
         traced.commands["undo"].trigger()

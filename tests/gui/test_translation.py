@@ -36,7 +36,7 @@ from kirigami_studio.gui.widgets.theme import LIGHT
 application = create_application(["kirigami-studio"])
 window = create_window(LIGHT)
 window.show()
-window.controller.open_project(Path(sys.argv[1]))
+window.services.project.open(Path(sys.argv[1]))
 while not window.fabrication.export.isEnabled():
     application.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents, 50)
 found = {}
@@ -57,10 +57,10 @@ for widget in window.findChildren(QWidget):
             say(widget, widget.itemText(row))
 model = window.gallery.view.model()
 say(window.gallery, model.data(model.index(0, 0), Qt.ItemDataRole.ToolTipRole))
-say(window, window.controller.history.undo_label or "")
-window.controller.change_settings(k=5)
-say(window, window.controller.history.undo_label)
-window.controller.history.mark_saved()
+say(window, window.session.history.undo_label or "")
+window.services.settings.change(k=5)
+say(window, window.session.history.undo_label)
+window.session.history.mark_saved()
 window.close()
 print(json.dumps(found))
 """

@@ -47,8 +47,8 @@ def studio(window: MainWindow, polished: Document, until: Until, tmp_path: Path)
     """A studio with that project open and its cuts planned."""
     store.save(polished, tmp_path / "polished.kiri")
     window.resize(1440, 900)
-    window.controller.open_project(tmp_path / "polished.kiri")
-    until(lambda: window.controller.stage is not None and window.fabrication.export.isEnabled())
+    window.services.project.open(tmp_path / "polished.kiri")
+    until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())
     return window
 
 
@@ -56,7 +56,7 @@ def studio(window: MainWindow, polished: Document, until: Until, tmp_path: Path)
 def trimmed(studio: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
     """That studio with the first design trimmed."""
     qtbot.mouseClick(studio.stage.trim, LEFT)
-    until(lambda: not studio.controller.trimming.busy)
+    until(lambda: not studio.services.chosen.trimming.busy)
     until(lambda: "trimmed" in studio.fabrication.summary.text())
     return studio
 
@@ -69,7 +69,7 @@ def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     qtbot.keyClick(studio, Qt.Key.Key_B)
     until(lambda: studio.stage.showing_before)
     assert studio.stage.view.grab().toImage() != after
-    drawn, fitted = designs.candidates[0].score, studio.controller.document.candidates[0].score
+    drawn, fitted = designs.candidates[0].score, studio.session.document.candidates[0].score
     text = studio.stage.numbers.text()
     assert text == f"before polish: match {100 * drawn.iou_exact:.1f} %  ·  after: {100 * fitted.iou_exact:.1f} %"
     studio.stage.view.grab()
@@ -80,7 +80,7 @@ def test_that_before_shows_the_design_as_it_was_drawn_and_after_brings_it_back(
     qtbot.mouseClick(studio.stage.before, LEFT)
     assert not studio.stage.showing_before and studio.stage.view.grab().toImage() == after
     assert "before" not in studio.stage.numbers.text()
-    assert not studio.controller.history.unsaved
+    assert not studio.session.history.unsaved
 
 
 def test_that_a_design_that_was_not_polished_has_nothing_to_compare(studio: MainWindow, qtbot: QtBot) -> None:
@@ -96,28 +96,28 @@ def test_that_a_design_that_was_not_polished_has_nothing_to_compare(studio: Main
 def test_that_trimming_is_one_named_edit_that_can_be_undone_redone_and_taken_off(
     trimmed: MainWindow, until: Until, qtbot: QtBot
 ) -> None:
-    controller, stage = trimmed.controller, trimmed.stage
-    assert controller.history.undo_label == "Trim design A1"
-    candidate = controller.document.candidates[0]
+    session, stage = trimmed.session, trimmed.stage
+    assert session.history.undo_label == "Trim design A1"
+    candidate = session.document.candidates[0]
     assert candidate.trim is not None and stage.trim.isChecked() and trimmed.commands["trim"].isChecked()
     trimmed.commands["undo"].trigger()
-    assert controller.document.candidates[0].trim is None and not stage.trim.isChecked()
+    assert session.document.candidates[0].trim is None and not stage.trim.isChecked()
     until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" not in trimmed.fabrication.summary.text())
     trimmed.commands["redo"].trigger()
-    assert controller.document.candidates[0] == candidate and stage.trim.isChecked()
+    assert session.document.candidates[0] == candidate and stage.trim.isChecked()
     qtbot.keyClick(trimmed, Qt.Key.Key_T, CONTROL)
-    assert controller.history.undo_label == "Untrim design A1"
-    assert controller.document.candidates[0] == replace(candidate, trim=None) and not stage.trim.isChecked()
+    assert session.history.undo_label == "Untrim design A1"
+    assert session.document.candidates[0] == replace(candidate, trim=None) and not stage.trim.isChecked()
 
 
 def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -> None:
-    candidate = trimmed.controller.document.candidates[0]
+    candidate = trimmed.session.document.candidates[0]
     trim, whole = candidate.trim, f"{100 * candidate.score.iou_exact:.1f} %"
     assert trim is not None and trim.iou > candidate.score.iou_exact
     assert trimmed.stage.numbers.text() == f"match {100 * trim.iou:.1f} %  ·  {whole} untrimmed"
     assert f"trimmed match {100 * trim.iou:.1f} %" in trimmed.facts.text() and f"match {whole}" in trimmed.facts.text()
     model = trimmed.gallery.view.model_
-    assert [entry.candidate for entry in model.entries] == list(trimmed.controller.document.candidates)
+    assert [entry.candidate for entry in model.entries] == list(trimmed.session.document.candidates)
     card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole))
     assert f"sIoU {100 * candidate.score.siou:.2f} %" in card and f"Trimmed: IoU {100 * trim.iou:.2f} %" in card
     trimmed.resize(1000, 640)
@@ -126,8 +126,8 @@ def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -
 
 
 def test_that_a_trimmed_design_is_drawn_and_compared_as_it_is_cut(trimmed: MainWindow) -> None:
-    stage = trimmed.controller.stage
-    target = trimmed.controller.document.target
+    stage = trimmed.session.stage
+    target = trimmed.session.document.target
     assert stage is not None and stage.candidate.trim is not None and target is not None
     trim, design = stage.candidate.trim, stage.design
     for phi in (math.pi, 1.0, 0.0):
@@ -163,25 +163,25 @@ def test_that_a_trimmed_design_exports_one_closed_outline_that_is_no_rectangle(
 def test_that_a_trim_without_room_is_refused_in_one_sentence_and_the_switch_goes_back(
     studio: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    studio.controller.fabrication.change(connector_mm=15.0)
-    before = studio.controller.document
+    studio.services.fabrication.change(connector_mm=15.0)
+    before = studio.session.document
     qtbot.mouseClick(studio.stage.trim, LEFT)
-    assert studio.stage.trim.isChecked() and studio.controller.trimming.busy
-    until(lambda: not studio.controller.trimming.busy)
+    assert studio.stage.trim.isChecked() and studio.services.chosen.trimming.busy
+    until(lambda: not studio.services.chosen.trimming.busy)
     message = studio.messages.messages[-1]
     assert message.tone is Tone.ERROR and "wide" in message.sentence
-    assert studio.controller.document is before and not studio.stage.trim.isChecked()
+    assert studio.session.document is before and not studio.stage.trim.isChecked()
 
 
 def test_that_widths_that_the_trim_has_no_room_for_are_refused_with_a_way_out(
     trimmed: MainWindow, until: Until, qtbot: QtBot
 ) -> None:
-    trimmed.controller.fabrication.change(connector_mm=4.5)
+    trimmed.services.fabrication.change(connector_mm=4.5)
     until(lambda: not trimmed.fabrication.export.isEnabled())
     assert "trim again" in trimmed.fabrication.warnings.text() and trimmed.fabrication.summary.text() == ""
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
-    until(lambda: not trimmed.controller.trimming.busy)
+    until(lambda: not trimmed.services.chosen.trimming.busy)
     until(lambda: trimmed.fabrication.export.isEnabled() and "trimmed" in trimmed.fabrication.summary.text())
 
 
@@ -190,20 +190,20 @@ def test_that_another_choice_forgets_the_trim_that_was_on_its_way(
 ) -> None:
     qtbot.mouseClick(studio.stage.trim, LEFT)
     studio.commands["next"].trigger()
-    assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
-    until(lambda: not studio.controller.queue.busy)
-    assert all(candidate.trim is None for candidate in studio.controller.document.candidates)
-    assert studio.controller.document.chosen == 1
+    assert not studio.services.chosen.trimming.busy and not studio.stage.trim.isChecked()
+    until(lambda: not studio.session.queue.busy)
+    assert all(candidate.trim is None for candidate in studio.session.document.candidates)
+    assert studio.session.document.chosen == 1
 
 
 @pytest.mark.parametrize("way", ["button", "escape"])
 def test_that_trimming_can_be_stopped(studio: MainWindow, qtbot: QtBot, until: Until, way: str) -> None:
-    before = studio.controller.document
+    before = studio.session.document
     qtbot.mouseClick(studio.stage.trim, LEFT)
     if way == "button":
         qtbot.mouseClick(studio.stage.trim, LEFT)
     else:
         qtbot.keyClick(studio, Qt.Key.Key_Escape)
-    assert not studio.controller.trimming.busy and not studio.stage.trim.isChecked()
-    until(lambda: not studio.controller.queue.busy)
-    assert studio.controller.document is before and "stopped" in studio.status_text.text()
+    assert not studio.services.chosen.trimming.busy and not studio.stage.trim.isChecked()
+    until(lambda: not studio.session.queue.busy)
+    assert studio.session.document is before and "stopped" in studio.status_text.text()

@@ -83,7 +83,7 @@ def test_that_no_widget_is_touched_from_another_thread(
         raise UnspeakableError
 
     show_uncaught(window.messages.add)
-    window.controller.queue.start("reading", steps, JobCallbacks(on_failed=window.controller.session.report_failure))
+    window.session.queue.start("reading", steps, JobCallbacks(on_failed=window.session.report_failure))
     raised_elsewhere(fail)
     until(lambda: len(window.messages.messages) == 2)
     assert set(threads) == {threading.main_thread().ident}

@@ -12,16 +12,20 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.gui.gallery.badges import badges_of, closing_text
+from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.as_cut import Source
 from kirigami_studio.studio.verdict import Level
 
 LEFT = Qt.MouseButton.LeftButton
+STAR = Path(__file__).parents[1] / "data" / "projects" / "star_jams_at_143.kiri"
 Until = Callable[[Callable[[], bool]], None]
 
 
 def judged(window: MainWindow) -> bool:
-    keeper = window.controller.verdict
+    keeper = window.services.verdict
     return keeper.state.verdict is not None and not keeper.busy
 
 
@@ -36,14 +40,14 @@ def ready(designed: MainWindow, until: Until) -> MainWindow:
 @pytest.fixture
 def jamming(ready: MainWindow, until: Until) -> MainWindow:
     """The same on straight connectors that are too wide to close."""
-    ready.controller.fabrication.change(connector_mm=0.5)
-    ready.controller.fabrication.change_options(style=ConnectorStyle.STRAIGHT)
+    ready.services.fabrication.change(connector_mm=0.5)
+    ready.services.fabrication.change_options(style=ConnectorStyle.STRAIGHT)
     until(lambda: judged(ready))
     return ready
 
 
 def test_that_a_sheet_that_closes_is_ready_to_cut(ready: MainWindow) -> None:
-    bar, state = ready.stage.verdict, ready.controller.verdict.state
+    bar, state = ready.stage.verdict, ready.services.verdict.state
     assert state.verdict is not None and state.verdict.ok and bar.isVisible()
     assert bar.headline.text() == "Ready to cut" and bar.property("level") == "ready_to_cut"
     assert bar.buttons == [] and not bar.more.isVisible()
@@ -55,41 +59,41 @@ def test_that_a_sheet_that_closes_is_ready_to_cut(ready: MainWindow) -> None:
 def test_that_a_jamming_sheet_is_never_green_and_one_click_mends_it(
     jamming: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    bar, controller = jamming.stage.verdict, jamming.controller
-    verdict, before = controller.verdict.state.verdict, controller.document
+    bar, services = jamming.stage.verdict, jamming.services
+    verdict, before = services.verdict.state.verdict, services.session.document
     assert verdict is not None and verdict.level is Level.CARE
     assert bar.property("level") == "cut_with_care" and bar.headline.text().startswith("Cut with care")
-    assert bar.sentence.text().startswith("As cut, the sheet jams at ")
+    assert bar.sentence.text().startswith(verdict.problems[0].text[:30])
     assert jamming.fabrication.warnings.text().startswith(f"Cut with care: {verdict.problems[0].text}")
     assert jamming.fabrication.warnings.objectName() == "warning"
     (button,) = [one for one in bar.buttons if one.text() == "Use centred connectors"]
     assert button.isVisible() and "Ready to cut" in button.toolTip()
     height = bar.height()
     qtbot.mouseClick(button, LEFT)
-    assert controller.document.fabrication.options.style is ConnectorStyle.CENTRED
-    assert controller.history.undo_label == "Use centred connectors"
+    assert services.session.document.fabrication.options.style is ConnectorStyle.CENTRED
+    assert services.session.history.undo_label == "Use centred connectors"
     until(lambda: judged(jamming))
     assert bar.headline.text() == "Ready to cut" and bar.buttons == [] and bar.height() == height
     jamming.commands["undo"].trigger()
-    assert controller.document == before
+    assert services.session.document == before
     until(lambda: judged(jamming))
     # What was found is remembered: nothing is tried again.
     assert [one.text() for one in bar.buttons] and bar.property("level") == "cut_with_care"
 
 
 def test_that_nothing_is_called_ready_before_the_sheet_was_closed(ready: MainWindow) -> None:
-    ready.controller.fabrication.change(connector_mm=0.3)
+    ready.services.fabrication.change(connector_mm=0.3)
     bar = ready.stage.verdict
-    assert ready.controller.verdict.state.pending
+    assert ready.services.verdict.state.pending
     assert bar.headline.text() == "Checking the sheet as cut …" and bar.property("level") == ""
 
 
 def test_that_a_refused_plan_is_told_with_what_has_room(ready: MainWindow, until: Until) -> None:
-    ready.controller.fabrication.change(connector_mm=19.0)
+    ready.services.fabrication.change(connector_mm=19.0)
     until(lambda: judged(ready) and not ready.fabrication.export.isEnabled())
     bar = ready.stage.verdict
     assert bar.property("level") == "will_not_work" and "connector" in ready.fabrication.warnings.text()
-    advice = ready.controller.verdict.state.advice
+    advice = ready.services.verdict.state.advice
     assert advice is not None and advice.fixes[0].verdict.ok and bar.buttons
 
 
@@ -111,9 +115,9 @@ def test_that_a_narrow_banner_puts_fixes_into_a_menu(jamming: MainWindow) -> Non
 def test_that_message_report_and_record_have_the_same_list(
     jamming: MainWindow, qtbot: QtBot, until: Until, tmp_path: Path
 ) -> None:
-    verdict = jamming.controller.verdict.state.verdict
+    verdict = jamming.services.verdict.state.verdict
     assert verdict is not None
-    jamming.controller.export_all(tmp_path / "all", "heart")
+    jamming.services.exporter.export_all(tmp_path / "all", "heart")
     until(lambda: jamming.dialogs.report is not None)
     report, message = jamming.dialogs.report, jamming.messages.messages[-1]
     assert report is not None and report.judged is not None
@@ -127,9 +131,68 @@ def test_that_message_report_and_record_have_the_same_list(
 
 
 def test_that_a_ready_sheet_is_reported_as_verified(ready: MainWindow, until: Until, tmp_path: Path) -> None:
-    ready.controller.export(tmp_path / "cut.dxf")
+    ready.services.exporter.export(tmp_path / "cut.dxf")
     until(lambda: ready.dialogs.report is not None)
     report = ready.dialogs.report
     assert report is not None and report.judged is not None and report.judged.ok
     assert report.verdict.text().startswith("Verified")
     assert ready.messages.messages[-1].tone is Tone.DONE
+
+
+def test_that_card_table_stage_panel_report_and_record_tell_the_same_of_a_star_that_jams(
+    window: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    services, model = window.services, window.gallery.view.model_
+    services.project.open(STAR)
+    until(lambda: bool(services.estimates.known) and not services.estimates.busy)
+    (candidate,) = services.session.document.candidates
+    guessed = services.estimates.known[candidate]
+    assert guessed.closes and guessed.source is Source.ESTIMATE, "the estimate does not see this jam"
+    until(lambda: services.verdict.state.known and not services.verdict.state.pending)
+    verdict, sheet = services.verdict.state.verdict, services.as_cut.state.sheet
+    assert verdict is not None and sheet is not None and verdict.level is Level.FAILS
+    assert verdict.as_cut == sheet.as_cut and not verdict.is_estimate
+    word = f"jams at {verdict.as_cut.jam_deg:.0f}°"
+    shown = model.index(0, 0).data(VERDICT_ROLE)
+    assert shown == verdict and closing_text(shown) == word
+    assert [badge.text for badge in badges_of(shown)][:1] == ["Will not work"] and word in {
+        badge.text for badge in badges_of(shown)
+    }
+    tip = str(model.index(0, 0).data(Qt.ItemDataRole.ToolTipRole))
+    assert word in tip and "(estimate)" not in tip and "cuttable" not in tip
+    assert window.stage.as_cut.text().startswith(word.capitalize())
+    assert window.stage.deployment.slider.jam == verdict.as_cut.jam_phi
+    assert window.stage.verdict.headline.text().startswith("Will not work")
+    assert window.fabrication.warnings.text().startswith("Will not work: ")
+    services.exporter.export_all(tmp_path / "all", "star")
+    until(lambda: window.dialogs.report is not None)
+    report = window.dialogs.report
+    assert report is not None and report.verdict.text().startswith("Will not work: ") and word in report.answers.text()
+    record = json.loads((tmp_path / "all" / "star.json").read_text())["verdict"]
+    assert (record["jam_deg"], record["jam_from"]) == (verdict.as_cut.jam_deg, "simulation")
+    assert record["answers"]["closes"] == {"state": "bad", "word": word}
+    assert [problem["code"] for problem in record["problems"]] == [problem.code for problem in verdict.problems]
+
+
+def test_that_an_outdated_verdict_leaves_the_cards_at_once(ready: MainWindow, until: Until) -> None:
+    services, model = ready.services, ready.gallery.view.model_
+    candidate = services.session.document.candidates[0]
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+    services.fabrication.change(connector_mm=0.35)
+    assert model.verdict_of(candidate).words == "Not checked yet"
+    until(lambda: judged(ready))
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+    services.project.undo()
+    until(lambda: judged(ready))
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+
+
+def test_that_each_problem_is_followed_by_the_fix_that_was_tried(jamming: MainWindow) -> None:
+    state = jamming.services.verdict.state
+    assert state.verdict is not None and state.advice is not None
+    first = state.advice.fixes[0]
+    assert set(first.solves) <= {problem.code for problem in state.verdict.problems}
+    (solved, *_) = [problem for problem in state.verdict.problems if problem.code in first.solves]
+    lines = list(state.lines)
+    assert lines[lines.index(solved.text) + 1] == first.line
+    assert all(lines.count(fix.line) == 1 for fix in state.advice.fixes)

@@ -40,7 +40,7 @@ def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed:
     before = designed.status_text.text()
     QTest.mouseMove(view, middle_of(view, (1, 2)))
     x = ratio(designed, (1, 2))
-    width = designed.controller.document.fabrication.width_mm
+    width = designed.session.document.fabrication.width_mm
     corners = deploy(chosen(designed).sheet.field).voids(OPEN)[1, 2] * width / 6
     edge = np.hypot(*(corners[1] - corners[0]))
     assert designed.status_text.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
@@ -62,7 +62,7 @@ def test_that_the_nearest_slit_is_meant_on_the_flat_sheet(designed: MainWindow) 
 
 
 def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: MainWindow, until: Until) -> None:
-    view, history = by_hand.stage.view, by_hand.controller.history
+    view, history = by_hand.stage.view, by_hand.session.history
     before, place = chosen(by_hand), middle_of(by_hand.stage.view, (1, 2))
     turn(view, place, 1)
     turn(view, place, 2)
@@ -77,7 +77,7 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     others = np.ones((4, 5), dtype=bool)
     others[1, 2] = False
     assert np.array_equal(after.sheet.field.ratio[others], before.sheet.field.ratio[others])
-    target = by_hand.controller.document.target
+    target = by_hand.session.document.target
     assert target is not None and after.score == evaluate(deploy(after.sheet.field), target, 0.0)
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
@@ -90,7 +90,7 @@ def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_s
 ) -> None:
     assert JOINS_WITHIN == 1.0
     monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)  # a slow machine is no pause of the hand
-    view, history, before = by_hand.stage.view, by_hand.controller.history, chosen(by_hand)
+    view, history, before = by_hand.stage.view, by_hand.session.history, chosen(by_hand)
     for notches in (1, 1, -3):
         turn(view, middle_of(view, (1, 2)), notches)
         settle(by_hand, until)
@@ -109,7 +109,7 @@ def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_s
 def test_that_a_notch_after_a_pause_or_after_undo_is_a_step_of_its_own(
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    view, history = by_hand.stage.view, by_hand.controller.history
+    view, history = by_hand.stage.view, by_hand.session.history
     monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 0.0)
     for _ in range(2):
         turn(view, middle_of(view, (1, 2)), 1)
@@ -126,15 +126,15 @@ def test_that_notches_that_wait_for_one_score_are_scored_once(
     by_hand: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(hand_editor, "JOINS_WITHIN", 60.0)
-    view, hand, before = by_hand.stage.view, by_hand.controller.hand, ratio(by_hand, (1, 2))
-    session, taken = by_hand.controller.session, list[Edit]()
+    view, hand, before = by_hand.stage.view, by_hand.services.hand, ratio(by_hand, (1, 2))
+    session, taken = by_hand.session, list[Edit]()
     apply = session.apply
     monkeypatch.setattr(session, "apply", lambda edit: (taken.append(edit), apply(edit))[1])
     for _ in range(4):
         turn(view, middle_of(view, (1, 2)), 1)
         hand.commit()
     settle(by_hand, until)
-    assert len(taken) == 2 and len(by_hand.controller.history.steps) == 1  # the first was being scored already
+    assert len(taken) == 2 and len(by_hand.session.history.steps) == 1  # the first was being scored already
     assert ratio(by_hand, (1, 2)) == pytest.approx(1.05**4 * before, rel=2e-3)
 
 
@@ -156,7 +156,7 @@ def test_that_the_wheel_still_zooms_beside_the_voids_and_outside_the_mode(by_han
     by_hand.commands["hand"].trigger()
     with qtbot.waitSignal(view.zoom_changed):
         turn(view, middle_of(view, (1, 2)), 1)
-    assert not by_hand.controller.hand.busy
+    assert not by_hand.services.hand.busy
 
 
 def test_that_a_pulled_void_follows_the_mouse_at_every_angle(by_hand: MainWindow, until: Until) -> None:
@@ -191,7 +191,7 @@ def test_that_one_drag_is_one_undo_step_and_the_picture_keeps_its_place(by_hand:
     settle(by_hand, until)
     assert view.transform() == transform
     by_hand.commands["undo"].trigger()
-    assert chosen(by_hand) == before and by_hand.controller.history.undo_label is None
+    assert chosen(by_hand) == before and by_hand.session.history.undo_label is None
 
 
 def test_that_a_pulled_vertex_of_the_outline_arrives_at_the_mouse(by_hand: MainWindow, until: Until) -> None:
@@ -202,14 +202,14 @@ def test_that_a_pulled_vertex_of_the_outline_arrives_at_the_mouse(by_hand: MainW
     until(lambda: (vertex_at(view, vertex) - start - QPoint(0, -10)).manhattanLength() <= 2)
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(0, -10))
     settle(by_hand, until)
-    assert by_hand.controller.history.undo_label == "Move outline"
+    assert by_hand.session.history.undo_label == "Move outline"
     assert chosen(by_hand).sheet.field != before.sheet.field
     by_hand.commands["undo"].trigger()
     assert chosen(by_hand) == before
 
 
 def test_that_gestures_in_quick_succession_all_arrive_in_order(by_hand: MainWindow, until: Until) -> None:
-    view, history, first = by_hand.stage.view, by_hand.controller.history, chosen(by_hand)
+    view, history, first = by_hand.stage.view, by_hand.session.history, chosen(by_hand)
     labels = []
     for void in [(0, 1), (1, 2), (3, 3)]:
         turn(view, middle_of(view, void), 2)
@@ -228,10 +228,10 @@ def test_that_undo_during_a_gesture_takes_back_that_gesture_and_redo_brings_it(
 ) -> None:
     view, before = by_hand.stage.view, chosen(by_hand)
     turn(view, middle_of(view, (1, 2)), 3)
-    by_hand.controller.undo()  # before it has been scored
+    by_hand.services.project.undo()  # before it has been scored
     settle(by_hand, until)
-    assert chosen(by_hand) == before and by_hand.controller.history.redo_label == "Change ratio of void (1, 2)"
-    by_hand.controller.redo()
+    assert chosen(by_hand) == before and by_hand.session.history.redo_label == "Change ratio of void (1, 2)"
+    by_hand.services.project.redo()
     assert ratio(by_hand, (1, 2)) > before.sheet.field.ratio[1, 2]
     assert view.design is not None and view.design.deployment.field == chosen(by_hand).sheet.field
 
@@ -239,22 +239,22 @@ def test_that_undo_during_a_gesture_takes_back_that_gesture_and_redo_brings_it(
 def test_that_a_draft_that_returns_to_its_beginning_is_no_step(by_hand: MainWindow, until: Until) -> None:
     bar, before = by_hand.stage.voids, chosen(by_hand)
     by_hand.stage.view.voids.select(frozenset({(1, 1)}))
-    by_hand.controller.hand.set_ratio(frozenset({(1, 1)}), 3.0)
-    by_hand.controller.hand.set_ratio(frozenset({(1, 1)}), float(before.sheet.field.ratio[1, 1]))
+    by_hand.services.hand.set_ratio(frozenset({(1, 1)}), 3.0)
+    by_hand.services.hand.set_ratio(frozenset({(1, 1)}), float(before.sheet.field.ratio[1, 1]))
     settle(by_hand, until)
-    assert by_hand.controller.history.undo_label is None and chosen(by_hand) == before
+    assert by_hand.session.history.undo_label is None and chosen(by_hand) == before
     assert bar.ratio.value() == pytest.approx(before.sheet.field.ratio[1, 1], abs=1e-4)
 
 
 def test_that_the_other_designs_and_the_choice_stay_when_the_second_design_is_changed(
     by_hand: MainWindow, until: Until
 ) -> None:
-    document = by_hand.controller.document
-    by_hand.controller.choose(document.candidates[1])
+    document = by_hand.session.document
+    by_hand.services.chosen.choose(document.candidates[1])
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 2)
-    by_hand.controller.choose(document.candidates[2])  # waits until the change is in
+    by_hand.services.chosen.choose(document.candidates[2])  # waits until the change is in
     settle(by_hand, until)
-    after = by_hand.controller.document
+    after = by_hand.session.document
     assert after.chosen == 2 and after.candidates[1].origin is Origin.EDITED
     assert (after.candidates[0], after.candidates[2]) == (document.candidates[0], document.candidates[2])
     row = by_hand.gallery.view.model_.row_of(after.candidates[1])
@@ -265,7 +265,7 @@ def test_that_undo_in_the_middle_of_a_drag_ends_it_and_takes_it_back(by_hand: Ma
     view, before = by_hand.stage.view, chosen(by_hand)
     start = middle_of(view, (1, 2))
     drag(view, start, start + QPoint(6, 6), let_go=False)
-    by_hand.controller.undo()
+    by_hand.services.project.undo()
     settle(by_hand, until)
     QTest.mouseMove(view, start + QPoint(9, 9))
     QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
@@ -282,12 +282,12 @@ def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until
         QTest.keyClick(view, Qt.Key.Key_Escape)
         QTest.mouseMove(view, start + QPoint(9, 9))
         QTest.mouseRelease(view, LEFT, NONE, start + QPoint(9, 9))
-        assert not by_hand.controller.hand.busy and by_hand.controller.history.undo_label is None
+        assert not by_hand.services.hand.busy and by_hand.session.history.undo_label is None
         assert view.design.deployment.field == before.sheet.field
 
 
 def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
-    by_hand.controller.trim(True)
+    by_hand.services.chosen.trim(True)
     until(lambda: chosen(by_hand).trim is not None)
     trimmed = chosen(by_hand)
     assert trimmed.trim is not None and by_hand.stage.view.design.deployment.sheet == trimmed.trim.sheet
@@ -301,7 +301,7 @@ def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand
 
 
 def test_that_the_drawing_is_planned_anew_after_a_change(by_hand: MainWindow, until: Until, qtbot: QtBot) -> None:
-    with qtbot.waitSignal(by_hand.controller.cutting.planned, timeout=20_000):
+    with qtbot.waitSignal(by_hand.services.cutting.planned, timeout=20_000):
         turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
     until(by_hand.fabrication.export.isEnabled)

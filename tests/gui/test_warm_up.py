@@ -135,9 +135,9 @@ create_application(["kirigami-studio"])
 window = create_window()
 window.show()
 sys.meta_path.insert(0, Finder())
-window.controller.open_project(resource("examples", "heart.kiri"))
+window.services.project.open(resource("examples", "heart.kiri"))
 end = time.monotonic() + 30.0
-while not window.controller.verdict.state.known or window.controller.verdict.state.pending:
+while not window.services.verdict.state.known or window.services.verdict.state.pending:
     assert time.monotonic() < end
     QCoreApplication.processEvents()
     time.sleep(0.01)

@@ -6,10 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QApplication, QLabel, QProxyStyle, QStyle, QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.machine import MachineKind, cuttable, find_machine
+from kirigami_studio.gui.make.machine_question import KINDS, CuttingQuestion
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.welcome_page import OFFERS, STEPS, moves
 from kirigami_studio.project import preferences
@@ -29,11 +31,20 @@ class Motionless(QProxyStyle):
 @pytest.fixture
 def begun(window: MainWindow, until: Until, tmp_path: Path) -> MainWindow:
     """The first start, with the heart and its sample."""
-    window.controller.use_preferences(tmp_path / "preferences.toml")
-    window.controller.start_with("heart")
-    window.connections.welcome.begin()
-    until(lambda: window.stage.welcome.ready and window.controller.document.target is not None)
+    window.services.preferences.use(tmp_path / "preferences.toml")
+    window.services.targeting.start_with("heart")
+    window.presenters.welcome.begin()
+    until(lambda: window.stage.welcome.ready and window.session.document.target is not None)
     return window
+
+
+def answer(question: CuttingQuestion, machine: str, material: str) -> None:
+    """Choose a machine and a material in the menus."""
+    found = find_machine(machine)
+    menu = question.buttons[found.kind].menu()
+    inner = [action.menu() for action in menu.actions() if action.text() == found.name]
+    offered = (inner[0] if inner else menu).actions()
+    next(action for action in offered if action.text() == cuttable(found)[material].name).trigger()
 
 
 def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtBot, until: Until) -> None:
@@ -46,7 +57,7 @@ def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtB
     stood = empty.view.phi
     QApplication.processEvents()
     assert empty.view.phi == stood
-    assert begun.controller.stage is None and begun.controller.document.candidates == ()  # it is no design
+    assert begun.session.stage is None and begun.session.document.candidates == ()  # it is no design
 
 
 def test_that_the_sample_stands_still_where_motion_is_reduced(begun: MainWindow, tmp_path: Path) -> None:
@@ -63,12 +74,12 @@ def test_that_the_sample_gives_way_to_a_design_and_comes_back_without_one(
     begun: MainWindow, project_file: Path, until: Until
 ) -> None:
     stage = begun.stage
-    begun.controller.open_project(project_file)
-    until(lambda: begun.controller.stage is not None)
+    begun.services.project.open(project_file)
+    until(lambda: begun.session.stage is not None)
     assert stage.split.isVisible() and not stage.welcome.isVisible() and not stage.welcome.moving
     until(lambda: begun.fabrication.export.isEnabled())
-    begun.controller.new_project()
-    until(lambda: begun.controller.stage is None)
+    begun.services.project.new()
+    until(lambda: begun.session.stage is None)
     assert stage.welcome.isVisible() and "target" in stage.welcome.hint.text().lower() + stage.welcome.headline.text()
 
 
@@ -77,43 +88,40 @@ def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     key: str, begun: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
     question = begun.stage.welcome.question
-    assert question.isVisible() and len(question.buttons) == 4
-    if key == "paper-hand":
-        qtbot.mouseClick(question.buttons["by hand"], LEFT)
-    else:
-        actions = question.buttons["CO2 laser"].menu().actions()
-        next(action for action in actions if action.text().startswith("Card")).trigger()
+    assert question.isVisible() and list(question.buttons) == [kind for kind, _, _ in KINDS]
+    answer(question, "hand" if key == "paper-hand" else "co2-laser", key)
     assert not question.isVisible()
     kept = preferences.load(tmp_path / "preferences.toml")
     assert kept.machine_asked and kept.material == key
-    fabrication = begun.controller.document.fabrication
-    assert fabrication.material == key and not begun.controller.history.unsaved
+    fabrication = begun.session.document.fabrication
+    assert fabrication.machine == kept.machine == ("hand" if key == "paper-hand" else "co2-laser")
+    assert fabrication.material == key and not begun.session.history.unsaved
     assert begun.fabrication.material.currentData() == key
     by_hand = key == "paper-hand"
     assert (fabrication.paper in ("a4", "letter")) is by_hand
-    assert begun.fabrication.export.text() == ("Export PDF" if by_hand else "Export DXF")
-    begun.controller.new_project()
-    assert begun.controller.document.fabrication.material == key
-    begun.connections.welcome.begin()
+    assert begun.fabrication.export.text() == ("Export PDF" if by_hand else "Export for LightBurn")
+    begun.services.project.new()
+    assert begun.session.document.fabrication.material == key
+    begun.presenters.welcome.begin()
     assert not question.isVisible()
 
 
 def test_that_declining_is_an_answer_too(begun: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
     qtbot.mouseClick(begun.stage.welcome.question.later, LEFT)
     assert preferences.load(tmp_path / "preferences.toml") == Preferences(machine_asked=True)
-    assert begun.controller.document.fabrication.material == Preferences().material
+    assert begun.session.document.fabrication.material == Preferences().material
 
 
 def test_that_an_answer_after_work_has_begun_is_one_step_back(
     begun: MainWindow, project_file: Path, until: Until
 ) -> None:
-    begun.controller.open_project(project_file)
-    until(lambda: begun.controller.stage is not None)
-    before = begun.controller.document.fabrication.material
-    begun.connections.welcome.choose("drag-knife")
-    assert begun.controller.document.fabrication.material == "drag-knife" and begun.controller.document.candidates
+    begun.services.project.open(project_file)
+    until(lambda: begun.session.stage is not None)
+    before = begun.session.document.fabrication.material
+    begun.presenters.welcome.choose("cricut-maker", "drag-knife")
+    assert begun.session.document.fabrication.material == "drag-knife" and begun.session.document.candidates
     begun.commands["undo"].trigger()
-    assert begun.controller.document.fabrication.material == before
+    assert begun.session.document.fabrication.material == before
 
 
 @pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900)])
@@ -140,11 +148,15 @@ def test_that_every_part_of_the_empty_stage_fits(begun: MainWindow, width: int, 
         assert height < 900, "there is room for the steps"
 
 
-def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot) -> None:
-    button = begun.stage.welcome.question.buttons["by hand"]
+def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot, until: Until) -> None:
+    button = begun.stage.welcome.question.buttons[MachineKind.HAND]
+    menu = button.menu()
     button.setFocus(Qt.FocusReason.TabFocusReason)
+    QTimer.singleShot(0, lambda: qtbot.keyClick(menu, Qt.Key.Key_Down))
+    QTimer.singleShot(0, lambda: qtbot.keyClick(menu, Qt.Key.Key_Return))
     qtbot.keyClick(button, Qt.Key.Key_Space)
-    assert begun.controller.document.fabrication.material == "paper-hand"
+    until(lambda: begun.session.document.fabrication.machine == "hand")
+    assert not begun.stage.welcome.question.isVisible()
 
 
 def test_that_the_page_is_there_before_its_sample(window: MainWindow) -> None:
@@ -173,16 +185,16 @@ def test_that_the_offers_lead_to_a_design(window: MainWindow, qtbot: QtBot, unti
     window.target.set_editing(False)
     assert window.stage.welcome.isVisible()
     qtbot.mouseClick(window.stage.welcome.offers["sample"], LEFT)
-    until(lambda: window.controller.stage is not None)
+    until(lambda: window.session.stage is not None)
     assert not window.stage.welcome.isVisible() and window.stage.deployment.isVisible()
 
 
 def test_that_a_run_takes_the_place_of_the_page_until_it_is_cancelled(heart: MainWindow, until: Until) -> None:
-    heart.controller.generation.generate()
+    heart.services.generation.generate()
     assert not heart.stage.welcome.isVisible() and heart.stage.view.isVisible()
     heart.commands["cancel"].trigger()
-    until(lambda: not heart.controller.running)
-    assert heart.stage.welcome.isVisible() is (heart.controller.stage is None)
+    until(lambda: not heart.services.run.running)
+    assert heart.stage.welcome.isVisible() is (heart.session.stage is None)
 
 
 def test_that_the_page_of_a_german_window_fits(german: None, begun: MainWindow) -> None:

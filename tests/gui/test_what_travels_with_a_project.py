@@ -13,8 +13,8 @@ import pytest
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
 from kirigami_studio.gui.session.messages import Message
-from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 from kirigami_studio.project import edits, picture_record, recovery, store
 from kirigami_studio.project.document import Document
@@ -56,7 +56,7 @@ def own_project(designs: Document, own_materials: Path, tmp_path: Path) -> Path:
 def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
     window: MainWindow, own_project: Path, tmp_path: Path, until: Until
 ) -> None:
-    window.controller.open_project(own_project)
+    window.services.project.open(own_project)
     until(lambda: window.fabrication.export.isEnabled())
     fabrication = window.fabrication
     assert fabrication.material.currentText() == "My film"
@@ -65,7 +65,7 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
     (message,) = told(window, "You don't have the material")
     assert "My film" in message.sentence
     # Saving keeps the numbers although they are not in stock.
-    window.controller.save(tmp_path / "again.kiri")
+    window.services.project.save(tmp_path / "again.kiri")
     until(lambda: (tmp_path / "again.kiri").exists())
     carried = store.load(tmp_path / "again.kiri").fabrication.own
     assert carried is not None and (carried.key, carried.kerf_mm) == ("my-film", 0.07)
@@ -76,7 +76,7 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
 
 def test_that_the_own_stock_wins_over_what_a_project_knew(window: MainWindow, own_project: Path, until: Until) -> None:
     save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
-    window.controller.open_project(own_project)
+    window.services.project.open(own_project)
     until(lambda: window.fabrication.export.isEnabled())
     assert window.fabrication.numbers["ligament"].text() == "0.55 mm"
     (message,) = told(window, "differs from the project's")
@@ -106,15 +106,15 @@ def test_that_an_impossible_material_in_a_project_is_refused(entry: str, value: 
 @pytest.fixture
 def traced_project(photo: Path, tmp_path: Path, until: Until) -> Path:
     """A project that another session saved: traced at another threshold than the automatic one."""
-    controller, path = Controller(), tmp_path / "traced.kiri"
-    controller.targeting.open(str(photo))
-    until(lambda: controller.document.target is not None)
-    controller.targeting.change_threshold(0.8)
-    until(lambda: controller.document.target == read_image(photo, 0.8))
-    until(lambda: not controller.queue.busy)
-    controller.save(path)
-    until(lambda: not controller.history.unsaved)
-    controller.close()
+    services, path = Services(), tmp_path / "traced.kiri"
+    services.targeting.open(str(photo))
+    until(lambda: services.session.document.target is not None)
+    services.targeting.change_threshold(0.8)
+    until(lambda: services.session.document.target == read_image(photo, 0.8))
+    until(lambda: not services.session.queue.busy)
+    services.project.save(path)
+    until(lambda: not services.session.history.unsaved)
+    services.close()
     return path
 
 
@@ -123,20 +123,20 @@ def test_that_photo_and_threshold_come_back_although_the_file_is_gone(
 ) -> None:
     at_half, automatic = read_image(photo, 0.5), automatic_threshold(photo)
     photo.unlink()
-    controller = window.controller
-    controller.open_project(traced_project)
+    services = window.services
+    services.project.open(traced_project)
     until(lambda: window.target.threshold.isVisible())
     assert window.target.threshold.slider.value() == 160 and window.target.view.underlay is not None
-    assert not controller.history.unsaved
-    controller.targeting.change_threshold(0.5)
-    until(lambda: controller.document.target == at_half)
-    assert at_half.name == "two greys" and controller.history.undo_label == "Change threshold"
-    until(lambda: not controller.queue.busy)
-    controller.targeting.change_threshold(None)
-    until(lambda: not controller.queue.busy)
+    assert not services.session.history.unsaved
+    services.targeting.change_threshold(0.5)
+    until(lambda: services.session.document.target == at_half)
+    assert at_half.name == "two greys" and services.session.history.undo_label == "Change threshold"
+    until(lambda: not services.session.queue.busy)
+    services.targeting.change_threshold(None)
+    until(lambda: not services.session.queue.busy)
     assert window.target.threshold.slider.value() == round(200 * automatic)
-    controller.end_drag()
-    controller.undo()
+    services.session.history.end_drag()
+    services.project.undo()
     assert window.target.threshold.slider.value() == 160
 
 
@@ -146,13 +146,13 @@ def test_that_a_recovered_project_brings_its_photo(
     opened = store.load_all(traced_project)
     note = recovery.RecoveryNote("traced.kiri", str(traced_project), recovery.now())
     recovery.keep(opened.document, note, tmp_path / "state" / "left.kiri", opened.picture)
-    window.controller.filing.recovery.use(tmp_path / "state")
+    window.services.project.recovery.use(tmp_path / "state")
     until(lambda: bool(told(window, "Recover traced.kiri")))
     dict(told(window, "Recover traced.kiri")[0].actions)["Recover"]()
     until(lambda: window.target.threshold.isVisible())
     assert window.target.threshold.slider.value() == 160
     until(lambda: not (tmp_path / "state" / "left.kiri").exists())
-    own = window.controller.filing.recovery.file
+    own = window.services.project.recovery.file
     assert own is not None and store.load_all(own).picture == opened.picture
 
 
@@ -172,8 +172,8 @@ def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
         else:
             members["picture.json"] = members["picture.json"].replace(b"0.8", b"7.5")
 
-    window.controller.open_project(rewritten(traced_project, spoil))
-    until(lambda: bool(told(window, "left out")) and window.controller.document.target is not None)
+    window.services.project.open(rewritten(traced_project, spoil))
+    until(lambda: bool(told(window, "left out")) and window.session.document.target is not None)
     assert not window.target.threshold.isVisible()
     assert len(told(window, "The picture in this project cannot be read and was left out")) == 1
 
@@ -181,14 +181,14 @@ def test_that_a_photo_that_cannot_be_read_is_left_out_with_a_sentence(
 def test_that_a_photo_that_is_gone_at_saving_is_told_and_the_project_is_saved(
     window: MainWindow, photo: Path, tmp_path: Path, until: Until
 ) -> None:
-    window.controller.targeting.open(str(photo))
-    until(lambda: window.controller.document.target is not None)
+    window.services.targeting.open(str(photo))
+    until(lambda: window.session.document.target is not None)
     photo.unlink()
-    window.controller.save(tmp_path / "without.kiri")
-    until(lambda: not window.controller.history.unsaved)
+    window.services.project.save(tmp_path / "without.kiri")
+    until(lambda: not window.session.history.unsaved)
     assert "two greys.png" in told(window, "was not saved with the project")[0].sentence
     opened = store.load_all(tmp_path / "without.kiri")
-    assert opened.document == window.controller.document and opened.picture is None and opened.notes == ()
+    assert opened.document == window.session.document and opened.picture is None and opened.notes == ()
 
 
 def test_that_a_photo_larger_than_a_project_keeps_is_told(
@@ -196,10 +196,10 @@ def test_that_a_photo_larger_than_a_project_keeps_is_told(
 ) -> None:
     with photo.open("ab") as stream:  # readers ignore what follows the end of a PNG
         stream.write(bytes(picture_record.LARGEST_PICTURE))
-    window.controller.targeting.open(str(photo))
-    until(lambda: window.controller.document.target is not None)
-    window.controller.save(tmp_path / "small.kiri")
-    until(lambda: not window.controller.history.unsaved)
+    window.services.targeting.open(str(photo))
+    until(lambda: window.session.document.target is not None)
+    window.services.project.save(tmp_path / "small.kiri")
+    until(lambda: not window.session.history.unsaved)
     assert "the limit is 16" in told(window, "was not saved with the project")[0].sentence
     assert (tmp_path / "small.kiri").stat().st_size < 100_000
 

@@ -36,7 +36,7 @@ def controls_of(root: QWidget) -> list[QWidget]:
 
 
 def test_that_the_wheel_changes_nothing_in_the_whole_window(designed: MainWindow) -> None:
-    before, controls = designed.controller.document, controls_of(designed)
+    before, controls = designed.session.document, controls_of(designed)
     assert len(controls) > 40
     designed.stage.view.setFocus()
     for control in controls:
@@ -47,7 +47,7 @@ def test_that_the_wheel_changes_nothing_in_the_whole_window(designed: MainWindow
             signal.connect(seen.append)
         scroll(control)
         assert value(control) == shown and seen == [], control.objectName() or control.accessibleName()
-    assert designed.controller.document is before
+    assert designed.session.document is before
 
 
 @pytest.mark.parametrize("command", ["materials", "artwork"])

@@ -15,10 +15,10 @@ Until = Callable[[Callable[[], bool]], None]
 
 def begin_run(window: MainWindow, joins: bool = False) -> None:
     """What Generate does before the first report comes."""
-    controller = window.controller
-    kept = controller.document.candidates if joins else ()
-    controller.session.display.begin_run(kept, joins)
-    controller.run.started.emit(3)
+    services = window.services
+    kept = services.session.document.candidates if joins else ()
+    services.session.display.begin_run(kept, joins)
+    services.run.started.emit(3)
 
 
 def test_that_a_run_shows_its_target_and_no_older_design(designed: MainWindow) -> None:
@@ -26,8 +26,8 @@ def test_that_a_run_shows_its_target_and_no_older_design(designed: MainWindow) -
     stage = designed.stage
     assert stage.view.design is not None
     begin_run(designed)
-    assert designed.controller.stage is None and stage.view.design is None
-    bounds, target = stage.view.scene_bounds(), designed.controller.document.target
+    assert designed.session.stage is None and stage.view.design is None
+    bounds, target = stage.view.scene_bounds(), designed.session.document.target
     assert bounds is not None and target is not None
     assert (bounds.left, bounds.right) == pytest.approx((target.points[:, 0].min(), target.points[:, 0].max()))
     assert not stage.deployment.isEnabled() or not stage.deployment.play.isEnabled()
@@ -37,30 +37,30 @@ def test_that_the_target_of_a_run_is_shown_where_nothing_was_before(heart: MainW
     assert heart.stage.view.scene_bounds() is None
     begin_run(heart)
     assert heart.stage.view.scene_bounds() is not None
-    heart.controller.run.ended.emit(False)
+    heart.services.run.ended.emit(False)
     assert heart.stage.view.scene_bounds() is None
 
 
 def test_that_the_angle_stays_from_one_run_to_the_next(designed: MainWindow, designs: Document) -> None:
-    display = designed.controller.session.display
+    display = designed.session.display
     designed.stage.deployment.set_phi(1.0)
     begin_run(designed)
-    display.add(designed.controller.session.cache.entry(designs.candidates[1]))
+    display.add(designed.session.cache.entry(designs.candidates[1]))
     assert designed.stage.view.design is not None and designed.stage.view.phi == pytest.approx(1.0, abs=2e-3)
 
 
 def test_that_a_run_that_adds_designs_leaves_the_chosen_one_on_the_stage(designed: MainWindow) -> None:
-    before = designed.controller.stage
+    before = designed.session.stage
     begin_run(designed, joins=True)
-    assert designed.controller.stage is before and designed.stage.view.design is not None
+    assert designed.session.stage is before and designed.stage.view.design is not None
 
 
 def test_that_the_ends_of_a_design_found_meanwhile_have_the_size_asked_for(
     designed: MainWindow, designs: Document
 ) -> None:
     """Before, they had the size of a sheet as wide as the one before the run, or as an empty project expects."""
-    session = designed.controller.session
-    designed.controller.fabrication.set_opened_size(230.0)
+    session = designed.session
+    designed.services.fabrication.set_opened_size(230.0)
     for candidate in designs.candidates[1:]:
         begin_run(designed)
         session.display.add(session.cache.entry(candidate))
@@ -70,7 +70,7 @@ def test_that_the_ends_of_a_design_found_meanwhile_have_the_size_asked_for(
 
 def test_that_words_and_target_do_not_lie_over_each_other(designed: MainWindow) -> None:
     begin_run(designed)
-    view, target = designed.stage.view, designed.controller.document.target
+    view, target = designed.stage.view, designed.session.document.target
     transform = view.transform()
     assert transform is not None and target is not None
     assert transform.to_pixels(target.points)[:, 1].min() >= CAPTION_HEIGHT

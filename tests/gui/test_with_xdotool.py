@@ -265,7 +265,7 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     person: Person, window: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
 ) -> None:
     window.resize(*SIZE)
-    window.connections.welcome.begin()
+    window.presenters.welcome.begin()
     until(lambda: window.stage.welcome.ready)
     QApplication.processEvents()
     scissors = middle(window.stage.welcome.question.buttons["by hand"], window)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
-from kirigami_studio.fabricate.options import CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, CutOrder
 from kirigami_studio.fabricate.timing import travel_lengths
 from kirigami_studio.lab.benchmark.fabrication_suite import random_design, travel_bound
 
@@ -25,7 +27,7 @@ def test_that_the_shortest_order_is_within_a_seventh_of_what_no_order_beats(
 ) -> None:
     design = random_design(grid, spread, 1)
     rows, short = (
-        plan_cuts(design, 300.0, options=CutOptions(order=order)) for order in (CutOrder.ROWS, CutOrder.SHORTEST)
+        plan_cuts(design, 300.0, options=replace(STRAIGHT, order=order)) for order in (CutOrder.ROWS, CutOrder.SHORTEST)
     )
     ends = np.array([path.points[[0, -1]] for path in rows.on_layer(Layer.SLITS)])
     shortest = slit_travel(short)

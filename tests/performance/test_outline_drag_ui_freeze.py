@@ -45,8 +45,8 @@ def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
                tmp_path / "large.kiri")  # fmt: skip
     window = create_window(LIGHT)
     window.show()
-    window.controller.open_project(tmp_path / "large.kiri")
-    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.controller.queue.busy, timeout=900_000)
+    window.services.project.open(tmp_path / "large.kiri")
+    qtbot.waitUntil(lambda: window.fabrication.export.isEnabled() and not window.session.queue.busy, timeout=900_000)
     window.stage.deployment.set_phi(OPEN)
     window.commands["hand"].trigger()
     watch, longest = ThreadWatch(), []
@@ -60,7 +60,7 @@ def test_that_the_window_goes_on_while_a_vertex_of_a_large_sheet_is_dragged(
             break
     print("\nlongest turns (ms): " + ", ".join(f"{1000 * turn:.0f}" for turn in longest))
     watch.close()
-    window.controller.history.mark_saved()
+    window.session.history.mark_saved()
     assert window.close()
     assert min(longest) < LIMIT
 

@@ -21,7 +21,7 @@ application = create_application(["kirigami-studio"])
 window = create_window()
 open_first(window, "heart")
 window.show()
-while window.controller.document.target is None:
+while window.session.document.target is None:
     application.processEvents()
 application.processEvents()
 assert window.grab().width() > 500

@@ -32,11 +32,12 @@ SENTENCES: Mapping[str, str | tuple[str, str]] = {
 
 
 def sentence(code: str, fields: Mapping[str, object]) -> str:
-    """The sentence of a problem in the user's language, with its values in place; an unknown code is shown as it is."""
+    """The sentence of a problem in the user's language; an unknown code is shown as it is."""
     text = SENTENCES.get(code, code)
     fields = {name: one_line(value) for name, value in fields.items()}
-    if isinstance(material := fields.get("material"), str):
-        fields = {**fields, "material": tr(material)}  # the bundled ones have names in every language
+    for named in ("material", "machine"):  # the bundled ones have names in every language
+        if isinstance(bundled := fields.get(named), str):
+            fields = {**fields, named: tr(bundled)}
     if isinstance(text, tuple):
         one, many = text
         others = {name: value for name, value in fields.items() if name != "count"}
@@ -45,7 +46,7 @@ def sentence(code: str, fields: Mapping[str, object]) -> str:
 
 
 def one_line(value: object) -> object:
-    """A text, path or error from outside without what cannot be shown in a line; other values as they are.
+    """A text, path or error from outside as one line that can be shown; other values as are.
 
     A name in a damaged file may hold anything, and a sentence is one line.
     """

@@ -1,4 +1,4 @@
-"""Sentences about designs on their way: fields, scores, fits, runs and the models that sample them."""
+"""Sentences about designs on their way: fields, scores, fits, runs and models."""
 
 from __future__ import annotations
 

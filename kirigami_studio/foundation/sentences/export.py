@@ -1,4 +1,4 @@
-"""Sentences of ``export``, by the code of the problem: files that cannot be written, and what reading back finds."""
+"""Sentences of ``export``, by the code of the problem: files, and reading them back."""
 
 from __future__ import annotations
 
@@ -13,6 +13,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
     "profile.only_red_is_cut": mark(
         "MeerK40t and K40 Whisperer cut red lines only and engrave the others: choose the k40 profile for those."
+    ),
+    "profile.attach_and_measure": mark(
+        "In Design Space, select everything and choose Attach, or cuts move on the mat. Then compare the width with "
+        "that of the sheet: where it differs, lock the proportions and type it."
+    ),
+    "profile.measure": mark(
+        "In Silhouette Studio, compare the width with that of the sheet: where it differs, lock the proportions and "
+        "type it."
+    ),
+    "profile.order_of_steps": mark(
+        "Drag the steps into the order of the layers, the outline last, and compare the width with that of the sheet."
     ),
     "profile.one_origin": mark(
         "Import all files of the folder at one origin, so that their registration marks (layer REGISTRATION) lie upon "
@@ -259,6 +270,25 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file promises a name engraved in {promised:.20} lines on layer {layer}, and has {count} there. Export it "
         "again."
     ),
+    "cut_file.not_for_cutting": mark("This is no cut file: {purpose}."),
+    "cut_file.other_kind": mark(
+        "{path} is no file for a cutter. Check the DXF, the SVG or the LightBurn project that was exported with it."
+    ),
+    "cut_file.record_not_readable": mark(
+        "The file's record of how it was made is damaged: its entry {name} is '{value}'. Export it again."
+    ),
+    "cut_file.lines_differ": mark_n(
+        "The file holds {count} cut; its record says {promised}. Export it again.",
+        "The file holds {count} cuts; its record says {promised}. Export it again.",
+    ),
+    "cut_file.narrower_than_recorded": mark(
+        "Two cuts leave only {width_mm:.3f} mm of material between them; the narrowest connector was made "
+        "{recorded_mm:.3f} mm wide."
+    ),
+    "check.other_design": mark(
+        "The project does not have the design {design} that the file was made of. Name the project that it was "
+        "exported from."
+    ),
     "cut_file.name_alone": mark("The file holds only an engraved name and no cuts."),
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
@@ -303,6 +333,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.cut_once": mark("Nothing is cut twice."),
     "verify.cut_twice": mark("{length_mm:.4f} mm would be cut twice."),
+    "verify.project_as_planned": mark("Every path is as the design gives it, on its layer and in its order."),
+    "verify.project_differs": mark("Its paths are not those that the design gives. Export it again."),
     "verify.pieces": mark_n(
         "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece.",
         "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces.",
@@ -335,10 +367,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Read back from the file: {voids} voids miss being parallelograms by up to {miss_um:.0f} \N{MICRO SIGN}m at "
         "x = {x:.2f}, y = {y:.2f} mm, so the sheet stretches its connectors as it closes, or jams. Use centred "
         "connectors, or a larger sheet."
-    ),
-    "verify.sheet_closes": mark("With these connectors the sheet closes, by the estimate of the simulator."),
-    "verify.sheet_jams": mark(
-        "With these connectors the sheet jams at {jam_deg:.0f} degrees, by the estimate of the simulator."
     ),
     "verify.connectors_lost": mark(
         "Read back from the file: {connectors} connectors, the narrowest {narrowest_mm:.3f} mm wide; {planned} were "

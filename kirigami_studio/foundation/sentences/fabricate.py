@@ -1,4 +1,4 @@
-"""Sentences of ``fabricate``, by the code of the problem: widths, materials, and what a check of a plan finds."""
+"""Sentences of ``fabricate``, by the code of the problem: widths, materials, checks."""
 
 from __future__ import annotations
 
@@ -110,6 +110,50 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "material.no_author": mark("A calibration needs the name of the person who measured. Give an author."),
     "material.folder_is_bundled": mark(
         "Your own materials cannot be kept in {folder}, where the bundled ones are. Choose another folder."
+    ),
+    # Machines
+    "machine.wrong_type": mark(
+        "Machine {key!r:.60}: {name} must be of type {kind}, got {value!r:.40}. Correct its file."
+    ),
+    "machine.no_such_kind": mark("Machine {key!r:.60}: there is no kind {value!r:.40}. Choose one of {choices}."),
+    "machine.number_not_positive": mark(
+        "Machine {key!r:.60}: {name} must be a number above 0, got {value!r:.40}. Correct its file."
+    ),
+    "machine.number_negative": mark(
+        "Machine {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40}. Correct its file."
+    ),
+    "machine.unknown": mark("There is no machine {name!r:.60}. Choose one of {known}."),
+    "machine.folder_not_readable": mark("Cannot read your own machines in {folder}: {reason}."),
+    "machine.file_not_readable": mark("Cannot read the machine file {path}: {reason!s:.200}. Correct or remove it."),
+    "machine.entries_missing": mark_n(
+        "The machine file {path} lacks the entry {names}. Add it.",
+        "The machine file {path} lacks the entries {names}. Add them.",
+    ),
+    "machine.entries_unknown": mark_n(
+        "The machine file {path} has an unknown entry: {names:.80}. Remove it.",
+        "The machine file {path} has unknown entries: {names:.80}. Remove them.",
+    ),
+    "machine.key_not_usable": mark(
+        "A machine's key has 1 to 40 of the characters a-z, 0-9, - and _ and is not the name of a device, got "
+        "{key!r:.60}. Choose another, for example 'my-laser'."
+    ),
+    "machine.bundled_not_deleted": mark("{key!r:.60} is a bundled machine and cannot be deleted."),
+    "machine.not_own": mark("You have no machine {key!r:.60} of your own. Your own machines: {own}."),
+    "machine.none_own": mark("You have no machines of your own, so {key!r:.60} cannot be deleted."),
+    "machine.no_such_entry": mark("A machine has no entry {name!r:.40}. Choose from {known}."),
+    "machine.folder_is_bundled": mark(
+        "Your own machines cannot be kept in {folder}, where the bundled ones are. Choose another folder."
+    ),
+    "plan.machine_unknown": mark(
+        "You do not have the machine {name!r:.60}. Bed and times are those of {machine}; choose your machine."
+    ),
+    "plan.machine_does_not_cut": mark(
+        "{machine} is not known to cut {material}, whose figures are for another kind of machine. Choose a material "
+        "that it cuts, or another machine."
+    ),
+    "plan.too_thick_for_machine": mark(
+        "{machine} takes sheets up to {thickest_mm:g} mm, {material} has {thickness_mm:g} mm. Choose a thinner "
+        "material or another machine."
     ),
     # The coupon
     "coupon.gap_negative": mark("The gap beside the comb must be 0 mm or more, got {value!r:.40}."),
@@ -247,8 +291,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A gap of {gap_mm:g} mm between copies is not wider than the kerf of {kerf_mm:g} mm. Make the gap wider."
     ),
     "copies.no_bed": mark(
-        "As many copies as fit were asked for, but the material does not know the bed of the machine: the file holds "
-        "one. Set the bed of your machine in the material, or ask for a number."
+        "As many copies as fit were asked for, but the bed of the machine is not known: the file holds one. Choose "
+        "your machine or enter its bed, or ask for a number."
     ),
     "copies.none_fits": mark(
         "Not one copy fits on the bed of {bed_width_mm:g} x {bed_height_mm:g} mm; the file holds one."
@@ -264,8 +308,27 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."
     ),
     "plan.material_does_not_hold": mark(
-        "Connectors of {material!r} break before a sheet is closed: no style, width and size is known that holds. Cut "
-        "a tougher sheet, such as film, felt or polypropylene."
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Two pinned layers "
+        "can (not built yet). For one sheet cut film, paper or polypropylene."
+    ),
+    "plan.material_needs_backing": mark(
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Tiles of it glued on "
+        "a hinge layer can (not built yet). For one sheet cut film, paper or polypropylene."
+    ),
+    "plan.material_is_hinge_layer": mark(
+        "{material} is a hinge layer: alone it is too limp for panels. Glued under tiles of card or board it works "
+        "(not built yet)."
+    ),
+    "strain.escapes": mark(
+        "the sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
+        "plane, across its thickness"
+    ),
+    "strain.stays_flat": mark(
+        "the sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
+        "plane, across its width"
+    ),
+    "material.no_such_word": mark(
+        "Material {key!r:.60}: {name} must be one of {choices}, got {value!r:.40}. Correct its file."
     ),
     "plan.slits_short": mark_n(
         "{count} cut is shorter than the {least_mm:g} mm that {material!r} needs: {length_mm:.3f} mm at x = "
@@ -296,14 +359,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.strain_choose_style": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
-        "{softer_mm:g} mm). Choose arc or double connectors, thinner material or a target angle nearer to flat."
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm: {why}). "
+        "Choose arc or double connectors, thinner material or a target angle nearer to flat."
     ),
     "plan.strain_larger_sheet": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
-        "{softer_mm:g} mm). Choose a larger sheet, so that every slit end has room for its style, thinner material or "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm: {why}). "
+        "Choose a larger sheet, so that every slit end has room for its style, thinner material or "
         "a target angle nearer to flat."
     ),
 }

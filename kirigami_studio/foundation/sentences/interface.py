@@ -1,4 +1,4 @@
-"""Sentences of the command line and the window, and of files and folders that cannot be used."""
+"""Sentences of command line and window, and of files and folders that cannot be used."""
 
 from __future__ import annotations
 
@@ -57,13 +57,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "archive.no_entries": mark("The array '{key}' in {name} has no entries."),
     # Sub-commands
-    "design.trimming_cut_short": mark(
-        "The budget ended before a design was trimmed. Allow more time, or leave --trim out to get untrimmed designs."
-    ),
+    "design.trimming_cut_short": mark("The budget ended before a design was trimmed, so none is. Allow more time."),
     "design.none_trimmed": mark(
-        "No design could be trimmed: all of them cross themselves. Try another seed, or leave --trim out to get "
-        "untrimmed designs."
+        "No design could be trimmed, because all of them cross themselves, so none is. Try another seed."
     ),
+    "design.other_is_cut": mark("The best design cannot be cut, so '{name}' is. {reason}"),
+    "design.not_cut": mark("No design can be cut, so there is no cut file; {project} has the designs. {reason}"),
     "decode.other_grid": mark("{name} has {rows} x {columns} voids, not {grid}."),
     "score.nothing_to_score": mark("Name sheets and then a target: score SHEET [SHEET ...] TARGET."),
     "score.numbers_differ": mark(
@@ -75,6 +74,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.connector_and_width": mark(
         "--hinge-mm takes a connector and its width in mm, for example 3=0.8; got '{text}'."
     ),
+    "picture.angle": mark("A sheet cannot be shown at {angle:g} degrees: 180 is flat, 0 fully turned."),
+    "picture.none": mark("These choices are for pictures ({kinds}, or the whole set of --all), not for {path}."),
     "animate.not_a_gif": mark("animate writes .gif files, got {name}."),
     "licences.no_such_part": mark(
         "{part!r:.60} does not come with the program; kirigami-studio licences lists what does."
@@ -85,6 +86,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "materials.calibrated_by_nobody": mark("--calibrated needs --by NAME: who measured the coupon."),
     "materials.not_name_and_value": mark("--set takes NAME=VALUE, for example kerf_mm=0.03; got '{entry:.60}'."),
+    "machines.copy_and_delete": mark("Either copy a machine or delete one, not both."),
+    "machines.options_without_copy": mark("--as and --set need --copy KEY, which names the machine to copy."),
     "coupon.nothing_to_do": mark("Give --out FILE to write a coupon, or --gap-mm with the gaps measured on one."),
     "coupon.unknown_extension": mark("A coupon is written as .dxf, .svg or .pdf, got {name}."),
     # gui

@@ -81,16 +81,34 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "other."
     ),
     "as_cut.jams_while_flat": mark(
-        "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f} while it stays flat. It is "
-        "thin, so it may pass by bending out of the plane."
+        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
+        "It is thin and may pass by bending out of the plane."
+    ),
+    "as_cut.hardly_opens": mark(
+        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
+        "Thin sheet may bend past a jam only beyond {least_percent:.0f} %."
     ),
     "as_cut.nearly": mark("As cut, the sheet comes to {jam_deg:.0f} degrees instead of {phi_deg:.0f}."),
     "as_cut.file_jams": mark(
-        "By the connectors read from {name:.80}, the sheet jams at {jam_deg:.0f} degrees (estimate)."
+        "The connectors read from {name:.80} lie where the sheet would jam, although the planned ones close."
+    ),
+    "as_cut.loses_match": mark(
+        "As cut, it matches the target by {match_percent:.0f} % instead of {designed_percent:.0f} %."
+    ),
+    "as_cut.does_not_match": mark(
+        "As cut, it matches the target by {match_percent:.0f} % instead of {designed_percent:.0f} %. Below "
+        "{least_percent:.0f} % it is another shape."
     ),
     "as_cut.breaks": mark(
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "
-        "{limit_percent:g} %."
+        "{limit_percent:g} % ({why})."
+    ),
+    "as_cut.survives": mark(
+        "Connectors are strained by {strain_percent:.0f} % at most; {material!r} breaks at {limit_percent:g} % ({why})."
+    ),
+    "as_cut.stays_bent": mark(
+        "Connectors stay bent: they are strained by up to {strain_percent:.0f} %, {material!r} yields at "
+        "{yield_percent:g} % and breaks at {limit_percent:g} % ({why})."
     ),
     "as_cut.not_known": mark("The sheet could not be closed as cut, in simulation: {reason}"),
     # The command

@@ -1,4 +1,4 @@
-"""Sentences of ``outlines``, by the code of the problem: files that cannot be read, contours and drawings."""
+"""Sentences of ``outlines``, by the code of the problem: files, contours and drawings."""
 
 from __future__ import annotations
 

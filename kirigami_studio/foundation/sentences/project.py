@@ -1,4 +1,4 @@
-"""Sentences of ``project``, by the code of the problem: documents, project files, preferences and recovery files."""
+"""Sentences of ``project``, by the code of the problem: documents, files, preferences."""
 
 from __future__ import annotations
 
@@ -60,6 +60,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The size of the opened shape must be above 0 and at most {most:g} mm, got {value!r:.40}."
     ),
     "settings.material_not_a_name": mark("The material must be the name of a preset, got {value!r:.40}."),
+    "settings.machine_not_a_name": mark("The machine must be the name of one, got {value!r:.40}."),
     "settings.profile_not_a_name": mark("The machine profile must be a name, got {value!r:.40}."),
     "settings.dxf_version_not_a_name": mark("There is no DXF version {value!r:.40}. Choose one of {choices}."),
     "settings.paper_not_a_name": mark("There is no paper {value!r:.40}. Choose one of {choices}."),

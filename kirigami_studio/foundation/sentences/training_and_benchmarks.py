@@ -1,4 +1,4 @@
-"""Sentences of ``training``, ``benchmark``, ``problem`` and of clusters, by the code of the problem."""
+"""Sentences of ``lab`` and of clusters, by the code of the problem."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from kirigami_studio.gui.gallery.design_table import WIDTHS, DesignTable
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.gallery.gallery_model import GalleryModel
 from kirigami_studio.gui.gallery.gallery_panel import STEPS
-from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_texts
+from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_text
 from kirigami_studio.gui.widgets.card import ElidedLabel, FittingLabel, ToolButton
 
 
@@ -185,10 +185,10 @@ class AllDesigns(QFrame):
             part.setEnabled(ready)
 
     def _count(self) -> None:
-        taken = [entry.candidate for entry in self._model.taken]
-        self.count.set_texts(*count_texts(taken, len(self._model.all_entries)))
+        taken = len(self._model.taken)
+        self.count.set_texts(count_text(taken, len(self._model.all_entries)))
         self._fit()
-        self.use.setEnabled(bool(taken))
+        self.use.setEnabled(taken > 0)
 
     def _show_compared(self) -> None:
         count = len(self.table.compared)

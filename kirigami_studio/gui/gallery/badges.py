@@ -1,17 +1,17 @@
-"""What is known at once of a design that is to be cut, in a few words each: too thin, jams, hinges break, cuttable."""
+"""The verdict on a design as a card shows it: its level, then its answers, the worst first."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.words import tr
-from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.gui.widgets.verdict_marks import ABOUT, level_of
 
 if TYPE_CHECKING:
-    from kirigami_studio.studio.as_cut import AsCut
+    from kirigami_studio.studio.verdict import Verdict
+
+#: States of answers, by their names in JSON, from the worst on; what nobody has looked for is not shown.
+WORST_FIRST = ("bad", "care", "good")
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,62 +21,44 @@ class Badge:
     Attributes
     ----------
     text : str
-        A few words.
+        A few words, after a sign that stands for an estimate.
     tip : str
-        The whole sentence.
-    good : bool
+        Whole sentences.
+    state : str
+        Level of the verdict, or state of an answer, by their names in JSON.
+    is_level : bool
+        Whether it is the verdict itself, which alone has an icon.
     """
 
     text: str
     tip: str
-    good: bool
+    state: str
+    is_level: bool = False
 
 
-def badges_of(
-    candidate: Candidate, ranking: Ranking, as_cut: AsCut | None, strain_limit: float = math.inf
-) -> tuple[Badge, ...]:
-    """What is known of a design, what keeps it from being cut first.
+def badges_of(verdict: Verdict) -> tuple[Badge, ...]:
+    """The level and the answers of a verdict, the worst first; files are no matter of a card."""
+    from kirigami_studio.studio.verdict import Question, question_of
 
-    Parameters
-    ----------
-    candidate : Candidate
-    ranking : Ranking
-        With the sheet's width and the least feature of the material.
-    as_cut : AsCut or None
-        As estimated; None while that is not known.
-    strain_limit : float
-        Strain at which connectors of the material break.
-    """
-    found: list[Badge] = []
-    if not candidate.score.feasible:
-        found.append(
-            Badge(tr("overlaps itself"), tr("Panels overlap or touch while it opens: it cannot be built."), False)
-        )
-    if not ranking.wide_enough(candidate):
-        size = candidate.score.evenness.least_feature_mm(ranking.width_mm)
-        tip = tr(
-            "Its smallest panel edge or neck is {size:.2f} mm, ringed on the flat sheet; the material needs "
-            "{least:.2f} mm.",
-            size=size,
-            least=ranking.least_feature_mm,
-        )
-        found.append(Badge(tr("too thin: {size:.2f} mm", size=size), tip, False))
-    if candidate in ranking.refusals:
-        found.append(Badge(tr("cannot be cut"), ranking.refusals[candidate].text, False))
-    if as_cut is not None and not as_cut.closes:
-        jam = math.degrees(as_cut.jam_phi)
-        tip = tr("As cut, the sheet is expected to jam at {jam:.0f}° before it shows the target (estimate).", jam=jam)
-        found.append(Badge(tr("jams at {jam:.0f}°", jam=jam), tip, False))
-    if as_cut is not None and as_cut.strain > strain_limit:
-        tip = tr(
-            "Connectors are expected to break: strain {strain:.0f} %, the material breaks at {limit:.1f} % (estimate).",
-            strain=100 * as_cut.strain,
-            limit=100 * strain_limit,
-        )
-        found.append(Badge(tr("hinges break"), tip, False))
-    if ranking.cuttable(candidate):
-        tip = tr("It can be built, and all panels are as wide as the material needs.")
-        found.append(Badge(tr("cuttable"), tip, True))
-    if as_cut is not None and as_cut.closes:
-        found.append(Badge(tr("closes"), tr("As cut, the sheet is expected to come to its angle (estimate)."), True))
+    about = ABOUT if verdict.is_estimate and verdict.is_checked else ""
+    words = verdict.level.words if verdict.is_checked else verdict.words
+    found = [Badge(f"{about}{words}", "\n".join(verdict.lines), level_of(verdict), is_level=True)]
+    answers = [answer for answer in verdict.answers if answer.question is not Question.FILES]
+    for state in WORST_FIRST:
+        for answer in answers:
+            if answer.state.value == state:
+                closing = answer.question is Question.CLOSES
+                tip = [problem.text for problem in verdict.problems if question_of(problem) is answer.question]
+                text = closing_text(verdict) if closing else answer.word
+                found.append(Badge(text, "\n".join(tip) or verdict.summary, state))
     return tuple(found)
+
+
+def closing_text(verdict: Verdict) -> str:
+    """Whether the sheet closes, in a few words; "" where nobody has looked."""
+    from kirigami_studio.studio.verdict import AnswerState, Question
+
+    answer, found = verdict.answer(Question.CLOSES), verdict.as_cut
+    if answer.state is AnswerState.OPEN:
+        return ""
+    return f"{ABOUT}{answer.word}" if found is not None and found.source.value == "estimate" else answer.word

@@ -33,11 +33,10 @@ from PySide6.QtWidgets import (
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import number, tr
+from kirigami_studio.gui.gallery.badges import closing_text
 from kirigami_studio.gui.gallery.gallery_model import (
     ALIKE_ROLE,
-    AS_CUT_ROLE,
     CANDIDATE_ROLE,
-    CUTTABLE_ROLE,
     DESIGN_ROLE,
     FRESH_ROLE,
     GRID_ROLE,
@@ -48,17 +47,19 @@ from kirigami_studio.gui.gallery.gallery_model import (
     RISE_ROLE,
     START_ROLE,
     VALUE_ROLE,
+    VERDICT_ROLE,
     alike_tip,
 )
 from kirigami_studio.gui.stage.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.gui.widgets.verdict_marks import ABOUT, ICONS, PALE, colour_of, level_of
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:
-    from kirigami_studio.studio.as_cut import AsCut
+    from kirigami_studio.studio.verdict import Verdict
 
 SMALLEST_CARD = 132
 #: Pixels above the picture, for the name and the marks, and below it, for two lines of text.
@@ -99,7 +100,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, name, match, sort value, whether it can be cut and closes, its mark."""
+    """Paints one candidate: pictures, name, match, sort value, verdict and mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -144,6 +145,7 @@ class CardDelegate(QStyledItemDelegate):
         candidate: Candidate = index.data(CANDIDATE_ROLE)
         design: PosedDesign = index.data(DESIGN_ROLE)
         mark: Mark = index.data(MARK_ROLE)
+        verdict: Verdict = index.data(VERDICT_ROLE)
         rect: QRect = option.rect
         state: QStyle.StateFlag = option.state
         card = card_of(rect)
@@ -169,10 +171,10 @@ class CardDelegate(QStyledItemDelegate):
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, number(100 * rise, "+.1f"))
         else:
-            self._paint_as_cut(painter, card, left, index.data(AS_CUT_ROLE))
+            self._paint_closing(painter, card, left, verdict)
         told_apart: str = index.data(START_ROLE) or index.data(GRID_ROLE)
         self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), told_apart)
-        self._paint_badge(painter, card, index.data(CUTTABLE_ROLE))
+        self._paint_level(painter, card, verdict)
         if alike:
             self._paint_alike(painter, alike_box(rect), alike, index.data(OPEN_ROLE))
         if candidate is self.under_mouse:
@@ -185,15 +187,18 @@ class CardDelegate(QStyledItemDelegate):
         painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
         painter.drawRoundedRect(QRectF(card).adjusted(4, 4, 2.5, 2.5), 8, 8)
 
-    def _paint_as_cut(self, painter: QPainter, card: QRect, left: int, found: AsCut | None) -> None:
-        """In the upper right corner, whether the sheet is expected to close as cut, as long as there is room."""
-        if found is None:
-            return
-        degrees = round(math.degrees(found.jam_phi))
-        texts = (tr("closes"),) if found.closes else (tr("jams at {jam}°", jam=degrees), tr("{jam}°!", jam=degrees))
+    def _paint_closing(self, painter: QPainter, card: QRect, left: int, verdict: Verdict) -> None:
+        """In the upper right corner, whether the sheet closes as cut, as long as there is room."""
+        from kirigami_studio.studio.verdict import Question
+
+        texts, found = [closing_text(verdict)], verdict.as_cut
+        if found is not None and not found.closes:
+            about = ABOUT if found.source.value == "estimate" else ""
+            texts.append(about + tr("{jam}°!", jam=round(found.jam_deg)))
+        state = verdict.answer(Question.CLOSES).state.value
         place, metrics = card.adjusted(left - card.left() + 6, 6, -10, 0), painter.fontMetrics()
         text = next((text for text in texts if metrics.horizontalAdvance(text) <= place.width()), "")
-        painter.setPen(QColor(self.palette_.muted if found.closes else self.palette_.warning))
+        painter.setPen(QColor(self.palette_.muted if state == "good" else colour_of(state, self.palette_)))
         painter.drawText(place, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop), text)
 
     def _paint_symmetry(self, painter: QPainter, card: QRect, left: int, symmetry: Symmetry | None) -> int:
@@ -302,11 +307,13 @@ class CardDelegate(QStyledItemDelegate):
         room = line.width() - (metrics.horizontalAdvance(apart) + 6 if apart else -2)
         painter.drawText(text, left | bottom, metrics.elidedText(value, Qt.TextElideMode.ElideRight, room))
 
-    def _paint_badge(self, painter: QPainter, card: QRect, cuttable: bool) -> None:
-        name, colour = ("check", self.palette_.accent) if cuttable else ("warning", self.palette_.warning)
-        edge, text = 16, _text_of(card)
-        ratio = painter.device().devicePixelRatio()
-        painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icons.pixmap(name, colour, edge, ratio))
+    def _paint_level(self, painter: QPainter, card: QRect, verdict: Verdict) -> None:
+        """The icon of the verdict in the lower right corner, pale where it is an estimate."""
+        edge, text, level = 16, _text_of(card), level_of(verdict)
+        icon = icons.pixmap(ICONS[level], colour_of(level, self.palette_), edge, painter.device().devicePixelRatio())
+        painter.setOpacity(PALE if verdict.is_estimate else 1.0)
+        painter.drawPixmap(text.right() - edge + 1, text.bottom() - edge + 1, icon)
+        painter.setOpacity(1.0)
 
 
 def lay_out_cards(view: QListView, model: QAbstractItemModel, cards: QStyledItemDelegate) -> None:

@@ -1,7 +1,7 @@
 """Work on the chosen design in the worker: trim it, fit it again, score it as the generator sampled it.
 
-:class:`TrimSwitch` and :class:`Refitter` each run at most one :class:`ChosenDesignJob` and make one edit of its result;
-:class:`SampledScores` changes nothing.
+:class:`ChosenDesign` is the one that is asked.  :class:`TrimSwitch` and :class:`Refitter` each run at most one
+:class:`ChosenDesignJob` and make one edit of its result; :class:`SampledScores` changes nothing.
 """
 
 from __future__ import annotations
@@ -17,9 +17,12 @@ from PySide6.QtCore import QObject, Signal
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.run.generation import Generation
+from kirigami_studio.gui.run.regularity import Regularity
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -271,3 +274,82 @@ class SampledScores(QObject):
         while len(self._sampled) > CAPACITY:
             self._sampled.popitem(last=False)
         self.known.emit(candidate, self._session.cache.entry(report.candidate))
+
+
+class ChosenDesign(QObject):
+    """Chooses the design on the stage, trims it, fits it again, shows it as sampled."""
+
+    def __init__(
+        self, session: Session, hand: HandEditor, generation: Generation, regularity: Regularity, parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._session, self._hand, self._generation, self._regularity = session, hand, generation, regularity
+        self.trimming = TrimSwitch(session, self)
+        self.refitting = Refitter(session, self)
+        self.sampled = SampledScores(session, self)
+        session.display.stage_changed.connect(self._stop_unless)
+
+    @property
+    def _running(self) -> bool:
+        return self._generation.run.running
+
+    @property
+    def busy(self) -> bool:
+        """Whether designs are being trimmed or fitted."""
+        return self.trimming.busy or self.refitting.busy or self._regularity.busy
+
+    def choose(self, candidate: Candidate) -> None:
+        """Put a candidate on the stage; during a run it is only looked at."""
+        if self._hand.postpones(lambda: self.choose(candidate)):
+            return
+        session = self._session
+        if self._running:
+            session.display.look_at(candidate)
+        elif candidate in session.document.candidates:
+            session.apply(edits.choose(session.document, session.document.candidates.index(candidate)))
+
+    def show_before(self, on: bool) -> None:
+        """Find out how the design on the stage was sampled, or stop doing so."""
+        stage = self._session.stage
+        if on and stage is not None:
+            self.sampled.look_up(stage.candidate, self._session.document.target)
+        else:
+            self.sampled.stop()
+
+    def trim(self, on: bool) -> None:
+        """Trim the chosen design to the target, or take its trim off."""
+        if self._hand.postpones(lambda: self.trim(on)):
+            return
+        if self._running:
+            text = tr("Wait for the run to finish, then trim a design.")
+            self._session.post(Message(text, Tone.HINT))
+        else:
+            self.trimming.switch(on)
+
+    def refit(self) -> None:
+        """Fit the chosen design again."""
+        if not self._running and not self._hand.postpones(self.refit):
+            self.trimming.job.stop()
+            self.refitting.start()
+
+    def cancel(self) -> None:
+        """Ask the run, or the work on designs, to stop; the document stays as it is."""
+        if self._running:
+            self._generation.cancel()
+        elif self.trimming.busy:
+            self.trimming.cancel()
+        elif self.refitting.busy:
+            self.refitting.cancel()
+        elif self._regularity.busy:
+            self._regularity.cancel()
+
+    def stop(self) -> None:
+        """Stop, and ignore what is still being made."""
+        self.trimming.job.stop()
+        self.refitting.job.stop()
+
+    def _stop_unless(self, entry: Entry | None) -> None:
+        """Go on only with the design that is on the stage now."""
+        candidate = None if entry is None else entry.candidate
+        self.trimming.job.stop_unless(candidate)
+        self.refitting.job.stop_unless(candidate)

@@ -20,9 +20,8 @@ class FilterControls(QObject):
 
     def __init__(self, parent: QObject, prefix: str = "") -> None:
         super().__init__(parent)
-        self.feasible = _check(f"{prefix}feasibleOnly", tr("Feasible"), tr("Show only designs that can be built."))
-        tip = tr("Show only designs that can be cut in the chosen material and width.")
-        self.cuttable = _check(f"{prefix}cuttableOnly", tr("Cuttable"), tip)
+        tip = tr("Leave out designs whose verdict is “Will not work”.")
+        self.works = _check(f"{prefix}worksOnly", tr("Works"), tip)
         self.pinned = _check(f"{prefix}pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
         self.rejected = _check(f"{prefix}showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
         tip = tr("Show pinned designs before all others.")
@@ -41,7 +40,7 @@ class FilterControls(QObject):
         self.feature = _number(f"{prefix}leastFeature", 1000.0, 2, 0.1, f"{least} ", " mm", name)
         self.feature.setToolTip(tr("Show only designs whose smallest panel edge or neck is at least this, in mm."))
         self.numbers = ((tr("match"), self.least), (tr("panels"), self.variation), (tr("smallest"), self.feature))
-        self.boxes = (self.feasible, self.cuttable, self.pinned, self.rejected, self.pinned_first, self.grouped)
+        self.boxes = (self.works, self.pinned, self.rejected, self.pinned_first, self.grouped)
         for _, number in self.numbers:
             number.valueChanged.connect(lambda _: self.changed.emit())
         for box in self.boxes:
@@ -54,8 +53,7 @@ class FilterControls(QObject):
             selection,
             pinned_first=self.pinned_first.isChecked(),
             grouped=self.grouped.isChecked(),
-            feasible_only=self.feasible.isChecked(),
-            cuttable_only=self.cuttable.isChecked(),
+            works_only=self.works.isChecked(),
             pinned_only=self.pinned.isChecked(),
             show_rejected=self.rejected.isChecked(),
             least_match=0.01 * self.least.value(),
@@ -68,8 +66,7 @@ class FilterControls(QObject):
         states = (
             (self.pinned_first, selection.pinned_first),
             (self.grouped, selection.grouped),
-            (self.feasible, selection.feasible_only),
-            (self.cuttable, selection.cuttable_only),
+            (self.works, selection.works_only),
             (self.pinned, selection.pinned_only),
             (self.rejected, selection.show_rejected),
         )
@@ -92,7 +89,7 @@ class FilterControls(QObject):
         column.setContentsMargins(0, 0, 0, 2)
         column.setSpacing(6)
         first = QHBoxLayout()
-        for box in (self.feasible, self.cuttable, self.pinned):
+        for box in (self.works, self.pinned):
             first.addWidget(box)
         first.addStretch(1)
         column.addLayout(first)
@@ -117,11 +114,10 @@ class FilterControls(QObject):
             pair.addWidget(_caption(caption, number))
             pair.addWidget(number)
             row.addLayout(pair)
-        for box in (self.cuttable, self.pinned, self.rejected, self.grouped):
+        for box in (self.works, self.pinned, self.rejected, self.grouped):
             row.addWidget(box)
-        for box in (self.feasible, self.pinned_first):
-            box.setParent(pane)
-            box.hide()
+        self.pinned_first.setParent(pane)
+        self.pinned_first.hide()
         return pane
 
 
@@ -143,7 +139,7 @@ def order_box(name: str) -> QComboBox:
 def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
     return (
         (SortOrder.RANK, tr("By rank"), tr("What can be cut first, then the best balance of match and even panels.")),
-        (SortOrder.MATCH, tr("By match"), tr("The closest match (exact IoU) first, feasible or not.")),
+        (SortOrder.MATCH, tr("By match"), tr("The closest match (exact IoU) first, whatever the verdict.")),
         (
             SortOrder.EVENNESS,
             tr("By evenness"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import math
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QAbstractListModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
@@ -13,7 +14,6 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import mark, tr, tr_n
-from kirigami_studio.gui.gallery.badges import badges_of
 from kirigami_studio.gui.gallery.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.run.look_alikes import Stacks
 from kirigami_studio.gui.session.session import Entry, same_sample
@@ -25,7 +25,9 @@ from kirigami_studio.project.labels import Label
 from kirigami_studio.studio.two_states import TwoStates, start_of
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.material import Material
     from kirigami_studio.studio.as_cut import AsCut
+    from kirigami_studio.studio.verdict import Verdict
 
 CANDIDATE_ROLE = Qt.ItemDataRole.UserRole + 1
 DESIGN_ROLE = Qt.ItemDataRole.UserRole + 2
@@ -36,13 +38,11 @@ FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has a
 NOTE_ROLE = Qt.ItemDataRole.UserRole + 14  #: what the user has noted of it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
-CUTTABLE_ROLE = Qt.ItemDataRole.UserRole + 11  #: whether it is feasible and its panels are wide enough to be cut
 OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
-AS_CUT_ROLE = Qt.ItemDataRole.UserRole + 12  #: AsCut, as estimated, or None while that is not known
+VERDICT_ROLE = Qt.ItemDataRole.UserRole + 12  #: Verdict: that of the stage where it is known, else an estimate
 GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of several grids are there, else ""
 START_ROLE = Qt.ItemDataRole.UserRole + 13  #: what it starts as where designs of several starts are there, else ""
 
-BADGES_ROLE = Qt.ItemDataRole.UserRole + 15  #: tuple of Badge, worst first
 FEATURE_ROLE = Qt.ItemDataRole.UserRole + 17  #: its smallest panel edge or neck, mm
 THIN_ROLE = Qt.ItemDataRole.UserRole + 16  #: whether panels are too thin for the material
 
@@ -73,7 +73,9 @@ class GalleryModel(QAbstractListModel):
         self._target: Outline | None = None
         self._starts_differ: bool | None = None  # once it is asked for
         self._as_cut: Mapping[Candidate, AsCut] = {}
-        self._strain_limit = math.inf
+        self._material: Material | None = None
+        self._judged: Mapping[Candidate, Verdict] = {}
+        self._expected: dict[Candidate, Verdict] = {}  # of those that were asked for
         self._labels: Mapping[Candidate, Label] = {}
 
     @property
@@ -117,17 +119,12 @@ class GalleryModel(QAbstractListModel):
             return self.note_of(entry.candidate)
         if role == MARK_ROLE:
             return self.mark_of(entry.candidate)
-        if role == CUTTABLE_ROLE:
-            return self.ranking.cuttable(entry.candidate)
-        if role == BADGES_ROLE:
-            as_cut = self._as_cut.get(entry.candidate)
-            return badges_of(entry.candidate, self.ranking, as_cut, self._strain_limit)
+        if role == VERDICT_ROLE:
+            return self.verdict_of(entry.candidate)
         if role == FEATURE_ROLE:
             return entry.candidate.score.evenness.least_feature_mm(self._width_mm)
         if role == THIN_ROLE:
             return not self.ranking.wide_enough(entry.candidate)
-        if role == AS_CUT_ROLE:
-            return self._as_cut.get(entry.candidate)
         if role == ALIKE_ROLE:
             return self._stacks.under(entry.candidate)
         if role == OPEN_ROLE:
@@ -168,9 +165,12 @@ class GalleryModel(QAbstractListModel):
         lines, reason = [*self._states(entry), self._size(entry)], self._rank_reason(entry)
         if reason:
             lines.append(tr("Rank: {reason}", reason=reason))
-        as_cut = self._as_cut.get(entry.candidate)
-        if as_cut is not None:
-            lines.append(as_cut_text(as_cut))
+        verdict = self.verdict_of(entry.candidate)
+        lines += [
+            tr("Verdict: {level}", level=verdict.words),
+            *(problem.text for problem in verdict.problems),
+            verdict.summary,
+        ]
         alike = self._stacks.under(entry.candidate)
         if alike:
             lines.append(alike_tip(alike, self._stacks.is_open(entry.candidate)))
@@ -199,10 +199,31 @@ class GalleryModel(QAbstractListModel):
         size = self._width_mm * least_panel_share(entry.design.deployment)
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
-    def set_as_cut(self, known: Mapping[Candidate, AsCut], strain_limit: float = math.inf) -> None:
-        """Tell which designs close as cut, by an estimate, and at which strain connectors break."""
-        self._as_cut, self._strain_limit = known, strain_limit
-        if self._shown:
+    def verdict_of(self, candidate: Candidate) -> Verdict:
+        """The verdict on a design as it is cut now, an estimate until it was made."""
+        from kirigami_studio.studio.verdict import expected
+
+        known = self._judged.get(candidate) or self._expected.get(candidate)
+        if known is None:
+            known = expected(candidate, self.ranking, self._as_cut.get(candidate), self._material)
+            self._expected[candidate] = known
+        return known
+
+    def set_as_cut(
+        self,
+        known: Mapping[Candidate, AsCut],
+        material: Material | None = None,
+        judged: Mapping[Candidate, Verdict] = MappingProxyType({}),
+    ) -> None:
+        """Take estimates of designs as cut, their material, and the verdicts made of some."""
+        self._as_cut, self._material, self._judged = known, material, judged
+        self._show_verdicts()
+
+    def _show_verdicts(self) -> None:
+        self._expected.clear()
+        if self._selection.works_only:
+            self._rearrange()
+        elif self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def as_cut_of(self, candidate: Candidate) -> AsCut | None:
@@ -213,10 +234,7 @@ class GalleryModel(QAbstractListModel):
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
         if ranking != self.ranking:
             self.ranking, self._reasons = ranking, None
-            if self._selection.cuttable_only:
-                self._rearrange()
-            elif self._shown:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+            self._show_verdicts()
 
     def rank_by(self, ranking: Ranking) -> None:
         """Put all designs into the order of a ranking, and later ones that are inserted."""
@@ -352,8 +370,8 @@ class GalleryModel(QAbstractListModel):
     def _as_item(self, entry: Entry, place: int) -> GalleryItem:
         mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
         feature_mm = entry.candidate.score.evenness.least_feature_mm(self._width_mm)
-        cuttable = self.ranking.cuttable(entry.candidate)
-        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh, cuttable, feature_mm)
+        works = not self._selection.works_only or self.verdict_of(entry.candidate).level.value != "will_not_work"
+        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh, works, feature_mm)
 
     def _rearrange(self) -> None:
         after = self._arranged()
@@ -426,13 +444,6 @@ def described(candidate: Candidate, name: str) -> str:
         *came_from(candidate),
     ]
     return "\n".join([*lines, *problems(candidate)])
-
-
-def as_cut_text(found: AsCut) -> str:
-    """What is expected of a design as cut, in one line."""
-    if found.closes:
-        return tr("As cut: closes (estimate)")
-    return tr("As cut: jams at {jam:.0f}° (estimate)", jam=math.degrees(found.jam_phi))
 
 
 def rim_text(candidate: Candidate) -> str:

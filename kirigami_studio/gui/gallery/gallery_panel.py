@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QToolBu
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
-from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_texts
+from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_text
 from kirigami_studio.gui.gallery.gallery_view import GalleryView
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.lattice.sheet import Sheet
@@ -43,7 +43,7 @@ class GalleryPanel(Card):
 
     def _count(self) -> None:
         model = self.view.model_
-        self.count.set_texts(*count_texts([entry.candidate for entry in model.taken], len(model.all_entries)))
+        self.count.set_texts(count_text(len(model.taken), len(model.all_entries)))
         self._fit_count()
         self.view.viewport().update()
 

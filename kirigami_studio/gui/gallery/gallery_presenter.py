@@ -84,6 +84,7 @@ class GalleryPresenter(QObject):
         balance.regular_chosen.connect(self._choose_balance)
         self._regularity.ranked.connect(lambda ranking: view.rank_by(self._estimated(ranking)))
         self._estimates.changed.connect(self._show_estimates)
+        self._estimates.judged.connect(self._show_judged)
         self._alikes.known.connect(view.set_groups)
 
     @property
@@ -127,7 +128,7 @@ class GalleryPresenter(QObject):
 
     def _show_estimates(self, known: Mapping[Candidate, AsCut]) -> None:
         """Designs were estimated as cut: the cards say so, and are ranked by it too."""
-        self._view.model_.set_as_cut(known, self._estimates.strain_limit)
+        self._show_verdicts()
         if self._running or not known:
             return
         ranking = self._ranking
@@ -137,14 +138,30 @@ class GalleryPresenter(QObject):
             self._show_chosen()
         self._ranked_as_cut = jams
 
+    def _show_verdicts(self) -> None:
+        """The cards have what is known of the designs as cut."""
+        estimates = self._estimates
+        self._view.model_.set_as_cut(dict(estimates.known), estimates.material, estimates.verdicts)
+
+    def _show_judged(self) -> None:
+        """A verdict was made: the cards have it at once; they change places with the next estimate."""
+        self._show_verdicts()
+        if not self._running:
+            self._view.model_.set_ranking(self._ranking)
+
     @property
     def _ranking(self) -> Ranking:
         """That of the document, with what is estimated of its designs as cut."""
         return self._estimated(self._session.ranking)
 
     def _estimated(self, ranking: Ranking) -> Ranking:
-        found = {candidate: one.jam_phi for candidate, one in self._estimates.known.items()}
-        return replace(ranking, jam_phi={**ranking.jam_phi, **found})
+        """A ranking with all that is known as cut; a verdict overrules an estimate."""
+        found, verdicts = dict(self._estimates.known), self._estimates.verdicts
+        found |= {candidate: one.as_cut for candidate, one in verdicts.items() if one.as_cut is not None}
+        jams = {candidate: one.jam_phi for candidate, one in found.items()}
+        well = {candidate for candidate, one in verdicts.items() if one.ok}
+        refusals = {candidate: why for candidate, why in ranking.refusals.items() if candidate not in well}
+        return replace(ranking, jam_phi={**ranking.jam_phi, **jams}, refusals=refusals)
 
     def show_document(self, document: Document) -> None:
         """The document has changed: marks, names and order of the cards."""

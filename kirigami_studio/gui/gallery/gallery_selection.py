@@ -9,7 +9,7 @@ from enum import Enum
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.variety import distances
@@ -37,7 +37,9 @@ class Selection:
     ----------
     order : SortOrder
     pinned_first : bool
-    feasible_only, pinned_only, cuttable_only : bool
+    pinned_only : bool
+    works_only : bool
+        Whether designs are left out whose verdict is that they will not work.
     show_rejected : bool
     least_match : float, 0..1
         Exact IoU that a design has at least.
@@ -54,9 +56,8 @@ class Selection:
 
     order: SortOrder = SortOrder.RANK
     pinned_first: bool = False
-    feasible_only: bool = False
     pinned_only: bool = False
-    cuttable_only: bool = False
+    works_only: bool = False
     show_rejected: bool = False
     least_match: float = 0.0
     most_variation: float = 0.0
@@ -68,7 +69,7 @@ class Selection:
     def filters(self) -> bool:
         """Whether more is left out than rejected designs."""
         numbers = (self.least_match, self.most_variation, self.least_feature_mm)
-        return self.feasible_only or self.pinned_only or self.cuttable_only or max(numbers) > 0.0
+        return self.pinned_only or self.works_only or max(numbers) > 0.0
 
     def unfiltered(self) -> Selection:
         """The same order, everything shown."""
@@ -80,9 +81,8 @@ class Selection:
         """Whether a design is shown."""
         score, mark = item.candidate.score, item.mark
         return (
-            (score.feasible or not self.feasible_only)
-            and (mark is Mark.PINNED or not self.pinned_only)
-            and (item.cuttable or not self.cuttable_only)
+            (mark is Mark.PINNED or not self.pinned_only)
+            and (item.works or not self.works_only)
             and (mark is not Mark.REJECTED or self.show_rejected)
             and score.iou_exact >= self.least_match
             and (not self.most_variation or score.evenness.area_cv <= self.most_variation)
@@ -94,7 +94,8 @@ class Selection:
 class GalleryItem:
     """One design of the gallery: its place in the document counts from 0; fresh are the last run's.
 
-    ``cuttable`` is whether it can be cut, and ``feature_mm`` its smallest edge or neck, in material and width chosen.
+    ``works`` is whether its verdict is not that it will not work, and ``feature_mm`` its smallest edge or neck, in
+    material and width chosen.
     """
 
     place: int
@@ -102,7 +103,7 @@ class GalleryItem:
     mark: Mark
     deployment: Deployment = field(repr=False)
     fresh: bool = False
-    cuttable: bool = True
+    works: bool = True
     feature_mm: float = math.inf
 
 
@@ -161,12 +162,10 @@ def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> st
     return tr("panels ±{percent:.0f} %", percent=100.0 * item.candidate.score.evenness.area_cv)
 
 
-def count_texts(shown: Sequence[Candidate], total: int) -> tuple[str, ...]:
-    """What the gallery's head says of its number of cards, longest first."""
+def count_text(shown: int, total: int) -> str:
+    """How many cards there are, for the gallery's head; "" where there are none."""
     if total == 0:
-        return ()
-    feasible = sum(candidate.score.feasible for candidate in shown)
-    if len(shown) == total:
-        return (tr("{feasible} of {total} feasible", feasible=feasible, total=total),)
-    part = tr("{shown} of {total} shown", shown=len(shown), total=total)
-    return tr("{part} · {feasible} feasible", part=part, feasible=feasible), part
+        return ""
+    if shown == total:
+        return tr_n("{count} design", "{count} designs", total)
+    return tr("{shown} of {total} shown", shown=shown, total=total)

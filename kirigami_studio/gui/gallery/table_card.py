@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QHelpEvent, QPainter, QPen, QPixmap, QRegion
@@ -13,7 +14,7 @@ from PySide6.QtWidgets import QAbstractItemView, QStyledItemDelegate, QStyleOpti
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.badges import Badge
+from kirigami_studio.gui.gallery.badges import Badge, badges_of
 from kirigami_studio.gui.gallery.card_delegate import (
     BUTTON,
     DIMMED,
@@ -28,7 +29,6 @@ from kirigami_studio.gui.gallery.card_delegate import (
 )
 from kirigami_studio.gui.gallery.gallery_model import (
     ALIKE_ROLE,
-    BADGES_ROLE,
     CANDIDATE_ROLE,
     DESIGN_ROLE,
     FEATURE_ROLE,
@@ -38,13 +38,18 @@ from kirigami_studio.gui.gallery.gallery_model import (
     NOTE_ROLE,
     OPEN_ROLE,
     THIN_ROLE,
+    VERDICT_ROLE,
     alike_tip,
 )
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.gui.widgets.verdict_marks import ICONS, PALE, colour_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.verdict import Verdict
 
 #: Pixels above the pictures, for the name; below them, for their captions, the figures and the badges.
 HEAD, CAPTIONS, FIGURES, BADGES = 30, 15, 22, 28
@@ -102,7 +107,7 @@ class TableCards(QStyledItemDelegate):
             elif index.data(ALIKE_ROLE) and self.alike_box(cell, index).contains(place):
                 tip = alike_tip(index.data(ALIKE_ROLE), index.data(OPEN_ROLE))
             else:
-                chips = self._chips(cell, index.data(BADGES_ROLE), view.fontMetrics())
+                chips = self._chips(cell, badges_of(index.data(VERDICT_ROLE)), view.fontMetrics())
                 tip = next((badge.tip for badge, box in chips if box.contains(place)), "")
             if tip:
                 QToolTip.showText(event.globalPos(), tip, view)
@@ -133,8 +138,9 @@ class TableCards(QStyledItemDelegate):
         self._paint_captions(painter, picture)
         self._paint_head(painter, card, index, candidate, mark)
         self._paint_figures(painter, card, index, candidate)
-        for badge, box in self._chips(rect, index.data(BADGES_ROLE), painter.fontMetrics()):
-            self._paint_chip(painter, box, badge)
+        verdict: Verdict = index.data(VERDICT_ROLE)
+        for badge, box in self._chips(rect, badges_of(verdict), painter.fontMetrics()):
+            self._paint_chip(painter, box, badge, verdict.is_estimate)
         if index.data(ALIKE_ROLE):
             self._paint_alike(painter, self.alike_box(rect, index), index)
         if candidate is self.under_mouse:
@@ -255,22 +261,28 @@ class TableCards(QStyledItemDelegate):
         card = _card_of(rect)
         left, top, found = card.left() + INSET, card.bottom() - BADGES + 1, []
         for badge in badges:
-            width = metrics.horizontalAdvance(badge.text) + 28
+            width = metrics.horizontalAdvance(badge.text) + (28 if badge.is_level else 16)
             if left + width > card.right() - INSET + 2:
                 break
             found.append((badge, QRect(left, top, width, 20)))
             left += width + 6
         return found
 
-    def _paint_chip(self, painter: QPainter, box: QRect, badge: Badge) -> None:
-        colour = self.palette_.muted if badge.good else self.palette_.warning
-        painter.setPen(QPen(QColor(self.palette_.border if badge.good else self.palette_.warning), 1.0))
-        painter.setBrush(QColor(self.palette_.raised if badge.good else self.palette_.warning_soft))
+    def _paint_chip(self, painter: QPainter, box: QRect, badge: Badge, estimate: bool) -> None:
+        """A fact in its frame; icons and colours of verdicts, pale for estimates."""
+        palette, well = self.palette_, badge.state in ("good", "ready_to_cut", "")
+        colour = colour_of(badge.state, palette)
+        painter.setPen(QPen(QColor(palette.border if well else colour), 1.0))
+        painter.setBrush(QColor(palette.raised if well else palette.warning_soft))
         painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 10, 10)
-        icon = icons.pixmap("check" if badge.good else "warning", colour, 12, painter.device().devicePixelRatio())
-        painter.drawPixmap(box.left() + 7, box.center().y() - 5, icon)
-        painter.setPen(QColor(self.palette_.text))
-        painter.drawText(box.adjusted(22, 0, 0, 0), int(Qt.AlignmentFlag.AlignVCenter), badge.text)
+        if badge.is_level:
+            painter.setOpacity(PALE if estimate else 1.0)
+            icon = icons.pixmap(ICONS[badge.state], colour, 12, painter.device().devicePixelRatio())
+            painter.drawPixmap(box.left() + 7, box.center().y() - 5, icon)
+            painter.setOpacity(1.0)
+        painter.setPen(QColor(palette.text))
+        words = box.adjusted(22 if badge.is_level else 8, 0, 0, 0)
+        painter.drawText(words, int(Qt.AlignmentFlag.AlignVCenter), badge.text)
 
     def alike_box(self, rect: QRect, index: Index) -> QRect:
         """Place of the mark of look-alikes in a cell of the list: at the right of the figures, as wide as its text."""

@@ -240,13 +240,13 @@ def cut_steps(plan: CutPlan) -> CutSteps:
     What the model adds per job is shared out among the paths by their time, so that the last step ends when the
     plan's estimate does.
     """
-    material = plan.material
-    acceleration = material.acceleration_mm_s2
+    machine = plan.machine
+    acceleration = machine.acceleration_mm_s2
     edges = timing.Edges.of(plan.paths)
     path, lengths = edges.runs(timing.FLOWING_TURN)
-    runs = timing.run_seconds(lengths, material.speed_mm_s, acceleration)
+    runs = timing.run_seconds(lengths, machine.speed_mm_s(plan.material), acceleration)
     cutting = np.bincount(path, runs, len(plan.paths))
-    moving = timing.run_seconds(timing.travel_lengths(plan.paths), material.travel_mm_s, acceleration)
+    moving = timing.run_seconds(timing.travel_lengths(plan.paths), machine.travel_mm_s, acceleration)
     seconds = np.concatenate([[0.0], np.cumsum(cutting + moving)])
     if seconds[-1] > 0.0:
         seconds = seconds * (plan.seconds_estimate / seconds[-1])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -14,20 +14,24 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.foundation.steps import Steps
+from kirigami_studio.foundation.steps import Cancel, Steps
 from kirigami_studio.foundation.words import mark, number, tr, tr_n
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.session.user_preferences import UserPreferences
+from kirigami_studio.gui.stage.as_cut import AsCutReader
+from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.sheet_size import set_opened_size
 from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_material
+from kirigami_studio.studio.file_kinds import kind_of
 from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
-    Exported,
+    ExportedFiles,
     ManyPages,
     Motion,
     Output,
@@ -40,7 +44,6 @@ from kirigami_studio.studio.making import (
 )
 
 if TYPE_CHECKING:
-    from kirigami_studio.studio.as_cut import SimulatedSheet
     from kirigami_studio.studio.verdict import Verdict
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
@@ -49,13 +52,12 @@ TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
 
 
 class CutPlanner(QObject):
-    """Keeps the cut plan of the design on the stage up to date, and writes files."""
+    """Keeps the cut plan of the design on the stage up to date."""
 
     planned = Signal(object)  #: Planned, or None without a design
     answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
     refused = Signal(str)
     not_planned = Signal(CutRequest, str)  #: what was to be planned, and why it cannot be
-    exported = Signal(Exported)
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
@@ -115,30 +117,65 @@ class CutPlanner(QObject):
         self.refused.emit(told)
         self.not_planned.emit(request, told)
 
-    def export(self, request: CutRequest, path: Path, many_pages: bool = False) -> None:
-        """Write a cut file or a picture, by the extension; a PDF of many pages only after asking."""
-        self._session.set_status(tr("Exporting {name} …", name=path.name))
-        steps = partial(exporting, request, Output(path), many_pages)
-        self._write(tr("exporting {name}", name=path.name), steps, partial(self.export, request, path, True))
 
-    def animate(self, request: CutRequest, path: Path, motion: Motion, sheet: SimulatedSheet | None) -> None:
-        """Write an animation; ``sheet`` is the design as cut, if it is known already."""
-        self._session.set_status(tr("Exporting {name} …", name=path.name))
-        steps = partial(animating, request, path, motion, sheet)
-        self._write(tr("exporting {name}", name=path.name), steps)
+class DesignExporter(QObject):
+    """Writes files of the design on the stage; a PDF of many pages only after asking."""
 
-    def export_all(self, request: CutRequest, folder: Path, name: str, many_pages: bool = False) -> None:
-        """Write everything that there is of a design into a folder; a PDF of many pages only after asking."""
-        self._session.set_status(tr("Exporting to {name} …", name=folder.name))
-        steps = partial(exporting, request, Output(folder, name, record=True), many_pages)
-        again = partial(self.export_all, request, folder, name, True)
-        self._write(tr("exporting to {name}", name=folder.name), steps, again)
+    exported = Signal(ExportedFiles)
 
-    def export_artwork(self, request: CutRequest, folder: Path, many_pages: bool = False) -> None:
-        """Write the printed sheet into a folder; a PDF of many pages only after asking."""
-        self._session.set_status(tr("Exporting the artwork …"))
-        steps = partial(exporting_artwork, request, folder, many_pages)
-        self._write(tr("exporting the artwork"), steps, partial(self.export_artwork, request, folder, True))
+    def __init__(
+        self,
+        session: Session,
+        planner: CutPlanner,
+        as_cut: AsCutReader,
+        hand: HandEditor,
+        preferences: UserPreferences,
+        parent: QObject,
+    ) -> None:
+        super().__init__(parent)
+        self._session, self._planner, self._as_cut = session, planner, as_cut
+        self._hand, self._preferences = hand, preferences
+
+    def export(self, path: Path, motion: Motion = Motion.AS_CUT) -> None:
+        """Write a cut file or picture, by the extension; ``motion`` is what an animation shows."""
+        if self._hand.postpones(lambda: self.export(path, motion)):
+            return
+        request, session = self._planner.request, self._session
+        if request is None:
+            session.post(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
+            return
+        name, status = tr("exporting {name}", name=path.name), tr("Exporting {name} …", name=path.name)
+        if path.suffix.lower() == ANIMATION:
+            session.set_status(status)
+            self._write(name, partial(animating, request, path, motion, self._as_cut.state.sheet))
+            return
+        if kind_of(path.suffix).cuts:
+            self._preferences.remember(session.document)
+        self._write_pages(name, status, partial(exporting, self._with_as_cut(request), Output(path)))
+
+    def export_all(self, folder: Path, name: str) -> None:
+        """Write everything that there is of the design into a folder."""
+        if self._hand.postpones(lambda: self.export_all(folder, name)):
+            return
+        request = self._planner.request
+        if request is not None:
+            steps = partial(exporting, self._with_as_cut(request), Output(folder, name, record=True))
+            status = tr("Exporting to {name} …", name=folder.name)
+            self._write_pages(tr("exporting to {name}", name=folder.name), status, steps)
+
+    def export_artwork(self, folder: Path) -> None:
+        """Write the printed sheet into a folder."""
+        if self._hand.postpones(lambda: self.export_artwork(folder)):
+            return
+        request = self._planner.request
+        if request is not None:
+            steps = partial(exporting_artwork, request, folder)
+            self._write_pages(tr("exporting the artwork"), tr("Exporting the artwork …"), steps)
+
+    def _with_as_cut(self, request: CutRequest) -> CutRequest:
+        """The request with how the design does as cut, if that is known."""
+        sheet = self._as_cut.state.sheet
+        return request if sheet is None else replace(request, as_cut=sheet.as_cut)
 
     def export_coupon(self, material: Material, path: Path) -> None:
         """Write the calibration coupon of a material."""
@@ -146,23 +183,34 @@ class CutPlanner(QObject):
         steps = partial(exporting_coupon, material, path, self._session.document.fabrication)
         self._write(tr("exporting {name}", name=path.name), steps)
 
+    def _write_pages(
+        self,
+        name: str,
+        status: str,
+        steps: Callable[[bool, Cancel], Iterator[ExportedFiles | ManyPages]],
+        many: bool = False,
+    ) -> None:
+        """Start a job that asks before it writes ``many`` pages."""
+        self._session.set_status(status)
+        self._write(name, partial(steps, many), partial(self._write_pages, name, status, steps, True))
+
     def _write(
-        self, name: str, steps: Steps[Exported | ManyPages | None], with_pages: Callable[[], None] | None = None
+        self, name: str, steps: Steps[ExportedFiles | ManyPages | None], with_pages: Callable[[], None] | None = None
     ) -> None:
         """Start a job; ``with_pages`` starts it once more, for as many pages as it takes."""
         callbacks = JobCallbacks(partial(self._take_written, with_pages), on_failed=self._report_failure)
         self._session.queue.start(name, steps, callbacks)
 
-    def _take_written(self, with_pages: Callable[[], None] | None, report: Exported | ManyPages | None) -> None:
+    def _take_written(self, with_pages: Callable[[], None] | None, report: ExportedFiles | ManyPages | None) -> None:
         match report:
-            case Exported():
+            case ExportedFiles():
                 self._report(report)
             case ManyPages() if with_pages is not None:
                 self._session.set_status(tr("Not exported yet: {count} pages.", count=report.pages))
                 write = (tr("Write all pages"), with_pages)
                 self._session.post(Message(report.note, Tone.WARNING, actions=(write,)))
 
-    def _report(self, exported: Exported) -> None:
+    def _report(self, exported: ExportedFiles) -> None:
         path, made = exported.path, exported.planned
         if made is None:
             self._session.set_status(tr("Exported {path}.", path=path))
@@ -188,7 +236,7 @@ class CutPlanner(QObject):
         self._session.post(Message(sentence, Tone.ERROR, trace))
 
 
-def older_messages(exported: Exported) -> list[Message]:
+def older_messages(exported: ExportedFiles) -> list[Message]:
     """What became of files that an earlier export left in the folder."""
     found = []
     if exported.removed:
@@ -203,7 +251,7 @@ def older_messages(exported: Exported) -> list[Message]:
     return found
 
 
-def picture_sentence(exported: Exported) -> str:
+def picture_sentence(exported: ExportedFiles) -> str:
     """Say that a picture was written, and which motion an animation shows."""
     name, motion = exported.path.name, exported.motion
     if exported.path.suffix.lower() != ANIMATION:

@@ -11,8 +11,13 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.studio.file_kinds import FILE_KINDS
 
-#: What the button says, by the extension of the cut file that suits the material.
-EXPORT = {".dxf": mark("Export DXF"), ".pdf": mark("Export PDF")}
+#: What the button says, by the extension of the cut file that suits machine and material.
+EXPORT = {
+    ".dxf": mark("Export DXF"),
+    ".pdf": mark("Export PDF"),
+    ".svg": mark("Export SVG"),
+    ".lbrn2": mark("Export for LightBurn"),
+}
 
 
 class ExportRow(QWidget):
@@ -71,6 +76,11 @@ class ExportRow(QWidget):
         self.export.setText(tr(EXPORT[extension]))
         if extension == ".pdf":
             self.export.setToolTip(tr("Export the cut sheet at 1:1, to print and to cut by hand (Ctrl+E)."))
+            return
+        if extension != ".dxf":
+            self.export.setToolTip(
+                tr("Export and check the cut file in mm (Ctrl+E).\nMachine: {profile}.", profile=profile)
+            )
             return
         self.export.setToolTip(
             tr(

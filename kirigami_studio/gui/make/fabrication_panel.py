@@ -8,9 +8,8 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSettings, Qt, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
@@ -19,9 +18,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from kirigami_studio.fabricate.material import library
+from kirigami_studio.fabricate.machine import USUAL, MachineKind
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
+from kirigami_studio.gui.make.machine_chooser import MachineChooser
 from kirigami_studio.gui.make.more_options import MoreOptions
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets.card import (
@@ -30,8 +30,8 @@ from kirigami_studio.gui.widgets.card import (
     ToolButton,
     muted_label,
 )
-from kirigami_studio.gui.widgets.choice_box import ComboBox
 from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.readable import (
     TIMES,
     UNKNOWN,
@@ -40,11 +40,12 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
+    from kirigami_studio.gui.make.machine_editor import MachineEditor
     from kirigami_studio.studio.making import Planned
 
 #: Settings that are shown at once.
@@ -87,6 +88,7 @@ class FabricationPanel(Card):
     options_changed = Signal(dict)  #: field of CutOptions -> value
     edited = Signal()
     materials_wanted = Signal()
+    machines_changed = Signal()  #: those on disk
     export_wanted = Signal(str)  #: extension
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -94,20 +96,17 @@ class FabricationPanel(Card):
         self._calm = True
         self._extent, self._by_hand = Extent.ALL, False
         self._summaries = ("", "")  # with the live numbers in sight, and without
-        self._presets = library().materials
-        self.material = ComboBox()
-        self.material.setObjectName("material")
-        self.material.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.material.setAccessibleName(tr("Material preset"))
-        self.material.setMinimumContentsLength(8)
-        self.material.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.material.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.chooser = MachineChooser(self)
+        self.chooser.changed.connect(self.changed)
+        self.chooser.edited.connect(self.edited)
+        self.machine, self.material = self.chooser.machine, self.chooser.material
+        self._machine_editor: MachineEditor | None = None
+        self.edit_machines = ToolButton("editMachines", "edit", tr("Copy and edit machines: bed, speeds, delays."))
+        self.edit_machines.clicked.connect(self._edit_machines)
         self.edit_materials = ToolButton(
             "editMaterials", "material", tr("Copy, edit and calibrate materials (Ctrl+M).")
         )
         self.edit_materials.clicked.connect(self.materials_wanted)
-        self.reload_materials()
-        self.material.activated.connect(self._take_material)
         self.material_row = self._material_row()
         self.form = Form(FabricationSettings, 82, parent=self)
         self.form.changed.connect(self.changed)
@@ -179,20 +178,44 @@ class FabricationPanel(Card):
             settings.setValue("fabrication", self._extent.value)
 
     def _material_row(self) -> QWidget:
-        """The material stands where designs are asked for: what it can bear decides how they are made."""
+        """Place the fields of machine and material where designs are asked for."""
         row = QWidget()
         row.setObjectName("plain")
-        line = QHBoxLayout(row)
-        line.setContentsMargins(0, 0, 0, 0)
-        line.setSpacing(4)
-        caption = QLabel(tr("&Material"))
-        caption.setObjectName("muted")
-        caption.setBuddy(self.material)
-        line.addWidget(caption)
-        line.addSpacing(4)
-        line.addWidget(self.material, 1)
-        line.addWidget(self.edit_materials)
+        table = QGridLayout(row)
+        table.setContentsMargins(0, 0, 0, 0)
+        table.setHorizontalSpacing(4)
+        table.setVerticalSpacing(4)
+        table.setColumnStretch(1, 1)
+        for line, (text, box, button) in enumerate(
+            (
+                (tr("Machine"), self.machine, self.edit_machines),
+                (tr("&Material"), self.material, self.edit_materials),
+            )
+        ):
+            caption = QLabel(text)
+            caption.setObjectName("muted")
+            caption.setBuddy(box)
+            table.addWidget(caption, line, 0)
+            table.addWidget(box, line, 1)
+            table.addWidget(button, line, 2)
         return row
+
+    def _edit_machines(self) -> None:
+        """Open the machine editor, or bring it to the front."""
+        from kirigami_studio.gui.make.machine_editor import MachineEditor
+
+        if self._machine_editor is None:
+            self._machine_editor = MachineEditor(self.window(), self.machine.currentData())
+            self._machine_editor.machines_changed.connect(self._reload_machines)
+        self._machine_editor.choose(self.machine.currentData() or USUAL[MachineKind.CO2])
+        leave_wheel(self._machine_editor)
+        self._machine_editor.show()
+        self._machine_editor.raise_()
+        self._machine_editor.activateWindow()
+
+    def _reload_machines(self) -> None:
+        self.chooser.reload()
+        self.machines_changed.emit()
 
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self.details)
@@ -228,34 +251,12 @@ class FabricationPanel(Card):
         self.body.addWidget(self.scrolled)
 
     def reload_materials(self) -> None:
-        """Read the library again; the choice is shown with the next settings."""
-        self._presets = library().materials
-        with QSignalBlocker(self.material):
-            self.material.clear()
-            for key, material in self._presets.items():
-                self.material.addItem(tr(material.name), key)
-
-    def _take_material(self, index: int) -> None:
-        """A new material brings its own connector and kerf."""
-        self.changed.emit({"material": self.material.itemData(index), "connector_mm": None, "kerf_mm": None})
-        self.edited.emit()
+        """Read the library again."""
+        self.chooser.reload()
 
     def show_settings(self, settings: FabricationSettings) -> None:
         """Show the document's numbers, the material's own where it has none."""
-        material = self._presets.get(settings.material) or stored_material(settings)
-        with QSignalBlocker(self.material):
-            if self.material.findData(settings.material) < 0:
-                self.material.addItem(tr(material.name) if material else settings.material, settings.material)
-            self.material.setCurrentIndex(self.material.findData(settings.material))
-        if material is not None:
-            self.material.setToolTip(
-                tr(
-                    "{machine}, {thickness_mm:g} mm. {note}",
-                    machine=tr(material.machine),
-                    thickness_mm=material.thickness_mm,
-                    note=tr(material.note),
-                )
-            )
+        material = self.chooser.show_settings(settings)
         shown = {
             "width_mm": settings.width_mm,
             "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),
@@ -264,6 +265,8 @@ class FabricationPanel(Card):
         self.form.show(shown)
         self.options.show_settings(settings)
         extension = ".pdf" if material is not None and material.by_hand else ".dxf"
+        if settings.machine:
+            extension = self.chooser.wanted_file or extension
         self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version, extension)
 
     def show_plan(self, planned: Planned | None) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
@@ -12,7 +11,10 @@ from kirigami_studio.gui.make.cutting import CutPlanner, FabricationEditor
 from kirigami_studio.gui.make.fabrication_panel import FabricationPanel
 from kirigami_studio.gui.make.verdict import VerdictKeeper
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
+from kirigami_studio.gui.run.generation import DesignRun
 from kirigami_studio.gui.session.session import Entry, Session
+from kirigami_studio.gui.stage.as_cut import AsCutEstimates
+from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.project.document import Document
 from kirigami_studio.studio.making import Planned
 
@@ -32,8 +34,10 @@ class FabricationPresenter(QObject):
     editor : FabricationEditor
     planner : CutPlanner
     keeper : VerdictKeeper
-    apply_fix : callable
-        Makes a change that was tried on the design.
+    estimates : AsCutEstimates
+    hand : HandEditor
+    run : DesignRun
+        While it runs, no fix is made.
     """
 
     def __init__(
@@ -46,10 +50,13 @@ class FabricationPresenter(QObject):
         editor: FabricationEditor,
         planner: CutPlanner,
         keeper: VerdictKeeper,
-        apply_fix: Callable[[Fix], None],
+        estimates: AsCutEstimates,
+        hand: HandEditor,
+        run: DesignRun,
     ) -> None:
         super().__init__(panel)
-        self._panel, self._cuts = panel, cuts
+        self._panel, self._cuts, self._session, self._planner = panel, cuts, session, planner
+        self._keeper, self._estimates, self._hand, self._run = keeper, estimates, hand, run
         panel.changed.connect(lambda changes: editor.change(**changes))
         panel.options_changed.connect(lambda changes: editor.change_options(**changes))
         cuts.width_wanted.connect(editor.set_hinge_width)
@@ -57,11 +64,12 @@ class FabricationPresenter(QObject):
         cuts.reset_wanted.connect(editor.reset_hinges)
         for edited in (panel.edited, cuts.edited):
             edited.connect(session.history.end_drag)
+        panel.machines_changed.connect(planner.plan_soon)
         planner.planned.connect(self._show_plan)
         planner.refused.connect(self._show_refusal)
         keeper.changed.connect(bar.show_state)
         keeper.changed.connect(panel.show_verdict)
-        bar.fix_wanted.connect(apply_fix)
+        bar.fix_wanted.connect(self._apply_fix)
         self.show_document(session.document)
 
     def show_run(self) -> None:
@@ -77,6 +85,20 @@ class FabricationPresenter(QObject):
         """Another design is on the stage, or none."""
         if entry is None or entry.candidate.trim is None:
             self._panel.show_untrimmed()
+
+    def reload_materials(self) -> None:
+        """Offer the materials on disk, which have changed, and plan again."""
+        self._panel.reload_materials()
+        self._session.document_changed.emit(self._session.document)
+        self._keeper.forget_fixes()
+        self._estimates.forget_verdicts()
+        self._planner.plan_soon()
+
+    def _apply_fix(self, fix: Fix) -> None:
+        """Make a change that was tried on the chosen design."""
+        if not self._run.running and not self._hand.postpones(lambda: self._apply_fix(fix)):
+            self._session.apply(fix.edit(self._session.document))
+            self._session.history.end_drag()
 
     def _show_plan(self, planned: Planned | None) -> None:
         self._panel.show_plan(planned)

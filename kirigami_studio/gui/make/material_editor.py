@@ -201,7 +201,7 @@ class MaterialEditor(QDialog):
         if self.list.currentItem() is None:
             return
         material = self.chosen
-        self.form.show_material(material, material.key in self._library.own)
+        self.form.show_value(material, material.key in self._library.own)
         self.state.setText(_state(material))
         self._show_buttons()
 

@@ -1,14 +1,17 @@
-"""The numbers of one material as a form, made from a table."""
+"""The numbers of one material, or of one machine, as a form, made from a table."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QWidget
 
 from kirigami_studio.fabricate.coupon import kerf_from_gaps
+from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.settings import NamedSetting
@@ -22,42 +25,58 @@ NUMBERS = (
     "thickness_mm",
     "kerf_mm",
     "connector_mm",
+    "sheet_mm",
     "min_ligament_mm",
     "min_slit_mm",
     "min_panel_mm",
     "relief_radius_mm",
-    "strain_limit",
+    "yield_strain",
+    "break_strain",
+    "bend_strain",
     "young_gpa",
     "speed_mm_s",
     "power_percent",
-    "travel_mm_s",
-    "acceleration_mm_s2",
-    "on_delay_s",
-    "off_delay_s",
-    "bed_width_mm",
-    "bed_height_mm",
     "join_tolerance_mm",
 )
 
 
-class MaterialForm(QWidget):
-    """Shows one material; the user's own can be edited."""
+class ValueForm(QWidget):
+    """Shows one value of a shelf; the user's own can be edited.
+
+    Parameters
+    ----------
+    kind : type
+        Material or Machine.
+    prefix : str
+        Of the object names of its fields.
+    texts, numbers, wholes : sequence of str
+        Names of its fields, in the order of the form.
+    """
 
     changed = Signal()
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        kind: type,
+        prefix: str,
+        texts: Sequence[str],
+        numbers: Sequence[str],
+        wholes: Sequence[str] = (),
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
-        self._shown: Material | None = None
-        self.fields = Form(Material, None, "material_", self)
-        self.texts = {name: _text(self.fields.settings[name]) for name in TEXTS}
-        self.numbers = {name: self._number(name) for name in NUMBERS}
-        self.passes = self.fields.whole("passes")
+        self._shown: Any = None
+        self._editable = False
+        self.fields = Form(kind, None, prefix, self)
+        self.texts = {name: _text(self.fields.settings[name], prefix) for name in texts}
+        self.numbers = {name: self._number(name) for name in numbers}
+        self.wholes = {name: self.fields.whole(name) for name in wholes}
         self.fields.changed.connect(lambda _: self.changed.emit())
         form = QFormLayout(self)
         form.setContentsMargins(0, 0, 6, 0)
         form.setVerticalSpacing(5)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
-        rows: dict[str, QWidget] = {**self.texts, **self.numbers, "passes": self.passes}
+        rows: dict[str, QWidget] = {**self.texts, **self.numbers, **self.wholes}
         for name, field in rows.items():
             caption = QLabel(tr(self.fields.settings[name].setting.label))
             caption.setObjectName("muted")
@@ -74,22 +93,22 @@ class MaterialForm(QWidget):
         box.setToolTip(tr("{tip} Unit: {unit}, {low:g} to {high:g}.", tip=about, unit=unit, **one.numbers))
         return box
 
-    def show_material(self, material: Material, editable: bool) -> None:
-        """Show another material."""
-        self._shown = material
-        values = asdict(material)
+    def show_value(self, value: Material | Machine, editable: bool) -> None:
+        """Show another material or machine."""
+        self._shown, self._editable = value, editable
+        values = asdict(value)
         for field, line in self.texts.items():
             line.setText(values[field] if editable else tr(values[field]))  # bundled ones are told in every language
             line.setCursorPosition(0)
             line.setEnabled(editable)
             line.setToolTip(line.text())
-        self.fields.show_settings(material)
-        for box in (*self.numbers.values(), self.passes):
+        self.fields.show_settings(value)
+        for box in (*self.numbers.values(), *self.wholes.values()):
             box.setEnabled(editable)
 
     def changes(self) -> dict[str, object]:
-        """Return the fields that differ from the material shown; none of one that cannot be edited."""
-        if self._shown is None or not self.passes.isEnabled():
+        """Return the fields that differ from the value shown; none of one that cannot be edited."""
+        if self._shown is None or not self._editable:
             return {}
         values = asdict(self._shown)
         entries: dict[str, object] = {field: line.text().strip() for field, line in self.texts.items()}
@@ -98,14 +117,20 @@ class MaterialForm(QWidget):
             scale = self.fields.settings[name].setting.scale
             if abs(box.value() - scale * values[name]) > 0.6 * 10.0 ** -box.decimals():
                 found[name] = round(box.value() / scale, 9)
-        if self.passes.value() != self._shown.passes:
-            found["passes"] = self.passes.value()
+        found |= {name: box.value() for name, box in self.wholes.items() if box.value() != values[name]}
         return found
 
 
-def _text(one: NamedSetting) -> QLineEdit:
+class MaterialForm(ValueForm):
+    """Shows one material; the user's own can be edited."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(Material, "material_", TEXTS, NUMBERS, ("passes",), parent)
+
+
+def _text(one: NamedSetting, prefix: str) -> QLineEdit:
     line = QLineEdit()
-    line.setObjectName(f"material_{one.name}")
+    line.setObjectName(prefix + one.name)
     line.setAccessibleName(spoken(one))
     line.setAccessibleDescription(tr(one.setting.about))
     return line

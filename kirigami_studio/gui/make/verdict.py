@@ -58,12 +58,12 @@ class VerdictState:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The list that is shown: the verdict's own, then what was tried."""
+        """The list that is shown: the verdict's own, each problem with the fix that was tried."""
         checking = tr("Checking the sheet as cut …")
         if self.verdict is None:
             return (checking,) if self.pending else ()
-        level, *reasons = self.verdict.lines
-        return (checking if self.pending else level, *reasons, *(() if self.advice is None else self.advice.lines))
+        level, *reasons = self.verdict.lines if self.advice is None else self.advice.lines_for(self.verdict)
+        return (checking if self.pending else level, *reasons)
 
 
 UNKNOWN, PENDING = VerdictState(), VerdictState(pending=True)
@@ -75,6 +75,7 @@ class VerdictKeeper(QObject):
     """
 
     changed = Signal(VerdictState)
+    judged = Signal(CutRequest, object)  #: what is cut, and the Verdict on it
 
     def __init__(self, session: Session, as_cut: AsCutReader, parent: QObject) -> None:
         super().__init__(parent)
@@ -166,7 +167,9 @@ class VerdictKeeper(QObject):
             while len(self._known) > CAPACITY:
                 self._known.popitem(last=False)
             self._say(VerdictState(self.state.verdict, advice=report))
-        elif report.ok:
+            return
+        self.judged.emit(request, report)
+        if report.ok:
             self._say(VerdictState(report))
         elif key in self._known:
             self._job.stop()

@@ -12,6 +12,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.gui.widgets.verdict_marks import ICONS, colour_of, level_of
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.fixes import Fix
@@ -24,8 +25,6 @@ BESIDE = 64
 WIDE = 560
 LINE_USED = 0.9
 ICON_EDGE = 20
-#: Icon of each level, by its name in JSON, and of a verdict that is not known yet.
-ICONS = {"ready_to_cut": "check", "cut_with_care": "warning", "will_not_work": "fault", "": "info"}
 
 
 class VerdictBar(QFrame):
@@ -92,9 +91,8 @@ class VerdictBar(QFrame):
         self.setToolTip("\n".join(state.lines))
         self._fit_sentence()
         self.setAccessibleDescription("\n".join(state.lines))
-        level = "" if state.pending or verdict is None else verdict.level.value
-        colours = {"ready_to_cut": self._palette.good, "will_not_work": self._palette.bad, "": self._palette.muted}
-        colour = colours.get(level, self._palette.warning)
+        level = "" if state.pending else level_of(verdict)
+        colour = colour_of(level, self._palette)
         self.icon.setPixmap(icons.pixmap(ICONS[level], colour, ICON_EDGE, self.devicePixelRatioF()))
         self.headline.setStyleSheet(f"color: {colour}; font-weight: 600;")
         self.setProperty("level", level)
@@ -178,7 +176,7 @@ def headline(state: VerdictState) -> str:
     verdict = state.verdict
     if state.pending or verdict is None:
         return tr("Checking the sheet as cut …")
-    words = verdict.level.words
+    words = verdict.words
     if state.searching:
         return tr("{level}  ·  trying fixes …", level=words)
     if state.advice is not None and not state.advice.fixes:

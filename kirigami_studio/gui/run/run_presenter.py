@@ -6,13 +6,16 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.generate_bar import GenerateBar
 from kirigami_studio.gui.run.generation import Generation
 from kirigami_studio.gui.run.regularity import Regularity
+from kirigami_studio.gui.run.settings_editor import SettingsEditor
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
+from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import SettingsChange
+from kirigami_studio.studio import importing
 
 
 class RunPresenter(QObject):
@@ -25,8 +28,7 @@ class RunPresenter(QObject):
     session : Session
     generation : Generation
     regularity : Regularity
-    change : callable
-        Changes settings.
+    editor : SettingsEditor
     cancel : callable
         Stops the run, or the work on designs.
     """
@@ -39,12 +41,12 @@ class RunPresenter(QObject):
         generation: Generation,
         regularity: Regularity,
         *,
-        change: Callable[[SettingsChange], None],
+        editor: SettingsEditor,
         cancel: Callable[[], None],
     ) -> None:
         super().__init__(panel)
         self._panel, self._bar, self._session, self._generation = panel, bar, session, generation
-        panel.changed.connect(change)
+        panel.changed.connect(lambda changes: editor.change(**changes))
         panel.edited.connect(session.history.end_drag)
         panel.keep_changed.connect(self._keep_seed)
         bar.generate.clicked.connect(generation.generate)
@@ -54,6 +56,15 @@ class RunPresenter(QObject):
         regularity.progressed.connect(bar.show_progress)
         self.show_idle()
         self.show_document(session.document)
+
+    def warm_up(self) -> None:
+        """Import in the worker what the first run needs, and learn which generators there are."""
+        callbacks = JobCallbacks(self._show_variants, on_failed=self._session.report_failure)
+        self._session.queue.start(tr("loading the generator"), importing.warming, callbacks)
+
+    def _show_variants(self, variants: tuple[str, ...]) -> None:
+        if variants:
+            self._panel.set_variants(variants)
 
     def show_document(self, document: Document) -> None:
         """Show the settings of the next run, and whether there is a target for it."""

@@ -26,14 +26,18 @@ class UserPreferences:
         self.present = Preferences()
         self._path: Path | None = None
 
-    def load(self, path: Path) -> None:
-        """Read the file and keep it up to date from now on; one that cannot be read is left as it is."""
+    def use(self, path: Path) -> None:
+        """Start with the file's preferences and keep it up to date."""
+        session = self._session
+        untouched = session.document in (Document(), self.new_document()) and not session.history.steps
         try:
             self.present = preferences.load(path)
         except KirigamiError as error:
-            self._session.post(Message(str(error), Tone.WARNING))
+            session.post(Message(str(error), Tone.WARNING))
         else:
             self._path = path
+        if untouched:
+            session.restart(self.new_document(), session.path)
 
     def remember(self, document: Document) -> None:
         """A cut file of this document was written, or its machine or material was chosen."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from dataclasses import dataclass, replace
 from functools import partial
@@ -21,7 +20,9 @@ from kirigami_studio.studio.designing import one_sheet
 from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.material import Material
     from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.studio.verdict import Verdict
 
 #: Sheets that are kept; one of 10 x 10 voids takes about half a megabyte.
 CAPACITY = 32
@@ -127,9 +128,13 @@ class AsCutReader(QObject):
 
 
 class AsCutEstimates(QObject):
-    """Estimates for all designs of the gallery whether they close, once more when material, widths or style change."""
+    """Estimates for all designs of the gallery whether they close, once more when material, widths or style change.
+
+    What was simulated, in a close look of the run or because a design was on the stage, takes the place of an estimate.
+    """
 
     changed = Signal(object)  #: dict of Candidate to AsCut, as far as they are known
+    judged = Signal()  #: the verdict on a design was made
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
@@ -138,20 +143,53 @@ class AsCutEstimates(QObject):
         self._entries: tuple[Entry, ...] = ()
         self._settings: FabricationSettings | None = None
         self.known: dict[Candidate, AsCut] = {}
-        self.strain_limit = math.inf  #: of the material that they were estimated in
+        self.material: Material | None = None  #: that they were estimated in
+        self._verdicts: dict[Candidate, tuple[FabricationSettings, Verdict]] = {}
         self._timer = QTimer(self, singleShot=True, interval=ESTIMATE_DELAY_MS)
         self._timer.timeout.connect(self._begin)
         session.display.gallery_reset.connect(self._on_entries)
-        session.fabrication_changed.connect(self._timer.start)
+        session.fabrication_changed.connect(self._forget_outdated)
 
     @property
     def busy(self) -> bool:
         """Whether designs are still to be estimated."""
         return self._job.busy or self._timer.isActive()
 
+    @property
+    def verdicts(self) -> dict[Candidate, Verdict]:
+        """Those that were made of designs as they are cut now."""
+        document = self._session.document
+        return {
+            candidate: verdict
+            for candidate, (settings, verdict) in self._verdicts.items()
+            if settings == one_sheet(cut_for(document, candidate))
+        }
+
+    def take_verdict(self, request: CutRequest, verdict: Verdict) -> None:
+        """The design on the stage was judged: from now on that is shown everywhere."""
+        self._verdicts[request.candidate] = one_sheet(request.settings), verdict
+        self.judged.emit()
+
+    def forget_verdicts(self) -> None:
+        """Materials have changed: verdicts that were made with them no longer hold."""
+        self._verdicts.clear()
+        self._forget_outdated()
+
     def close(self) -> None:
         """Estimate no more."""
         self._timer.stop()
+
+    def _cut(self) -> FabricationSettings:
+        """How designs are cut now, each at its own width where they open to one size."""
+        settings = one_sheet(self._session.document.fabrication)
+        return settings if settings.opened_mm is None else replace(settings, width_mm=settings.opened_mm)
+
+    def _forget_outdated(self) -> None:
+        """The sheet is cut otherwise: nothing is shown that was found out about another."""
+        if self._cut() != self._settings:
+            self.known = {}
+        self.changed.emit(dict(self.known))
+        self._timer.start()
 
     def _on_entries(self, entries: tuple[Entry, ...]) -> None:
         self._entries = entries
@@ -159,15 +197,15 @@ class AsCutEstimates(QObject):
 
     def _begin(self) -> None:
         self._job.stop()
-        document = self._session.document
-        settings = one_sheet(document.fabrication)
-        if settings.opened_mm is not None:  # every design has the width of its own that opens to this size
-            settings = replace(settings, width_mm=settings.opened_mm)
+        document, settings, run = self._session.document, self._cut(), self._session.as_cut
         there = {entry.candidate for entry in self._entries}
         before = self.known
         if settings != self._settings:
             self._settings, self.known = settings, {}
         self.known = {candidate: found for candidate, found in self.known.items() if candidate in there}
+        self._verdicts = {candidate: found for candidate, found in self._verdicts.items() if candidate in there}
+        if run is not None and run.sheet == settings:  # closed on their connectors in the run
+            self.known |= {candidate: found for candidate, found in run.simulated.items() if candidate in there}
         if before:
             self.changed.emit(dict(self.known))
         missing = tuple(
@@ -181,7 +219,7 @@ class AsCutEstimates(QObject):
 
     def _on_result(self, report: Estimated) -> None:
         self.known.update(report.found)
-        self.strain_limit = report.strain_limit
+        self.material = report.material
 
     def _tell(self) -> None:
         self.changed.emit(dict(self.known))

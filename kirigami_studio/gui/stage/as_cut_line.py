@@ -42,7 +42,7 @@ def texts(found: AsCut) -> tuple[str, ...]:
     """What was found, longest text first."""
     from kirigami_studio.studio.as_cut import Outcome
 
-    phi, jam, match = math.degrees(found.phi), math.degrees(found.jam_phi), found.iou
+    phi, jam, match = math.degrees(found.phi), found.jam_deg, found.iou
     if found.closes:
         if match is None:
             return (tr("Closes as cut") if found.phi < CLOSED else tr("Opens to {phi:.0f}° as cut", phi=phi),)
@@ -60,7 +60,7 @@ def texts(found: AsCut) -> tuple[str, ...]:
 
 def figures(found: AsCut) -> str:
     """The figures behind the verdict, one in each line."""
-    from kirigami_studio.studio.as_cut import StrainFigure
+    from kirigami_studio.fabricate.strain import StrainFigure
 
     lines = [texts(found)[0]]
     if found.iou is not None and found.ideal_iou is not None:

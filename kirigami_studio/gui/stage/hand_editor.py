@@ -66,7 +66,7 @@ def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     match, gain = 100.0 * after.score.iou_exact, 100.0 * (after.score.iou_exact - before.score.iou_exact)
     sentences = [tr("{gesture}: match {match:.1f} % ({gain:+.2f}).", gesture=label, match=match, gain=gain)]
     if not after.score.feasible:
-        sentences.append(tr("The design is not feasible."))
+        sentences.append(tr("Panels overlap or touch while it opens."))
     if before.trim is not None:
         sentences.append(tr("Trim removed; trim again when you are done."))
     return " ".join(sentences)

@@ -334,7 +334,7 @@ class VoidGestures(QObject):
             if void is not None:
                 self.select(frozenset({void}))
 
-    def _walk(self, step: Step, shapes: VoidShapes) -> None:
+    def _walk(self, step: KeyStep, shapes: VoidShapes) -> None:
         rows, columns = shapes.corners.shape[:2]
         start = min(self._selected) if self._selected else self._hovered
         if start is not None and self.rim.enter(shapes, start, step.down, step.right):
@@ -390,7 +390,7 @@ def _moves_mouth(event: QKeyEvent) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class KeyStep:
     """A walk to another void, or a change of the ratio.
 
     Attributes
@@ -408,7 +408,7 @@ class Step:
     fine: bool = False
 
 
-def step_of(event: QKeyEvent) -> Step | None:
+def step_of(event: QKeyEvent) -> KeyStep | None:
     """What a key asks for, if anything; Ctrl and the keys of the window stay with the window."""
     key, modifiers = Qt.Key(event.key()), event.modifiers()
     if modifiers & Qt.KeyboardModifier.ControlModifier:
@@ -416,7 +416,7 @@ def step_of(event: QKeyEvent) -> Step | None:
     fine = bool(modifiers & Qt.KeyboardModifier.AltModifier)
     if key in _WALKS and not fine:
         down, right = _WALKS[key]
-        return Step(down, right)
+        return KeyStep(down, right)
     if key in _TURNS:
-        return Step(direction=_TURNS[key], fine=fine)
+        return KeyStep(direction=_TURNS[key], fine=fine)
     return None

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.second_target_row import SecondTargetRow
+from kirigami_studio.gui.run.settings_editor import SettingsEditor
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.run.start_tile import StartTile
 from kirigami_studio.gui.session.collection import DiscardedDesigns
@@ -96,7 +97,7 @@ class TargetPresenter(QObject):
         reshaping.restarted.connect(panel.refine.restart)
 
     def _on_board(self, outline: Outline) -> Outline:
-        """A contour at another threshold lies on its picture, which lies still while the board is open."""
+        """Lay a contour at another threshold on its picture, which lies still meanwhile."""
         picture = self._targeting.tracer.picture_of(outline)
         return self._panel.view.on_picture(outline, None if picture is None else picture.traced)
 
@@ -217,8 +218,7 @@ class StartPresenter(QObject):
     session : Session
     reader : StartReader
     openers : mapping of str to callable
-    choose : callable
-        Takes a start from the tile.
+    editor : SettingsEditor
     """
 
     def __init__(
@@ -229,11 +229,11 @@ class StartPresenter(QObject):
         *,
         reader: StartReader,
         openers: Openers,
-        choose: Callable[[StartShape], None],
+        editor: SettingsEditor,
     ) -> None:
         super().__init__(tile)
         self._tile, self._settings, self._session = tile, settings, session
-        self._openers, self._choose_start = openers, choose
+        self._openers, self._editor = openers, editor
         tile.chosen.connect(self._choose)
         tile.file_dropped.connect(reader.open)
         tile.other_wanted.connect(self.open_other)
@@ -245,7 +245,7 @@ class StartPresenter(QObject):
         self._openers[kind]()
 
     def _choose(self, start: StartShape) -> None:
-        self._choose_start(start)
+        self._editor.change(start=start)
         self._session.history.end_drag()
 
     def show(self) -> None:

@@ -416,10 +416,6 @@ class TargetView(Canvas):
             self.editing_left.emit()
 
 
-#: Tools that make a new shape.
-DRAWING = frozenset(Tool) - {Tool.LOOK, Tool.POINTS, Tool.POSE}
-
-
 def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
     looking = SketchTool(context)
     looking.cursor = Qt.CursorShape.ArrowCursor

@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_PHI, SecondTarget
 from kirigami_studio.foundation.steps import Steps
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.run.generation import DesignRun
 from kirigami_studio.gui.run.target_reader import next_run
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import PART_READERS
+from kirigami_studio.outlines.read import PART_READERS, PICTURES
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -36,7 +37,6 @@ from kirigami_studio.studio.parts import (
     reading_start,
 )
 from kirigami_studio.studio.targets import (
-    PICTURES,
     Picture,
     TargetRead,
     checking_start,
@@ -129,7 +129,7 @@ class ReadReason(Enum):
     AGAIN = "again"
 
 
-class TargetReader(QObject):
+class SourceReader(QObject):
     """Reads one target at a time and registers the picture or drawing that it came from.
 
     A drawing with several parts is a question first: :attr:`choice_wanted` is answered by :meth:`take_chosen`.
@@ -314,24 +314,22 @@ def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:
     if settings.second is not None:
         return replace(settings.second, outline=outline)
     phi = USUAL_PHI if settings.phi < USUAL_PHI else 0.5 * (settings.phi + math.pi)
-    return SecondTarget(outline, phi, USUAL_WEIGHT)
+    return SecondTarget(outline, phi)
 
 
 class Targeting(QObject):
     """Reads and traces targets in the worker; every gesture on the target passes here."""
 
-    replaced = Signal(Edit)  #: all work for the old target is pointless now
-    adjusted = Signal(Edit)  #: by a step of a threshold's drag
-    begun = Signal(Document)  #: that the history is to start from
+    replaced = Signal()  #: another target is there, or none
     source_read = Signal(str)  #: where a target was read from
     question_wanted = Signal(Outline)  #: it would take the place of what was drawn by hand
 
-    def __init__(self, session: Session, parent: QObject) -> None:
+    def __init__(self, session: Session, run: DesignRun, stop_work: Callable[[], None], parent: QObject) -> None:
         super().__init__(parent)
-        self._session = session
+        self._session, self._run, self._stop_work = session, run, stop_work
         self.on_board: Callable[[Outline], Outline] = lambda outline: outline  #: gives a contour its size on the board
         self.tracer = PictureTracer(session, self)
-        self.reader = TargetReader(session, self.tracer, self)
+        self.reader = SourceReader(session, self.tracer, self)
         self.reader.read.connect(self._on_read)
         self.reader.failed.connect(session.report_failure)
         self.tracer.traced.connect(self._on_traced)
@@ -371,26 +369,40 @@ class Targeting(QObject):
 
     def reshape(self, edit: Edit) -> None:
         """Take an edit of the target that was made by drawing."""
-        self.replaced.emit(edit)
+        self._replace(edit)
         self._session.set_status(tr("Done: {label}.", label=edit.label))
 
     def clear(self) -> None:
         """Start over with an empty target."""
         document = self._session.document
         if document.target is not None:
-            self.replaced.emit(Edit(tr("Clear target"), edits.without_designs(document, None)))
+            self._replace(Edit(tr("Clear target"), edits.without_designs(document, None)))
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
+    def _replace(self, edit: Edit) -> None:
+        """Take another target; all work for the old one is pointless now."""
+        self._apply(edit, self._stop_work)
+        self.replaced.emit()
+
+    def _apply(self, edit: Edit, stop: Callable[[], None]) -> None:
+        session, was_running = self._session, self._run.running
+        before = session.document
+        stop()
+        session.apply(edit)
+        if was_running and session.document is before:  # the run's designs must not stay in sight
+            session.display.show()
+
     def _on_traced(self, outline: Outline) -> None:
-        target = self.on_board(outline)
-        self.adjusted.emit(edits.edit_target(self._session.document, target, tr("Change threshold")))
+        edit = edits.edit_target(self._session.document, self.on_board(outline), tr("Change threshold"))
+        self._apply(edit, self._run.abandon)
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))
 
     def _on_read(self, outline: Outline, reason: ReadReason) -> None:
         document, history = self._session.document, self._session.history
         untouched = document.target is None and self._session.path is None and not history.steps
         if reason is ReadReason.START and untouched:
-            self.begun.emit(replace(edits.as_drawn(document, outline), target=outline))
+            document = replace(edits.as_drawn(document, outline), target=outline)
+            self._session.restart(document, self._session.path)
             self.source_read.emit(self.reader.source)
             said = tr("Target: {name}. Press Generate (Ctrl+G), or choose another target.", name=outline.name)
             self._session.set_status(said)
@@ -402,7 +414,7 @@ class Targeting(QObject):
 
     def set_target(self, outline: Outline) -> None:
         """Take a target that was read in the place of the present one."""
-        self.replaced.emit(edits.set_target(self._session.document, outline))
+        self._replace(edits.set_target(self._session.document, outline))
         self.source_read.emit(self.reader.source)
         said = tr("Target: {name}. Press Generate (Ctrl+G) to design a sheet for it.", name=outline.name)
         self._session.set_status(said)

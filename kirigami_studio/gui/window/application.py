@@ -21,11 +21,12 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.files.file_dialogs import FileDialogs
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.uncaught_errors import log_qt_messages, show_uncaught
-from kirigami_studio.gui.window.controller import Controller
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.project import preferences
 from kirigami_studio.studio import importing
 
@@ -157,19 +158,21 @@ def readable_font(font: QFont) -> QFont:
     return result
 
 
-def create_window(palette: theme.Palette | None = None, earlier: MainWindow | None = None) -> MainWindow:
-    """Return a new window with its own controller, not shown yet; closing it ends its worker.
+def create_window(
+    palette: theme.Palette | None = None, earlier: MainWindow | None = None, file_dialogs: FileDialogs | None = None
+) -> MainWindow:
+    """Return a new window with its own session, not shown yet; closing it ends its worker.
 
     It goes on with the project of an ``earlier`` window, which is closed and goes.
     """
-    controller = Controller(earlier=None if earlier is None else earlier.controller)
-    window = MainWindow(controller, palette or theme.system_palette())
-    controller.setParent(window)
+    services = Services(earlier=None if earlier is None else earlier.services)
+    window = MainWindow(services, palette or theme.system_palette(), file_dialogs)
+    services.setParent(window)
     if earlier is not None:
-        for keeper in (earlier.controller, earlier.pasting):  # of folders with pictures behind targets
-            keeper.setParent(controller)
+        for keeper in (earlier.services, earlier.pasting):  # of folders with pictures behind targets
+            keeper.setParent(services)
         earlier.deleteLater()
-        controller.session.announce()
+        services.session.announce()
     importing.settle()
     return window
 
@@ -184,9 +187,9 @@ def display_present() -> bool:
 def open_first(window: MainWindow, source: str) -> None:
     """Start with a project, a target file or a library silhouette."""
     if Path(source).suffix.lower() == ".kiri":
-        window.controller.open_project(Path(source))
+        window.services.project.open(Path(source))
     else:
-        window.controller.start_with(source)
+        window.services.targeting.start_with(source)
 
 
 def preferred_language(path: Path) -> str:
@@ -223,7 +226,7 @@ def run(argv: list[str]) -> int:
             open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET)
 
     QTimer.singleShot(0, window, begin)
-    QTimer.singleShot(0, window, window.connections.welcome.begin)
+    QTimer.singleShot(0, window, window.presenters.welcome.begin)
     code = application.exec()
     while window.starts_again:
         window = open_window(application, window)
@@ -248,17 +251,17 @@ def open_window(application: QApplication, earlier: MainWindow | None = None) ->
     config = platformdirs.user_config_path("kirigami-studio", appauthor=False)
     speak(preferred_language(config / PREFERENCES))
     window = create_window(earlier=earlier)
-    controller = window.controller
+    services = window.services
     show_uncaught(window.messages.add)
     window.restore(QSettings())
-    controller.use_preferences(config / PREFERENCES)
-    controller.filing.recent.load(config / RECENT)
-    controller.filing.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
+    services.preferences.use(config / PREFERENCES)
+    services.project.recent.load(config / RECENT)
+    services.project.recovery.use(platformdirs.user_state_path("kirigami-studio", appauthor=False) / RECOVERY)
     application.aboutToQuit.connect(window.remember)
     window.appearance.refresh()
     window.appearance.listen()
     window.show()
-    WarmUp(controller.warm_up, lambda: controller.queue.busy, window)
+    WarmUp(window.presenters.run.warm_up, lambda: services.session.queue.busy, window)
     return window
 
 

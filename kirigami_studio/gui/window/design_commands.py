@@ -2,31 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
+from kirigami_studio.gui.gallery.gallery_view import GalleryView
+from kirigami_studio.gui.run.generation import Generation
+from kirigami_studio.gui.session.collection import DesignMarks
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
+from kirigami_studio.gui.stage.hand_editor import HandEditor
+from kirigami_studio.gui.window.open_dialogs import Dialogs
+from kirigami_studio.gui.window.presenters import Presenters
+from kirigami_studio.gui.window.services import Services
+from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.project.document import Mark
 
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
-
-def commands(window: MainWindow) -> tuple[Command, ...]:
+def commands(
+    services: Services, stage: StagePanel, gallery: GalleryPanel, presenters: Presenters, dialogs: Dialogs
+) -> tuple[Command, ...]:
     """Return the commands of the Design menu."""
-    return (*_runs(window), *_changes(window), *_choices(window))
+    generation, chosen = services.generation, services.chosen
+    return (
+        *_runs(generation.generate, chosen.cancel),
+        *_changes(stage, services.hand, presenters, dialogs),
+        *_choices(gallery, generation, services.marks, presenters),
+    )
 
 
-def _runs(window: MainWindow) -> tuple[Command, ...]:
-    controller, menu = window.controller, tr("&Design")
+def _runs(generate: Callable[[], None], cancel: Callable[[], None]) -> tuple[Command, ...]:
+    menu = tr("&Design")
     return (
         Command(
             "generate",
             menu,
             tr("&Generate"),
             tr("Design sheets for the target"),
-            controller.generation.generate,
+            generate,
             shortcuts=("Ctrl+G", "Ctrl+Return"),
             icon="generate",
             enabled_when=lambda now: now.has_target and not now.running,
@@ -36,7 +49,7 @@ def _runs(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Cancel"),
             tr("Stop generating, trimming or fitting"),
-            controller.cancel,
+            cancel,
             shortcuts=("Esc",),
             icon="stop",
             enabled_when=lambda now: now.running or now.busy,
@@ -44,9 +57,9 @@ def _runs(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _changes(window: MainWindow) -> tuple[Command, ...]:
+def _changes(stage: StagePanel, hand: HandEditor, presenters: Presenters, dialogs: Dialogs) -> tuple[Command, ...]:
     """What changes the chosen design, or how it is cut."""
-    stage, voids, menu = window.stage, window.connections.voids, tr("&Design")
+    menu = tr("&Design")
     return (
         Command(
             "trim",
@@ -74,7 +87,7 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Lock voids"),
             tr("Lock or unlock the selected voids"),
-            voids.toggle_lock,
+            presenters.voids.toggle_lock,
             shortcuts=("L",),
             icon="lock",
             enabled_when=_can_change,
@@ -84,7 +97,7 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Lock all &voids"),
             tr("Lock every void against manual edits"),
-            partial(window.controller.hand.lock_all, True),
+            partial(hand.lock_all, True),
             enabled_when=_can_change,
         ),
         Command(
@@ -92,7 +105,7 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Unlock all voids"),
             tr("Unlock every void for manual edits"),
-            partial(window.controller.hand.lock_all, False),
+            partial(hand.lock_all, False),
             enabled_when=_can_change,
         ),
         Command(
@@ -100,7 +113,7 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Even rim"),
             tr("Space the edge cuts evenly along the sheet's sides"),
-            window.controller.hand.even_rim,
+            hand.even_rim,
             enabled_when=_can_change,
         ),
         Command(
@@ -108,7 +121,7 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Fit again"),
             tr("Improve the match from the current design"),
-            partial(window.connections.refit, True),
+            partial(presenters.refit, True),
             shortcuts=("Ctrl+F",),
             icon="refit",
             enabled_when=_can_change,
@@ -118,31 +131,32 @@ def _changes(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Art&work …"),
             tr("Lay a picture on the sheet, and print it in register with the cuts"),
-            window.dialogs.show_artwork,
+            dialogs.show_artwork,
         ),
         Command(
             "materials",
             menu,
             tr("&Materials …"),
             tr("Copy, edit and calibrate materials"),
-            window.dialogs.show_materials,
+            dialogs.show_materials,
             shortcuts=("Ctrl+M",),
             icon="material",
         ),
     )
 
 
-def _choices(window: MainWindow) -> tuple[Command, ...]:
+def _choices(
+    gallery: GalleryPanel, generation: Generation, marks: DesignMarks, presenters: Presenters
+) -> tuple[Command, ...]:
     """Which designs there are, and what becomes of them."""
-    controller, gallery, menu = window.controller, window.gallery, tr("&Design")
-    designs = window.connections.designs
+    menu, designs = tr("&Design"), presenters.designs
     return (
         Command(
             "next",
             menu,
             tr("&Next design"),
             tr("Choose the next design"),
-            partial(_walk, window, 1),
+            partial(_walk, gallery.view, 1),
             shortcuts=("Ctrl+Down", "PgDown"),
             gap=True,
         ),
@@ -151,7 +165,7 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("P&revious design"),
             tr("Choose the previous design"),
-            partial(_walk, window, -1),
+            partial(_walk, gallery.view, -1),
             shortcuts=("Ctrl+Up", "PgUp"),
         ),
         Command(
@@ -159,7 +173,7 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("M&ore designs"),
             tr("Generate more designs from the next seed"),
-            controller.generation.again,
+            generation.again,
             shortcuts=("Ctrl+R",),
             icon="again",
             gap=True,
@@ -170,7 +184,7 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("More li&ke this"),
             tr("Generate more designs like the chosen one"),
-            lambda: controller.generation.more_like(gallery.bar.nearness_value),
+            lambda: generation.more_like(gallery.bar.nearness_value),
             shortcuts=("Ctrl+Shift+R",),
             icon="alike",
             enabled_when=_can_add,
@@ -180,7 +194,7 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Pin design"),
             tr("Pin or unpin the chosen design"),
-            lambda: controller.marks.pin(designs.chosen),
+            lambda: marks.pin(designs.chosen),
             shortcuts=("I",),
             icon="pin",
             gap=True,
@@ -192,7 +206,7 @@ def _choices(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("N&ame and note …"),
             tr("Rename the chosen design, and note what you want to remember of it"),
-            window.connections.all_designs.rename_current,
+            presenters.all_designs.rename_current,
             shortcuts=("F2",),
             icon="note",
             enabled_when=_can_change,
@@ -230,8 +244,7 @@ def _reject_wording(now: WindowState) -> Wording:
     return Wording(text, tr("Reject the chosen design (Del in the gallery)"), "reject")
 
 
-def _walk(window: MainWindow, step: int) -> None:
-    view = window.gallery.view
+def _walk(view: GalleryView, step: int) -> None:
     row = view.currentIndex().row() + step
     if 0 <= row < view.model_.rowCount():
         view.setCurrentIndex(view.model_.index(row, 0))

@@ -5,15 +5,16 @@ from __future__ import annotations
 from PySide6.QtGui import QGuiApplication
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.files.picturing import PictureMaker
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
 from kirigami_studio.gui.target.pasting import PasteReader
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.target.targeting import Targeting
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 
 
 def commands(
-    controller: Controller, dialogs: Dialogs, pasting: PasteReader, picturing: PictureMaker
+    project: OpenProject, targeting: Targeting, dialogs: Dialogs, pasting: PasteReader, picturing: PictureMaker
 ) -> tuple[Command, ...]:
     """Return the commands of the Edit menu."""
     menu = tr("&Edit")
@@ -23,7 +24,7 @@ def commands(
             menu,
             tr("&Undo"),
             tr("Undo"),
-            controller.undo,
+            project.undo,
             shortcuts=("Ctrl+Z",),
             icon="undo",
             enabled_when=lambda now: now.undo_label is not None,
@@ -34,7 +35,7 @@ def commands(
             menu,
             tr("&Redo"),
             tr("Redo"),
-            controller.redo,
+            project.redo,
             shortcuts=("Ctrl+Y", "Ctrl+Shift+Z"),
             icon="redo",
             enabled_when=lambda now: now.redo_label is not None,
@@ -78,7 +79,7 @@ def commands(
             menu,
             tr("Clear tar&get"),
             tr("Remove the target"),
-            controller.targeting.clear,
+            targeting.clear,
             icon="clear",
             enabled_when=lambda now: now.has_target,
         ),

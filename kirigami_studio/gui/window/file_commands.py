@@ -2,92 +2,105 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.file_dialogs import FileDialogs
+from kirigami_studio.gui.files.open_project import OpenProject
+from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.session.command import Command
 from kirigami_studio.gui.session.messages import Message, Tone
-from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE
+from kirigami_studio.gui.target.targeting import Targeting
+from kirigami_studio.gui.window.services import Services
+from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE, UnsavedWork
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import file_ending
 from kirigami_studio.studio.making import Motion
 from kirigami_studio.studio.projects import Leftover
 
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
-
 
 class FileCommands(QObject):
-    """Asks for files, and hands them to the controller."""
+    """Asks for files, and hands them to the places.
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
-        super().__init__(window)
-        self._window = window
-        self._controller = controller
+    Parameters
+    ----------
+    services : Services
+    unsaved : UnsavedWork
+        Is asked before another project replaces this one.
+    ask : FileDialogs
+    exports : ExportRow
+        Has the kind of file that suits the material.
+    parent : QObject
+    """
+
+    def __init__(
+        self, services: Services, unsaved: UnsavedWork, ask: FileDialogs, exports: ExportRow, parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._services, self._unsaved, self._ask, self._exports = services, unsaved, ask, exports
 
     def new_project(self) -> None:
         """Start an empty project."""
-        self._window.unsaved.guard(NEW_PROJECT, self._controller.new_project)
+        self._unsaved.guard(NEW_PROJECT, self._services.project.new)
 
     def ask_project(self) -> None:
         """Open a project of the user's choice."""
-        self._window.unsaved.guard(OTHER_PROJECT, self._choose_project)
+        self._unsaved.guard(OTHER_PROJECT, self._choose_project)
 
     def _choose_project(self) -> None:
-        path = self._window.file_dialogs.project()
+        path = self._ask.project()
         if path is not None:
-            self._controller.open_project(path)
+            self._services.project.open(path)
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""
-        path = self._window.file_dialogs.target()
+        path = self._ask.target()
         if path is not None:
-            self._controller.targeting.open(str(path))
+            self._services.targeting.open(str(path))
 
     def ask_start(self) -> None:
         """Read a file of the user's choice as the start outline."""
-        path = self._window.file_dialogs.start()
+        path = self._ask.start()
         if path is not None:
-            self._controller.start.open(str(path))
+            self._services.start.open(str(path))
 
     def ask_second(self) -> None:
         """Read a file of the user's choice as the second target."""
-        path = self._window.file_dialogs.target()
+        path = self._ask.target()
         if path is not None:
-            self._controller.second.open(str(path))
+            self._services.second.open(str(path))
 
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
         if Path(name).suffix.lower() == ".kiri":
-            self._window.unsaved.guard(OTHER_PROJECT, lambda: self._controller.open_project(Path(name)))
+            self._unsaved.guard(OTHER_PROJECT, lambda: self._services.project.open(Path(name)))
         else:
-            self._controller.targeting.open(name)
+            self._services.targeting.open(name)
 
     def open_design(self, document: Document, source: str) -> None:
         """Open the design that a cut file of this program carries; it is saved elsewhere."""
-        self._window.unsaved.guard(OTHER_PROJECT, lambda: self._controller.open_design(document, source))
+        self._unsaved.guard(OTHER_PROJECT, lambda: self._services.project.open_design(document, source))
 
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""
-        self._window.unsaved.guard(SAMPLE, self._open_sample)
+        self._unsaved.guard(SAMPLE, self._open_sample)
 
     def _open_sample(self) -> None:
-        self._controller.open_project(resource("examples", "heart.kiri"))
+        self._services.project.open(resource("examples", "heart.kiri"))
 
     def open_pair(self, path: Path) -> None:
         """Open one of the bundled pairs; it is saved elsewhere."""
-        self._window.unsaved.guard(PAIR, lambda: self._controller.open_project(path))
+        self._unsaved.guard(PAIR, lambda: self._services.project.open(path))
 
     def recover(self, leftover: Leftover) -> None:
         """Open what a session that ended unexpectedly has left."""
-        self._window.unsaved.guard(RECOVERED, partial(self._controller.filing.recovery.recover, leftover))
+        self._unsaved.guard(RECOVERED, partial(self._services.project.recovery.recover, leftover))
 
     def animate(self, motion: Motion = Motion.AS_CUT) -> None:
         """Write the animation in a place of the user's choice; the ideal one says so in the name that is offered."""
@@ -95,62 +108,69 @@ class FileCommands(QObject):
 
     def export(self, extension: str = "") -> None:
         """Write the cut file that suits the material, or another kind of file, in a place of the user's choice."""
-        self._export(extension or self._window.fabrication.exports.extension, Motion.AS_CUT)
+        self._export(extension or self._exports.extension, Motion.AS_CUT)
 
     def _export(self, ending: str, motion: Motion) -> None:
-        if self._controller.stage is None:
+        if self._services.session.stage is None:
             sentence = tr("No design to export yet. Generate one first.")
-            self._window.messages.add(Message(sentence, Tone.HINT))
+            self._services.session.post(Message(sentence, Tone.HINT))
             return
-        path = self._window.file_dialogs.export(f"{self._name}{ending}")
+        path = self._ask.export(f"{self._name}{ending}")
         if path is not None:
-            self._controller.export(path, motion)
+            self._services.exporter.export(path, motion)
 
     @property
     def _name(self) -> str:
         """What files of the design on the stage are called: the project's name, then the design's."""
-        stage = self._controller.stage
-        label = None if stage is None else self._controller.document.label_of(stage.candidate)
-        project = self._window.unsaved.name
+        stage = self._services.session.stage
+        label = None if stage is None else self._services.session.document.label_of(stage.candidate)
+        project = self._unsaved.name
         return project if label is None else f"{project}-{file_ending(label)}"
 
     def export_all(self) -> None:
         """Write everything that there is of the design into a folder of the user's choice."""
-        folder = self._window.file_dialogs.folder()
+        folder = self._ask.folder()
         if folder is not None:
-            self._controller.export_all(folder, self._name)
+            self._services.exporter.export_all(folder, self._name)
 
     def ask_artwork(self) -> None:
         """Lay a picture of the user's choice on the sheet."""
-        path = self._window.file_dialogs.artwork()
+        path = self._ask.artwork()
         if path is not None:
-            self._controller.artwork.open(path)
+            self._services.artwork.open(path)
 
     def ask_second_artwork(self) -> None:
         """Let a second picture of the user's choice share the sheet."""
-        path = self._window.file_dialogs.artwork()
+        path = self._ask.artwork()
         if path is not None:
-            self._controller.artwork.open_second(path)
+            self._services.artwork.open_second(path)
 
     def export_artwork(self) -> None:
-        """Write the printed sheet into a folder of the user's choice; without artwork, offer to choose a picture."""
-        if self._controller.document.artwork is None:
-            self._window.dialogs.show_artwork()
-            return
-        folder = self._window.file_dialogs.folder()
+        """Write the printed sheet into a folder of the user's choice."""
+        folder = self._ask.folder()
         if folder is not None:
-            self._controller.export_artwork(folder)
+            self._services.exporter.export_artwork(folder)
 
     def export_coupon(self, material: Material) -> None:
         """Write the calibration coupon of a material in a place of the user's choice."""
-        path = self._window.file_dialogs.export(f"coupon-{material.key}.dxf")
+        path = self._ask.export(f"coupon-{material.key}.dxf")
         if path is not None:
-            self._controller.cutting.export_coupon(material, path)
+            self._services.exporter.export_coupon(material, path)
 
 
-def commands(window: MainWindow) -> tuple[Command, ...]:
+def commands(
+    files: FileCommands,
+    unsaved: UnsavedWork,
+    *,
+    project: OpenProject,
+    targeting: Targeting,
+    show_library: Callable[[], None],
+    show_pairs: Callable[[], None],
+    export_artwork: Callable[[], None],
+    close: Callable[[], object],
+) -> tuple[Command, ...]:
     """Return the commands of the File menu."""
-    files, menu = window.files, tr("&File")
+    menu = tr("&File")
     return (
         Command(
             "new", menu, tr("&New project"), tr("Start an empty project"), files.new_project, shortcuts=("Ctrl+N",)
@@ -169,14 +189,14 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Reco&ver unsaved work …"),
             tr("Ask again about work that an earlier session left unsaved"),
-            window.controller.filing.recovery.offer_again,
+            project.recovery.offer_again,
         ),
         Command(
             "save",
             menu,
             tr("&Save project"),
             tr("Save the project"),
-            window.unsaved.save,
+            unsaved.save,
             shortcuts=("Ctrl+S",),
             icon="save",
         ),
@@ -185,7 +205,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Save project &as …"),
             tr("Save the project under another name"),
-            window.unsaved.save_as,
+            unsaved.save_as,
             shortcuts=("Ctrl+Shift+S",),
         ),
         Command(
@@ -203,7 +223,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("C&hoose parts …"),
             tr("Choose other parts of the target's drawing, or join them in another way"),
-            window.controller.targeting.choose_parts,
+            targeting.choose_parts,
             enabled_when=lambda now: now.has_parts,
         ),
         Command(
@@ -211,7 +231,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Target &library …"),
             tr("Choose a silhouette from the library"),
-            window.dialogs.show_library,
+            show_library,
             shortcuts=("Ctrl+L",),
             icon="library",
         ),
@@ -220,7 +240,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("E&xamples of pairs …"),
             tr("Open one of twelve finished designs that lead from one shape to another"),
-            window.dialogs.show_pairs,
+            show_pairs,
         ),
         Command(
             "export",
@@ -247,7 +267,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Export art&work …"),
             tr("Export the picture on the sheet, in register with the cuts"),
-            files.export_artwork,
+            export_artwork,
             enabled_when=lambda now: now.shows_design,
         ),
         Command(
@@ -269,7 +289,7 @@ def commands(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Quit"),
             tr("Close Kirigami Studio"),
-            window.close,
+            close,
             shortcuts=("Ctrl+Q",),
             gap=True,
         ),

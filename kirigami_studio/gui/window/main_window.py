@@ -1,33 +1,18 @@
-"""The main window: three columns of panels, menus, toolbar and status line."""
+"""The main window: composes services, panels, presenters, menus, toolbar and status line."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import (
-    QAbstractSpinBox,
-    QApplication,
-    QLabel,
-    QMainWindow,
-    QSizePolicy,
-    QSplitter,
-    QStackedWidget,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QAbstractSpinBox, QLabel, QMainWindow, QSizePolicy
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.file_dialogs import FileDialogs, SystemFileDialogs
 from kirigami_studio.gui.files.picturing import PictureMaker
-from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
-from kirigami_studio.gui.make.fabrication_panel import Extent, FabricationPanel
-from kirigami_studio.gui.run.generate_bar import GenerateBar
-from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.session.command import Command, Switch, WindowState
+from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.pasting import PasteReader
-from kirigami_studio.gui.target.target_panel import TargetPanel
-from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
@@ -42,14 +27,15 @@ from kirigami_studio.gui.window import (
     help_commands,
     view_commands,
 )
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.window.appearance import Appearance
+from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
-from kirigami_studio.gui.window.presenter import Connections
-from kirigami_studio.gui.window.stage_panel import StagePanel
+from kirigami_studio.gui.window.presenters import Presenters
+from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
 from kirigami_studio.gui.window.unsaved_work import UnsavedWork
-from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS, Appearance
+from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS
 
 SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)
@@ -57,36 +43,25 @@ FIRST = QSize(1440, 900)
 FRAME = QSize(16, 48)
 #: Between a message and what is around it in the tool bar, pixels.
 MESSAGE_GAP = 4
-#: Least and largest first width (pixels) of the outer columns, and their share of the window in between.
-LEFT_WIDTH, RIGHT_WIDTH = (284, 340), (322, 372)
-LEFT_SHARE, RIGHT_SHARE = 0.225, 0.25
-#: Smallest window height (pixels) for each extent of the fabrication panel that leaves the gallery two whole rows.
-EXTENT_BY_HEIGHT = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT))
 #: Commands of the toolbar by their ids, before and after the name of the project; "" is a separator.
 TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
 
 
-def all_commands(window: MainWindow) -> tuple[Command, ...]:
-    """Return the commands of a window in the order of its menus, one record each."""
-    return (
-        *file_commands.commands(window),
-        *edit_commands.commands(window.controller, window.dialogs, window.pasting, window.picturing),
-        *draw_commands.commands(window.target, window.messages.add),
-        *design_commands.commands(window),
-        *view_commands.commands(window),
-        *help_commands.commands(window.dialogs, window.files.open_sample),
-    )
-
-
 class MainWindow(QMainWindow):
-    """Builds the panels and connects them with the controller; lays them out and remembers their sizes."""
+    """Gives every part what it needs; has the title, the toolbar, the menus and the status line.
 
-    def __init__(self, controller: Controller, palette: Palette) -> None:
+    Parameters
+    ----------
+    services : Services
+    palette : Palette
+    file_dialogs : FileDialogs, optional
+        In the place of the desktop's.
+    """
+
+    def __init__(self, services: Services, palette: Palette, file_dialogs: FileDialogs | None = None) -> None:
         super().__init__()
-        self.controller = controller
-        self.palette_ = palette
-        self._laid_out = False
-        self._sizes_before: list[int] = []
+        session, project = services.session, services.project
+        self.services, self.session = services, session
         self.starts_again = False  #: another window goes on with the project
         self.setObjectName("studio")
         self.setWindowIcon(QIcon(str(resource("icons", "kirigami-studio.svg"))))
@@ -94,68 +69,49 @@ class MainWindow(QMainWindow):
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.resize(FIRST.boundedTo(self.screen().availableSize() - FRAME))
         self.messages = MessageBar(self)
-        self.target = TargetPanel()
-        self.settings = SettingsPanel()
-        self.run = GenerateBar()
-        self.stage = StagePanel()
-        self.gallery = GalleryPanel()
-        self.fabrication = FabricationPanel()
-        self._build_columns()
+        self.columns = columns = Columns()
+        self.target, self.settings, self.run = columns.target, columns.settings, columns.run
+        self.stage, self.gallery, self.fabrication = columns.stage, columns.gallery, columns.fabrication
+        self.setCentralWidget(columns)
         self._build_status()
         leave_wheel(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
-        self.file_dialogs: FileDialogs = SystemFileDialogs(self)
-        self.unsaved = UnsavedWork(self, controller)
-        self.files = FileCommands(self, controller)
+        ask = file_dialogs or SystemFileDialogs(self)
+        self.unsaved = UnsavedWork(self, session, project, services.hand, ask)
+        self.files = FileCommands(services, self.unsaved, ask, self.fabrication.exports, self)
         self.drops = FileDrops(self)
         self.drops.file_dropped.connect(self.files.open)
-        self.dialogs = Dialogs(self, controller)
-        self.appearance = Appearance(self, controller.preferences)
-        self.pasting = PasteReader(controller.session, self)
-        self.picturing = PictureMaker(self, controller.session, controller.cutting)
+        self.appearance = Appearance(self, session, services.preferences, palette, self.start_again)
+        self.dialogs = Dialogs(
+            self,
+            services,
+            self.files,
+            self.appearance,
+            library_button=self.target.buttons["library"],
+            commands=lambda: self.commands.records,
+        )
+        self.pasting = PasteReader(session, self)
+        self.picturing = PictureMaker(self, session, services.cutting)
         self.heading = self._heading()
-        self.connections = Connections(self, controller)
-        self._build_commands()
+        self.presenters = Presenters(
+            columns,
+            services,
+            dialogs=self.dialogs,
+            files=self.files,
+            pasting=self.pasting,
+            status=self.status_text,
+            command=lambda name: self.commands[name],
+        )
+        self._connect_session()
+        self.commands = CommandActions(self, self._all_commands(), self.state)
+        self._build_submenus(ask)
+        self._refresh_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
-        self.set_theme(palette)
-
-    def _build_columns(self) -> None:
-        design = QWidget()
-        design.setObjectName("body")
-        column = QVBoxLayout(design)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        self.settings.body.insertWidget(0, self.fabrication.material_row)
-        self.settings.body.addWidget(self.run)
-        column.addWidget(self.target, 1)
-        column.addWidget(self.settings)
-        right = QWidget()
-        right.setObjectName("body")
-        results = QVBoxLayout(right)
-        results.setContentsMargins(0, 0, 0, 0)
-        results.setSpacing(8)
-        results.addWidget(self.gallery, 1)
-        results.addWidget(self.fabrication)
-        self.columns = QSplitter(Qt.Orientation.Horizontal)
-        self.outer = design, right
-        for part in (design, self.stage, right):
-            self.columns.addWidget(part)
-        self.columns.setChildrenCollapsible(False)
-        self.columns.setStretchFactor(1, 1)
-        self.columns.splitterMoved.connect(self._keep_columns)
-        self.target.editing_changed.connect(self._make_room)
-        self.stage.whole_width_wanted.connect(self._give_whole_width)
-        body = QWidget()
-        body.setObjectName("body")
-        whole = QVBoxLayout(body)
-        whole.setContentsMargins(10, 0, 10, 2)
-        whole.setSpacing(8)
-        self.center = QStackedWidget()
-        self.center.addWidget(self.columns)
-        whole.addWidget(self.center, 1)
-        self.setCentralWidget(body)
+        self.stage.welcome.offer(self.commands.actions)
+        self.appearance.changed.connect(self.commands.set_palette)
+        self.appearance.set_theme(palette)
 
     def _build_status(self) -> None:
         self.status_text = ElidedLabel(Qt.TextElideMode.ElideRight)
@@ -167,51 +123,98 @@ class MainWindow(QMainWindow):
         bar.addWidget(self.status_text, 1)
         bar.addPermanentWidget(self.facts)
 
-    def _build_commands(self) -> None:
-        self.commands = CommandActions(self, all_commands(self), self.state)
-        self.recent_menu = RecentMenu(self, self.controller.filing.recent, self.files.open)
+    def _connect_session(self) -> None:
+        """Messages, status line and title."""
+        session = self.session
+        session.message_posted.connect(self.messages.add)
+        session.message_withdrawn.connect(self.messages.drop)
+        self.services.run.started.connect(lambda: self.messages.dismiss(Tone.HINT, Tone.DONE))
+        session.status_changed.connect(self.status_text.setText)
+        self.presenters.stage.facts_changed.connect(self.facts.setText)
+        session.document_changed.connect(self._show_title)
+        self._show_title()
+        self.status_text.setText(tr("Choose or draw a target to begin."))
+
+    def _show_title(self) -> None:
+        unsaved, path = self.session.history.unsaved, self.session.path
+        name = path.name if path is not None else tr("Untitled")
+        literal = name.replace("[*]", "[*][*]")  # or Qt would take it for the place of its own star
+        self.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=literal))
+        self.setWindowModified(unsaved)
+        self.heading.setText(tr("{name}  ·  unsaved changes", name=name) if unsaved else name)
+
+    def _all_commands(self) -> tuple[Command, ...]:
+        """The commands in the order of the menus, one record each."""
+        services, dialogs, presenters = self.services, self.dialogs, self.presenters
+        project, targeting = services.project, services.targeting
+        return (
+            *file_commands.commands(
+                self.files,
+                self.unsaved,
+                project=project,
+                targeting=targeting,
+                show_library=dialogs.show_library,
+                show_pairs=dialogs.show_pairs,
+                export_artwork=dialogs.export_artwork,
+                close=self.close,
+            ),
+            *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
+            *draw_commands.commands(self.target, self.session.post),
+            *design_commands.commands(services, self.stage, self.gallery, presenters, dialogs),
+            *view_commands.commands(self.columns, self.session, presenters, self.appearance),
+            *help_commands.commands(dialogs, self.files.open_sample),
+        )
+
+    def _build_submenus(self, ask: FileDialogs) -> None:
+        self.recent_menu = RecentMenu(self, self.services.project.recent, self.files.open)
         self.commands.insert_menu("save", self.recent_menu)
-        self.picture_menu = PictureMenu(self, self.picturing, lambda proposal: self.file_dialogs.picture(proposal))
+        self.picture_menu = PictureMenu(self, self.picturing, ask.picture)
         self.commands.insert_menu("animation", self.picture_menu)
         self.language_menu = LanguageMenu(self, self.appearance)
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
         offer_context_menus(self.target, self.stage, self.commands)
-        self.stage.welcome.offer(self.commands.actions)
-        controller, refresh = self.controller, self.commands.refresh
-        for document_signal in (controller.session.document_changed, controller.session.display.stage_changed):
-            document_signal.connect(refresh)
-        for job_signal in (controller.run.started, controller.run.ended):
-            job_signal.connect(refresh)
-        working = (controller.trimming, controller.refitting, controller.regularity)
-        for busy_signal in (part.busy_changed for part in working):
-            busy_signal.connect(refresh)
-        self.stage.switches_changed.connect(refresh)
-        self.stage.comparing_changed.connect(refresh)
-        self.target.editing_changed.connect(refresh)
-        self.target.view.context.selection_changed.connect(refresh)
+
+    def _refresh_commands(self) -> None:
+        """Enable and name the commands anew at whatever :meth:`state` depends on."""
+        services, session, chosen = self.services, self.session, self.services.chosen
+        for signal in (
+            session.document_changed,
+            session.display.stage_changed,
+            services.run.started,
+            services.run.ended,
+            chosen.trimming.busy_changed,
+            chosen.refitting.busy_changed,
+            services.regularity.busy_changed,
+            self.stage.switches_changed,
+            self.stage.comparing_changed,
+            self.target.editing_changed,
+            self.target.view.context.selection_changed,
+        ):
+            signal.connect(self.commands.refresh)
 
     def state(self) -> WindowState:
         """Return what decides which commands can be given now."""
-        controller, document, stage = self.controller, self.controller.document, self.stage
+        services, session, stage = self.services, self.session, self.stage
+        document = session.document
         return WindowState(
             has_target=document.target is not None,
             has_designs=bool(document.candidates),
-            has_parts=bool(controller.targeting.reader.drawing_of(document.target)),
-            shows_design=controller.stage is not None,
+            has_parts=bool(services.targeting.reader.drawing_of(document.target)),
+            shows_design=session.stage is not None,
             chosen=None if document.chosen is None else document.marks[document.chosen],
-            undo_label=controller.history.undo_label,
-            redo_label=controller.history.redo_label,
-            running=controller.running,
-            busy=controller.trimming.busy or controller.refitting.busy or controller.regularity.busy,
+            undo_label=session.history.undo_label,
+            redo_label=session.history.redo_label,
+            running=services.run.running,
+            busy=services.chosen.busy,
             editing_target=self.target.editing,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
-            dark=self.palette_.dark,
+            dark=self.appearance.palette.dark,
             follows_system=self.appearance.follows_system,
-            still=controller.preferences.present.motion == "still",
+            still=services.preferences.present.motion == "still",
         )
 
     def _heading(self) -> QLabel:
@@ -239,14 +242,13 @@ class MainWindow(QMainWindow):
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
-        self._share_width()
+        self.columns.share_width(self.width())
         self.stage.take_focus()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
-        self._share_width()
+        self.columns.fit(self.size())
         self._place_messages()
-        self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if self.height() >= height))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         """Number fields leave Space to the window, which plays the deployment."""
@@ -262,87 +264,27 @@ class MainWindow(QMainWindow):
         size = QSize(self.heading.width() - 2 * MESSAGE_GAP, self.heading.height() - 2 * MESSAGE_GAP)
         self.messages.lay_over(QRect(corner, size))
 
-    def _share_width(self) -> None:
-        """Share the width among the columns, until the user has moved a border between them."""
-        if not self._laid_out and not self.target.editing:
-            left = min(max(LEFT_SHARE * self.width(), LEFT_WIDTH[0]), LEFT_WIDTH[1])
-            right = min(max(RIGHT_SHARE * self.width(), RIGHT_WIDTH[0]), RIGHT_WIDTH[1])
-            self.columns.setSizes([round(left), round(self.width() - left - right), round(right)])
-        elif self.target.editing:  # what a larger window has to give goes to the drawing board
-            right = min(self._sizes_before[2], RIGHT_WIDTH[1])
-            self.columns.setSizes([self.width() - right, 0, right])
-
-    def _make_room(self, editing: bool) -> None:
-        """The target's editor takes the place of the stage and the settings while it is open."""
-        sizes = self.columns.sizes()
-        if editing and self.stage.wants_whole_width:
-            self.stage.set_comparing(False)
-            sizes = self._sizes_before
-        if editing:
-            self._sizes_before = sizes
-            self.columns.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
-            self.target.view.setFocus()  # hiding what has the focus would give it to the gallery's list of sort orders
-        self.stage.setVisible(not editing)
-        self.settings.setVisible(not editing)
-        if not editing:
-            self.columns.setSizes(self._sizes_before)
-            self._share_width()
-            if self.target.view.hasFocus() or self.focusWidget() is None:
-                self.stage.take_focus()
-
-    def _give_whole_width(self, whole: bool) -> None:
-        """Three designs and more beside each other take the place of the outer columns."""
-        if whole == self.outer[0].isHidden():
-            return
-        if whole:
-            self._sizes_before = self.columns.sizes()
-        for column in self.outer:
-            column.setVisible(not whole)
-        if not whole:
-            self.columns.setSizes(self._sizes_before)
-            self._share_width()
-
-    def _keep_columns(self) -> None:
-        self._laid_out = True
-
-    def set_theme(self, palette: Palette) -> None:
-        """Change to another palette."""
-        self.palette_ = palette
-        application = QApplication.instance()
-        if isinstance(application, QApplication):
-            theme.apply(application, palette)
-        for part in theme.themed(self.findChildren(QWidget)):
-            part.set_palette(palette)
-        self.commands.set_palette(palette)
-
     def start_again(self) -> None:
         """Close, for another window to go on with the project, saved or not; a run has to end first."""
-        if self.controller.running:
-            self.controller.session.set_status(tr("Wait for the run to finish, or cancel it, then start again."))
+        if self.services.run.running:
+            self.session.set_status(tr("Wait for the run to finish, or cancel it, then start again."))
             self.appearance.offer_start()
-        elif not self.controller.hand.postpones(self.start_again):
+        elif not self.services.hand.postpones(self.start_again):
             self.starts_again = True
             self.close()
 
     def restore(self, settings: QSettings) -> None:
         """Restore the size and columns of the last session."""
-        for key, take in (("geometry", self.restoreGeometry), ("columns", self.columns.restoreState)):
-            value = settings.value(key)
-            if isinstance(value, QByteArray) and take(value) and key == "columns":
-                self._laid_out = True
-        self.stage.restore(settings)
-        self.fabrication.restore(settings)
-        self.settings.restore(settings)
+        geometry = settings.value("geometry")
+        if isinstance(geometry, QByteArray):
+            self.restoreGeometry(geometry)
+        self.columns.restore(settings)
 
     def remember(self, settings: QSettings | None = None) -> None:
         """Save size and columns for the next session, in the user's settings without others."""
         settings = QSettings() if settings is None else settings
         settings.setValue("geometry", self.saveGeometry())
-        if self._laid_out:
-            settings.setValue("columns", self.columns.saveState())
-        self.stage.remember(settings)
-        self.fabrication.remember(settings)
-        self.settings.remember(settings)
+        self.columns.remember(settings)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
         if not (self.starts_again or self.unsaved.may_close()):
@@ -352,5 +294,5 @@ class MainWindow(QMainWindow):
         self.stage.set_comparing(False)  # whose columns would be remembered
         self.dialogs.close()
         self.hide()  # the worker may be deep in an import: let it end out of sight
-        self.controller.close()
+        self.services.close()
         event.accept()

@@ -7,16 +7,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QRect, Qt, QUrl
+from PySide6.QtCore import QObject, QRect, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets import theme
+from kirigami_studio.gui.session.command import Command
 from kirigami_studio.gui.widgets.number_field import leave_wheel
-from kirigami_studio.gui.window.controller import Controller
-from kirigami_studio.studio.making import Exported
+from kirigami_studio.gui.window.appearance import Appearance
+from kirigami_studio.gui.window.file_commands import FileCommands
+from kirigami_studio.gui.window.services import Services
+from kirigami_studio.studio.making import ExportedFiles
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.window.about import AboutWindow
     from kirigami_studio.gui.window.guide import GuideWindow
     from kirigami_studio.gui.window.history_list import HistoryList
-    from kirigami_studio.gui.window.main_window import MainWindow
     from kirigami_studio.gui.window.pairs import PairGallery
     from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
     from kirigami_studio.outlines.outline import Outline
@@ -38,12 +39,36 @@ if TYPE_CHECKING:
 
 
 class Dialogs(QObject):
-    """Opens each dialog of one window; its module is imported when it is first wanted."""
+    """Opens each dialog of one window; its module is imported when it is first wanted.
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
+    Parameters
+    ----------
+    window : QWidget
+        The parent of the dialogs.
+    services : Services
+    files : FileCommands
+    appearance : Appearance
+    library_button : QWidget
+        The library opens below it.
+    commands : callable
+        All commands of the window.
+    """
+
+    materials_changed = Signal()  #: those on disk
+
+    def __init__(
+        self,
+        window: QWidget,
+        services: Services,
+        files: FileCommands,
+        appearance: Appearance,
+        *,
+        library_button: QWidget,
+        commands: Callable[[], tuple[Command, ...]],
+    ) -> None:
         super().__init__(window)
-        self._window = window
-        self._controller = controller
+        self._window, self._services, self._files, self._appearance = window, services, files, appearance
+        self._library_button, self._commands = library_button, commands
         self.guide: GuideWindow | None = None
         self.picker: SilhouettePicker | None = None
         self.report: ExportReport | None = None
@@ -55,7 +80,7 @@ class Dialogs(QObject):
         self.second_board: OutlineBoard | None = None
         self.pairs: PairGallery | None = None
         self.parts: PartPicker | None = None
-        self._on_parts: Callable[[Outline, bool], None] = controller.targeting.reader.take_chosen
+        self._on_parts: Callable[[Outline, bool], None] = services.targeting.reader.take_chosen
         self.artwork: ArtworkEditor | None = None
         self.label: LabelEditor | None = None
 
@@ -63,27 +88,22 @@ class Dialogs(QObject):
         """Open the material editor, or bring it to the front."""
         from kirigami_studio.gui.make.material_editor import MaterialEditor
 
-        key = self._controller.document.fabrication.material
+        key = self._services.session.document.fabrication.material
         if self.materials is None:
             self.materials = MaterialEditor(self._window, key)
-            self.materials.materials_changed.connect(self.reload_materials)
-            self.materials.coupon_wanted.connect(self._window.files.export_coupon)
+            self.materials.materials_changed.connect(self.materials_changed)
+            self.materials.coupon_wanted.connect(self._files.export_coupon)
         self.materials.choose(key)
         bring_to_front(self.materials)
 
-    def reload_materials(self) -> None:
-        """The materials on disk have changed."""
-        self._window.fabrication.reload_materials()
-        self._controller.replan()
-
-    def show_report(self, exported: Exported) -> None:
+    def show_report(self, exported: ExportedFiles) -> None:
         """Show what two readers found in a written cut file, in the place of an earlier report."""
         from kirigami_studio.gui.make.export_report import ExportReport
 
         self.close_report()
         if not exported.verifications:
             return
-        self.report = ExportReport(self._window, exported.verifications, self._window.palette_, exported.verdict)
+        self.report = ExportReport(self._window, exported.verifications, self._appearance.palette, exported.verdict)
         self.report.folder_wanted.connect(show_in_folder)
         self.report.show()
 
@@ -100,23 +120,23 @@ class Dialogs(QObject):
 
         if self.history is None:
             self.history = HistoryList(self._window)
-            self.history.step_wanted.connect(self._controller.go_to)
-            self._controller.session.document_changed.connect(self._update_history)
+            self.history.step_wanted.connect(self._services.project.go_to)
+            self._services.session.document_changed.connect(self._update_history)
         self.history.show()
         self._update_history()
         bring_to_front(self.history)
 
     def _update_history(self) -> None:
         if self.history is not None and self.history.isVisible():
-            self.history.show_history(self._controller.history, self._window.palette_)
+            self.history.show_history(self._services.session.history, self._appearance.palette)
 
     def show_library(self) -> None:
         """Open the popup with the library's silhouettes, for the target."""
-        self._pick_silhouette(self._controller.targeting.open, self._window.target.buttons["library"])
+        self._pick_silhouette(self._services.targeting.open, self._library_button)
 
     def show_start_library(self, below: QWidget) -> None:
         """Open it for the start outline, below what was clicked."""
-        self._pick_silhouette(self._controller.start.open, below)
+        self._pick_silhouette(self._services.start.open, below)
 
     def show_start_board(self) -> None:
         """Open the board that the start is drawn on, with the present start."""
@@ -124,16 +144,16 @@ class Dialogs(QObject):
 
         if self.start_board is None:
             self.start_board = StartBoard(self._window)
-            self.start_board.taken.connect(self._controller.start.draw)
-            self.start_board.check_wanted.connect(self._controller.start.check)
-            self._controller.start.checked.connect(self.start_board.show_check)
-            self._colour(self.start_board)
-        self.start_board.begin(self._controller.document.settings.start.outline)
+            self.start_board.taken.connect(self._services.start.draw)
+            self.start_board.check_wanted.connect(self._services.start.check)
+            self._services.start.checked.connect(self.start_board.show_check)
+            self._appearance.colour(self.start_board)
+        self.start_board.begin(self._services.session.document.settings.start.outline)
         bring_to_front(self.start_board)
 
     def show_second_library(self, below: QWidget) -> None:
         """Open the popup with the library's silhouettes for the second target, below what was clicked."""
-        self._pick_silhouette(self._controller.second.open, below)
+        self._pick_silhouette(self._services.second.open, below)
 
     def show_second_board(self) -> None:
         """Open the board that the second target is drawn on, with the present one."""
@@ -141,9 +161,9 @@ class Dialogs(QObject):
 
         if self.second_board is None:
             self.second_board = OutlineBoard(self._window, SECOND_WORDS)
-            self.second_board.taken.connect(self._controller.second.take)
-            self._colour(self.second_board)
-        second = self._controller.document.settings.second
+            self.second_board.taken.connect(self._services.second.take)
+            self._appearance.colour(self.second_board)
+        second = self._services.session.document.settings.second
         self.second_board.begin(None if second is None else second.outline)
         bring_to_front(self.second_board)
 
@@ -152,9 +172,9 @@ class Dialogs(QObject):
         from kirigami_studio.gui.window.pairs import PairGallery
 
         if self.pairs is None:
-            self.pairs = PairGallery(self._window, self._controller.queue)
-            self.pairs.chosen.connect(self._window.files.open_pair)
-        self._colour(self.pairs)
+            self.pairs = PairGallery(self._window, self._services.session.queue)
+            self.pairs.chosen.connect(self._files.open_pair)
+        self._appearance.colour(self.pairs)
         self.pairs.read()
         bring_to_front(self.pairs)
 
@@ -163,13 +183,13 @@ class Dialogs(QObject):
         from kirigami_studio.gui.target.part_picker import PartPicker
 
         if self.parts is None:
-            session = self._controller.session
-            self.parts = PartPicker(self._window, self._controller.queue)
+            session = self._services.session
+            self.parts = PartPicker(self._window, self._services.session.queue)
             self.parts.taken.connect(lambda outline, usual: self._on_parts(outline, usual))
             self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
         self._on_parts = take
         self.parts.begin(read, purpose)
-        self._colour(self.parts)
+        self._appearance.colour(self.parts)
         bring_to_front(self.parts)
 
     def show_artwork(self) -> None:
@@ -177,34 +197,36 @@ class Dialogs(QObject):
         from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
 
         if self.artwork is None:
-            keeper = self._controller.artwork
+            keeper = self._services.artwork
             self.artwork = ArtworkEditor(self._window)
-            self.artwork.picture_wanted.connect(self._window.files.ask_artwork)
+            self.artwork.picture_wanted.connect(self._files.ask_artwork)
             self.artwork.removed.connect(keeper.remove)
-            self.artwork.second_wanted.connect(self._window.files.ask_second_artwork)
+            self.artwork.second_wanted.connect(self._files.ask_second_artwork)
             self.artwork.second_removed.connect(keeper.remove_second)
             self.artwork.stripes_wanted.connect(keeper.share)
             self.artwork.changed.connect(lambda changes: keeper.place(**changes))
-            self.artwork.edited.connect(self._controller.end_drag)
-            self.artwork.export_wanted.connect(self._window.files.export_artwork)
-            self._controller.session.document_changed.connect(self._update_artwork)
-            self._controller.session.display.stage_changed.connect(self._update_artwork)
+            self.artwork.edited.connect(self._services.session.history.end_drag)
+            self.artwork.export_wanted.connect(self.export_artwork)
+            self._services.session.document_changed.connect(self._update_artwork)
+            self._services.session.display.stage_changed.connect(self._update_artwork)
         self._update_artwork()
         bring_to_front(self.artwork)
 
+    def export_artwork(self) -> None:
+        """Write the printed sheet into a folder; without artwork, offer to choose a picture."""
+        if self._services.session.document.artwork is None:
+            self.show_artwork()
+        else:
+            self._files.export_artwork()
+
     def _update_artwork(self) -> None:
         if self.artwork is not None:
-            self.artwork.show_artwork(self._controller.document.artwork, self._controller.stage is not None)
-
-    def _colour(self, dialog: QWidget) -> None:
-        """Give the parts of a new dialog the colours of the theme."""
-        for part in theme.themed((dialog, *dialog.findChildren(QWidget))):
-            part.set_palette(self._window.palette_)
+            self.artwork.show_artwork(self._services.session.document.artwork, self._services.session.stage is not None)
 
     def _pick_silhouette(self, take: Callable[[str], None], below: QWidget) -> None:
         from kirigami_studio.gui.target.silhouette_picker import SilhouettePicker
 
-        self.picker = SilhouettePicker(self._window, self._window.palette_)
+        self.picker = SilhouettePicker(self._window, self._appearance.palette)
         self.picker.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.picker.chosen.connect(take)
         self.picker.show_below(below)
@@ -213,10 +235,10 @@ class Dialogs(QObject):
         """Open the name and the note of a design beside a place on the screen."""
         from kirigami_studio.gui.gallery.label_editor import LabelEditor
 
-        label = self._controller.labels.of(candidate)
+        label = self._services.labels.of(candidate)
         if label is None:
             return
-        self.label = LabelEditor(self._window, label, partial(self._controller.labels.set, label))
+        self.label = LabelEditor(self._window, label, partial(self._services.labels.set, label))
         self.label.destroyed.connect(self._forget_label)
         self.label.show_beside(beside)
 
@@ -236,7 +258,7 @@ class Dialogs(QObject):
         from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
 
         if self.shortcuts is None:
-            self.shortcuts = ShortcutSheet(self._window, self._window.commands.records)
+            self.shortcuts = ShortcutSheet(self._window, self._commands())
         bring_to_front(self.shortcuts)
         self.shortcuts.search.setFocus()
 

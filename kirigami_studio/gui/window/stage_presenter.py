@@ -117,4 +117,4 @@ def _facts(entry: Entry) -> list[str]:
         facts.insert(1, tr("symmetric"))
     if trim is not None:
         facts.append(tr("trimmed match {match:.1f} %", match=100 * trim.iou))
-    return [*facts, tr("feasible") if score.feasible else tr("not feasible")]
+    return facts if score.feasible else [*facts, tr("overlaps itself")]

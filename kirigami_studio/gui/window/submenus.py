@@ -17,8 +17,8 @@ from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import TargetView
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.language import NAMES, SYSTEM
+from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.stage_panel import StagePanel
-from kirigami_studio.gui.window.view_commands import Appearance
 from kirigami_studio.project.recent import Recent
 
 #: Commands by id, "" for a gap.  Those that cannot be given now are grey.

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.files.file_dialogs import FileDialogs
+from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.session.messages import Message, Tone
-from kirigami_studio.gui.window.controller import Controller
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.studio.projects import ChangedOnDisk
-
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,45 +58,47 @@ RECOVERED = Replacement(
 class UnsavedWork(QObject):
     """Saves the project of one window, and asks in its message bar before it is replaced or the window closes."""
 
-    def __init__(self, window: MainWindow, controller: Controller) -> None:
+    def __init__(
+        self, window: QWidget, session: Session, project: OpenProject, hand: HandEditor, ask: FileDialogs
+    ) -> None:
         super().__init__(window)
-        self._window = window
-        self._controller = controller
+        self._window, self._session, self._project, self._hand = window, session, project, hand
+        self._file_dialogs = ask
         self._discarded = False  # the user closes without saving
         self._quit_when_saved = False
         self._questions: list[Message] = []
-        controller.session.document_changed.connect(self._drop_questions)
-        controller.saved.connect(self._close_when_saved)
-        controller.filing.projects.save_failed.connect(self._stay)
-        controller.filing.projects.changed_on_disk.connect(self._ask_about_file)
+        session.document_changed.connect(self._drop_questions)
+        project.saved.connect(self._close_when_saved)
+        project.files.save_failed.connect(self._stay)
+        project.files.changed_on_disk.connect(self._ask_about_file)
 
     def save(self) -> bool:
         """Save where the project is; ask when it has no place yet.  False if the user cancelled."""
-        if self._controller.path is None:
+        if self._session.path is None:
             return self.save_as()
-        self._controller.save(self._controller.path)
+        self._project.save(self._session.path)
         return True
 
     def save_as(self) -> bool:
         """Save in a place of the user's choice; False if the user cancelled."""
-        path = self._window.file_dialogs.save(f"{self.name}.kiri")
+        path = self._file_dialogs.save(f"{self.name}.kiri")
         if path is not None:
-            self._controller.save(path)
+            self._project.save(path)
         return path is not None
 
     @property
     def name(self) -> str:
         """What files of the project are called."""
-        if self._controller.path is not None:
-            return self._controller.path.stem
-        target = self._controller.document.target
+        if self._session.path is not None:
+            return self._session.path.stem
+        target = self._session.document.target
         return target.name if target is not None else "untitled"
 
     def guard(self, replacement: Replacement, then: Callable[[], None]) -> None:
         """Do something that replaces the project; with unsaved changes ask first."""
-        if self._controller.hand.postpones(lambda: self.guard(replacement, then)):
+        if self._hand.postpones(lambda: self.guard(replacement, then)):
             return
-        if not self._controller.history.unsaved:
+        if not self._session.history.unsaved:
             then()
             return
         actions = ((tr("Save first"), self._save_first), (tr(replacement.proceed), then))
@@ -104,9 +106,9 @@ class UnsavedWork(QObject):
 
     def may_close(self) -> bool:
         """Whether the window may close now; asks when work would be lost."""
-        if self._controller.hand.postpones(self._window.close):
+        if self._hand.postpones(self._window.close):
             return False
-        if self._discarded or not self._controller.history.unsaved:
+        if self._discarded or not self._session.history.unsaved:
             return True
         sentence = tr("This project has unsaved changes. Save before you quit?")
         actions = ((tr("Save and quit"), self._save_and_quit), (tr("Quit without saving"), self._quit))
@@ -115,23 +117,23 @@ class UnsavedWork(QObject):
 
     def _ask(self, question: Message) -> None:
         self._questions.append(question)
-        self._window.messages.add(question)
+        self._session.post(question)
 
     def _drop_questions(self) -> None:
         """Close the questions that are still open once there are no unsaved changes."""
-        if not self._controller.history.unsaved:
+        if not self._session.history.unsaved:
             for question in self._questions:
-                self._window.messages.drop(question)
+                self._session.withdraw(question)
             self._questions.clear()
 
     def _ask_about_file(self, changed: ChangedOnDisk) -> None:
         """Somebody else wrote the project's file after it was read or written here: ask what is to become of it."""
-        session, projects = self._controller.session, self._controller.filing.projects
+        session, files = self._session, self._project.files
         project = session.project
 
         def overwrite() -> None:
             if session.project == project:
-                projects.overwrite(changed)
+                files.overwrite(changed)
 
         sentence = tr(
             "{name} was changed on disk after you opened or saved it here, perhaps in another window. Overwrite it, "
@@ -146,9 +148,9 @@ class UnsavedWork(QObject):
         self._ask(Message(sentence, Tone.WARNING, actions=actions))
 
     def _save_copy(self) -> None:
-        path = self._window.file_dialogs.save(tr("{name} copy.kiri", name=self.name))
+        path = self._file_dialogs.save(tr("{name} copy.kiri", name=self.name))
         if path is not None:
-            self._controller.save(path)
+            self._project.save(path)
 
     def _save_first(self) -> None:
         self.save()

@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
-from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
-from kirigami_studio.foundation.words import language as spoken_language
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
-from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.session.overlays import Overlay
-from kirigami_studio.gui.session.user_preferences import UserPreferences
-from kirigami_studio.gui.widgets import theme
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP
-from kirigami_studio.project.preferences import Theme
+from kirigami_studio.gui.window.appearance import Appearance
+from kirigami_studio.gui.window.columns import Columns
+from kirigami_studio.gui.window.presenters import Presenters
+from kirigami_studio.gui.window.stage_panel import StagePanel
 
-if TYPE_CHECKING:
-    from kirigami_studio.gui.window.main_window import MainWindow
-
-#: The preferred theme that follows the desktop.
 #: Commands that switch what is drawn over the layout.
 OVERLAY_COMMANDS = {
     "show_target": Overlay.TARGET,
@@ -39,83 +34,33 @@ OVERLAY_COMMANDS = {
 }
 
 
-class Appearance(QObject):
-    """Theme and language of the window: the desktop's unless the preferences name others."""
-
-    def __init__(self, window: MainWindow, preferences: UserPreferences) -> None:
-        super().__init__(window)
-        self._window = window
-        self._preferences = preferences
-        self._offer: Message | None = None
-
-    @property
-    def follows_system(self) -> bool:
-        """Whether the window has the desktop's theme."""
-        return self._preferences.present.theme is Theme.SYSTEM
-
-    @property
-    def language(self) -> str:
-        """The preferred language, "system" or a code."""
-        return self._preferences.present.language
-
-    def choose_language(self, language: str) -> None:
-        """Prefer another language; it is that of the next window."""
-        self._preferences.choose_language(language)
-        self.offer_start()
-
-    def offer_start(self) -> None:
-        """Offer to open the window again in the preferred language, unless it speaks that already."""
-        if self._offer is not None:
-            self._window.messages.drop(self._offer)
-            self._offer = None
-        if self.language != spoken_language():
-            sentence = tr("The language changes when Kirigami Studio is started again. Your project stays open.")
-            self._offer = Message(sentence, actions=((tr("Start again now"), self._window.start_again),))
-            self._window.messages.add(self._offer)
-
-    def listen(self) -> None:
-        """Change the theme whenever the desktop changes its own, if that is wanted."""
-        QGuiApplication.styleHints().colorSchemeChanged.connect(self.refresh)
-
-    def refresh(self) -> None:
-        """Show the theme that the preferences ask for."""
-        palette = theme.PALETTES.get(self._preferences.present.theme) or theme.system_palette()
-        if palette is not self._window.palette_:
-            self._window.set_theme(palette)
-        self._window.commands.refresh()
-
-    def switch(self) -> None:
-        """Change between light and dark; the choice stays until the desktop is to be followed again."""
-        self._preferences.choose_theme(Theme.LIGHT if self._window.palette_.dark else Theme.DARK)
-        self.refresh()
-
-    def follow_system(self) -> None:
-        """Follow the desktop's theme, or stop at the present one."""
-        self._preferences.choose_theme(Theme(self._window.palette_.name) if self.follows_system else Theme.SYSTEM)
-        self.refresh()
-
-
-def commands(window: MainWindow) -> tuple[Command, ...]:
+def commands(
+    columns: Columns,
+    session: Session,
+    presenters: Presenters,
+    appearance: Appearance,
+) -> tuple[Command, ...]:
     """Return the commands of the View menu."""
+    stage = columns.stage
     return (
-        *_deployment(window),
-        *_overlays(window),
-        *_faults(window),
-        *_pages(window),
-        *_zooms(window),
-        *_themes(window),
+        *_deployment(stage, session),
+        *_overlays(stage),
+        *_faults(stage),
+        *_pages(columns, presenters),
+        *_zooms(columns.target, stage),
+        *_themes(appearance, presenters.welcome.switch_motion),
     )
 
 
-def _deployment(window: MainWindow) -> tuple[Command, ...]:
-    bar, menu = window.stage.deployment, tr("&View")
+def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
+    bar, menu = stage.deployment, tr("&View")
     return (
         Command(
             "play",
             menu,
             tr("&Play / pause"),
             tr("Play the deployment"),
-            partial(_play, window),
+            partial(_play, stage),
             shortcuts=("Space",),
             icon="play",
         ),
@@ -156,8 +101,17 @@ def _deployment(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("&Target angle"),
             tr("Show the target angle"),
-            partial(_go_to_target, window),
+            partial(_go_to_target, stage, session),
             shortcuts=("Ctrl+Right",),
+        ),
+        Command(
+            "as_cut",
+            menu,
+            tr("As &cut"),
+            tr("Show the panels with their bows and connectors, as they are cut"),
+            bar.as_cut.trigger,
+            shortcuts=("Shift+C",),
+            switch=bar.as_cut,
         ),
         Command(
             "ideal",
@@ -172,9 +126,7 @@ def _deployment(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _overlays(window: MainWindow) -> tuple[Command, ...]:
-    stage = window.stage
-
+def _overlays(stage: StagePanel) -> tuple[Command, ...]:
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
         switch = stage.overlays[OVERLAY_COMMANDS[name]]
         return Command(name, tr("&View"), text, tip, switch.trigger, (key,), icon, gap, switch=switch)
@@ -199,14 +151,14 @@ def _overlays(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _faults(window: MainWindow) -> tuple[Command, ...]:
+def _faults(stage: StagePanel) -> tuple[Command, ...]:
     return (
         Command(
             "next_fault",
             tr("&View"),
             tr("Ne&xt fault"),
             tr("Zoom to the next fault"),
-            partial(window.stage.tour.step, 1),
+            partial(stage.tour.step, 1),
             shortcuts=("F3",),
         ),
         Command(
@@ -214,14 +166,14 @@ def _faults(window: MainWindow) -> tuple[Command, ...]:
             tr("&View"),
             tr("Previo&us fault"),
             tr("Zoom to the previous fault"),
-            partial(window.stage.tour.step, -1),
+            partial(stage.tour.step, -1),
             shortcuts=("Shift+F3",),
         ),
     )
 
 
-def _pages(window: MainWindow) -> tuple[Command, ...]:
-    stage, comparison, menu = window.stage, window.connections.comparison, tr("&View")
+def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
+    stage, compare, menu = columns.stage, columns.gallery.bar.compare.switch, tr("&View")
     return (
         Command(
             "before",
@@ -259,17 +211,17 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("Si&de by side"),
             tr("Compare designs side by side"),
-            window.gallery.bar.compare.switch.trigger,
+            compare.trigger,
             shortcuts=("K",),
             icon="compare",
-            switch=window.gallery.bar.compare.switch,
+            switch=compare,
         ),
         Command(
             "all_designs",
             menu,
             tr("All designs"),
             tr("Show all designs flat, half open and open in one window"),
-            window.connections.all_designs.toggle,
+            presenters.all_designs.toggle,
             shortcuts=("A",),
             icon="table",
         ),
@@ -278,7 +230,7 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
             menu,
             tr("S&wap compared designs"),
             tr("Make the compared design the chosen one"),
-            comparison.swap,
+            presenters.comparison.swap,
             shortcuts=("Shift+K",),
             icon="swap",
             enabled_when=lambda now: now.comparing,
@@ -286,9 +238,9 @@ def _pages(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _zooms(window: MainWindow) -> tuple[Command, ...]:
+def _zooms(board: TargetPanel, stage: StagePanel) -> tuple[Command, ...]:
     """What is in sight is zoomed: the drawing board while it is open, else the stage."""
-    board, stage, menu = window.target, window.stage, tr("&View")
+    menu = tr("&View")
 
     def zoom(factor: float) -> None:
         board.view.zoom(factor) if board.editing else stage.zoom(factor)
@@ -327,14 +279,14 @@ def _zooms(window: MainWindow) -> tuple[Command, ...]:
     )
 
 
-def _themes(window: MainWindow) -> tuple[Command, ...]:
+def _themes(appearance: Appearance, switch_motion: Callable[[], None]) -> tuple[Command, ...]:
     return (
         Command(
             "theme",
             tr("&View"),
             tr("Dark t&heme"),
             tr("Switch between light and dark"),
-            window.appearance.switch,
+            appearance.switch,
             shortcuts=("Ctrl+Alt+D",),
             icon="moon",
             gap=True,
@@ -345,7 +297,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
             tr("&View"),
             tr("Follow the s&ystem"),
             tr("Match the system theme"),
-            window.appearance.follow_system,
+            appearance.follow_system,
             checked_when=lambda now: now.follows_system,
         ),
         Command(
@@ -353,7 +305,7 @@ def _themes(window: MainWindow) -> tuple[Command, ...]:
             tr("&View"),
             tr("Reduce motion"),
             tr("Nothing moves by itself, such as the sample on the empty stage"),
-            window.connections.welcome.switch_motion,
+            switch_motion,
             checked_when=lambda now: now.still,
         ),
     )
@@ -364,21 +316,21 @@ def _theme_wording(now: WindowState) -> Wording:
     return Wording(tr("Light t&heme"), tip, "sun") if now.dark else Wording(tr("Dark t&heme"), tip, "moon")
 
 
-def _play(window: MainWindow) -> None:
+def _play(stage: StagePanel) -> None:
     """Space plays, unless the keyboard's focus is on a button or a list of choices, which use the key themselves.
 
     The mouse gives none of them the focus, so after a click Space plays.
     """
-    focused = window.focusWidget()
+    focused = stage.window().focusWidget()
     if isinstance(focused, QAbstractButton):
         focused.click()
     elif isinstance(focused, QComboBox):
         focused.showPopup()
-    elif window.stage.player.play.isEnabled():
-        window.stage.player.play.toggle()
+    elif stage.player.play.isEnabled():
+        stage.player.play.toggle()
 
 
-def _go_to_target(window: MainWindow) -> None:
-    entry = window.controller.stage
+def _go_to_target(stage: StagePanel, session: Session) -> None:
+    entry = session.stage
     if entry is not None:
-        window.stage.deployment.set_phi(entry.design.phi_target)
+        stage.deployment.set_phi(entry.design.phi_target)

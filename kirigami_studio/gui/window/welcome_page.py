@@ -9,15 +9,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from PySide6.QtCore import QElapsedTimer, QEvent, QLocale, QObject, Qt, QTimer, Signal
+from PySide6.QtCore import QElapsedTimer, QEvent, QLocale, QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QHideEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
-    QFrame,
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QMenu,
     QPushButton,
     QSizePolicy,
     QStyle,
@@ -27,8 +25,10 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.paper import Paper
-from kirigami_studio.fabricate.material import BY_HAND, Material, library
+from kirigami_studio.fabricate.machine import MachineKind, find_machine
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.make.machine_question import CuttingQuestion
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.session.session import Session
@@ -38,7 +38,7 @@ from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.gui.widgets.card import ToolButton, muted_label
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.project.preferences import Motion, TypedSize
+from kirigami_studio.project.preferences import MotionPreference, TypedSize
 from kirigami_studio.studio.projects import Pair, reading_sample
 
 #: Seconds from flat to open and back: slower than a design is played, so that it draws no eye from the work.
@@ -48,13 +48,6 @@ FRAME_MS = 33
 #: Anything that the user does to the window; the sample stands still from then on.
 ACTS = frozenset(
     {QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.Wheel, QEvent.Type.Drop, QEvent.Type.TouchBegin}
-)
-#: Machines in the words of the question, by those of the materials, in the order in which they are offered.
-MACHINES = (
-    (BY_HAND, mark("Paper and scissors"), mark("Print a PDF on paper or thin card and cut along its lines.")),
-    ("cutting plotter", mark("Cutting plotter"), mark("A blade, as in Cricut and Silhouette machines.")),
-    ("CO2 laser", mark("CO2 laser"), mark("Card, plastics, felt, leather.")),
-    ("UV or green pulsed laser", mark("UV laser"), mark("Thin films and foils.")),
 )
 #: Longer side (mm) of opened shapes that are cut by hand: their sheets fit on one page of A4 or Letter.
 BY_HAND_MM = 150.0
@@ -94,9 +87,6 @@ LEAST_VIEW = 140
 class WelcomePage(QWidget):
     """Shows a sheet that moves until the user does anything, and what can be done next."""
 
-    chosen = Signal(str)  #: key of a material
-    declined = Signal()
-
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._phase = 0.0
@@ -124,9 +114,7 @@ class WelcomePage(QWidget):
         self.guide = QPushButton(tr("Guide"))
         self.guide.setObjectName("link")
         self.guide.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.question = MachineQuestion()
-        self.question.chosen.connect(self.chosen)
-        self.question.declined.connect(self.declined)
+        self.question = CuttingQuestion()
         self.question.hide()
         self.offers: dict[str, ToolButton] = {}
         self._grid = QGridLayout()
@@ -246,84 +234,14 @@ class WelcomePage(QWidget):
         self.view.set_phi(phi_at(self._phase, last=self._target))
 
 
-class MachineQuestion(QFrame):
-    """The question for machine and material, answered by one click or two."""
-
-    chosen = Signal(str)  #: key of a material
-    declined = Signal()
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName("machineQuestion")
-        self.title = QLabel(tr("What will you cut with?"))
-        self.title.setObjectName("cardTitle")
-        self.why = QLabel(tr("It decides how fine designs may be. You can change it at any time."))
-        self.why.setObjectName("muted")
-        self.why.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.later = QPushButton(tr("Not now"))
-        self.later.setObjectName("link")
-        self.later.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.later.setToolTip(tr("Start with thin film and a UV laser; the material can be changed at any time."))
-        self.later.clicked.connect(self.declined)
-        self.buttons: dict[str, QPushButton] = {}
-        head = QHBoxLayout()
-        head.addWidget(self.title, 1)
-        head.addWidget(self.later)
-        self._grid = QGridLayout()
-        self._grid.setSpacing(8)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 6, 8, 10)
-        column.setSpacing(6)
-        column.addLayout(head)
-        column.addWidget(self.why)
-        column.addLayout(self._grid)
-
-    def offer(self, materials: Mapping[str, Material]) -> None:
-        """Offer the machines that these materials are for, by their keys."""
-        for machine, name, about in MACHINES:
-            found = {key: material for key, material in materials.items() if material.machine == machine}
-            if found and machine not in self.buttons:
-                self._add(machine, name, about, found)
-
-    def _add(self, machine: str, name: str, about: str, materials: Mapping[str, Material]) -> None:
-        button = QPushButton(tr(name))
-        button.setObjectName("machineChoice")
-        button.setToolTip(tr(about))
-        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        if len(materials) == 1:
-            (key,) = materials
-            button.clicked.connect(lambda: self.chosen.emit(key))
-        else:
-            menu = QMenu(button)
-            for key, material in materials.items():
-                menu.addAction(tr(material.name)).triggered.connect(lambda _=False, key=key: self.chosen.emit(key))
-            button.setMenu(menu)
-        button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.buttons[machine] = button
-        self._arrange()
-
-    def _arrange(self) -> None:
-        """In one row where all names fit, else in two; the reason gives way in a narrow stage."""
-        buttons = list(self.buttons.values())
-        widest = max((button.sizeHint().width() for button in buttons), default=0)
-        columns = 4 if len(buttons) * (widest + 8) <= self.width() else 2
-        for place, button in enumerate(buttons):
-            self._grid.addWidget(button, *divmod(place, columns))
-        self.why.setVisible(columns > 2)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        super().resizeEvent(event)
-        self._arrange()
-
-
 class WelcomePresenter(QObject):
     """Begins once the window is shown."""
 
     def __init__(self, page: WelcomePage, session: Session, preferences: UserPreferences) -> None:
         super().__init__(page)
         self._page, self._session, self._preferences = page, session, preferences
-        page.chosen.connect(self.choose)
-        page.declined.connect(self.decline)
+        page.question.answered.connect(self.choose)
+        page.question.declined.connect(self.decline)
 
     def begin(self) -> None:
         """Read the sample and ask the question, if it was not asked before."""
@@ -331,7 +249,7 @@ class WelcomePresenter(QObject):
         self._session.queue.start(tr("reading the sample"), reading_sample, callbacks)
         if not self._preferences.present.machine_asked:
             question = self._page.question
-            question.offer(library().materials)
+            question.offer()
             question.show()
 
     def _on_sample(self, sample: Pair) -> None:
@@ -339,16 +257,20 @@ class WelcomePresenter(QObject):
         if moves(self._preferences.present.motion, self._page.style()):
             self._page.start()
 
-    def choose(self, material: str) -> None:
-        """Cut with this material from now on, in this project and in new ones."""
+    def choose(self, machine: str, material: str) -> None:
+        """Cut this material on this machine from now on, in this project and in new ones."""
         preferences, session = self._preferences, self._session
-        known = library().materials.get(material)
-        wanted = replace(preferences.present, material=material, machine_asked=True)
-        if known is not None and known.by_hand:
+        chosen, known = find_machine(machine), find_material(material)
+        wanted = replace(
+            preferences.present, machine=machine, material=material, profile=chosen.profile, machine_asked=True
+        )
+        if chosen.kind is MachineKind.HAND:
             letter = QLocale.system().territory() in LETTER_LANDS
             wanted = replace(
                 wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
             )
+        else:
+            wanted = replace(wanted, size=TypedSize.OPENED, opened_mm=known.sheet_mm)
         preferences.keep(wanted)
         cut = wanted.new_document().fabrication
         changed = replace(session.document, fabrication=cut)
@@ -357,8 +279,8 @@ class WelcomePresenter(QObject):
         else:  # nothing was done yet: this is how it starts
             session.restart(changed, session.path)
         self._page.question.hide()
-        name = material if known is None else tr(known.name)
-        session.set_status(tr("Cutting {material}. Press Generate (Ctrl+G).", material=name))
+        begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
+        session.set_status(begin if known.limits_note is None else known.limits_note.text)
 
     def decline(self) -> None:
         """Do not ask again."""
@@ -369,8 +291,10 @@ class WelcomePresenter(QObject):
     def switch_motion(self) -> None:
         """Let what moves by itself stand still, or move again."""
         preferences, page = self._preferences, self._page
-        still = preferences.present.motion is Motion.STILL
-        preferences.keep(replace(preferences.present, motion=Motion.SYSTEM if still else Motion.STILL))
+        still = preferences.present.motion is MotionPreference.STILL
+        preferences.keep(
+            replace(preferences.present, motion=MotionPreference.SYSTEM if still else MotionPreference.STILL)
+        )
         if moves(preferences.present.motion, self._page.style()):
             page.start()
         else:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -19,7 +19,7 @@ from kirigami_studio.export.profile import DEFAULT_PROFILE, find_profile
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
-from kirigami_studio.fabricate.options import CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, CutOrder
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.timing import travel_lengths
@@ -87,7 +87,7 @@ def _best_seconds(work: Callable[[], object]) -> float:
 def _order_figures(grid: tuple[int, int], spread: float, seed: int) -> dict[str, object]:
     """Travel and time of every order on one design, and how short the travel between its slits can be at best."""
     design = random_design(grid, spread, seed)
-    plans = {order: plan_cuts(design, WIDTH_MM, options=CutOptions(order=order)) for order in CutOrder}
+    plans = {order: plan_cuts(design, WIDTH_MM, options=replace(STRAIGHT, order=order)) for order in CutOrder}
     rows = plans[CutOrder.ROWS]
     table = cut_table(*grid)
     slits = rows.on_layer(Layer.SLITS)

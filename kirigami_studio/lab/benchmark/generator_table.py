@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache, partial
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import torch
@@ -34,9 +35,8 @@ from kirigami_studio.generator.weights import Model, load_model, load_weights
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import load_generator
 from kirigami_studio.lab.benchmark import paper_tables
-from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
-from kirigami_studio.lab.benchmark.paper_tables import PaperRow
-from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
+from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures, success_share
+from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -170,25 +170,14 @@ class StepsRow:
     success: float
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A generator's figures on one family; shares from 0 to 1.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeneratorRow(MethodRow):
+    """A generator's figures on one family.
 
     Attributes
     ----------
-    runs, steps : int
-        Samples, and network evaluations of each.
-    siou, siou_sd : float
-        Mean and standard deviation over samples.
-    siou_sd_of_seeds : float
-        Standard deviation of the seeds' means.
-    siou_interval, iou_exact_interval : (float, float)
-        Bootstrap 95 % interval over targets.
-    iou_exact : float
-        On the polygons.
-    success : float
-        Share of samples with sIoU >= 0.85 and a feasible design.
-    tv : float
+    steps : int
+        Network evaluations of a sample.
     milliseconds : float
         Mean processor time of a sample.
     distance : float
@@ -197,24 +186,17 @@ class Row:
         The Inception-style score.
     by_steps : dict of int to StepsRow
         Empty unless other numbers of steps were measured.
-    paper : PaperRow or None
     """
 
-    runs: int
+    HEADING: ClassVar[str] = (
+        f"  {'':15}{'sIoU %':>21}{'exact %':>8}{'success %':>17}{'ms a sample':>18}{'TV':>7}{'distance':>10}"
+        f"{'IS (ours)':>11}"
+    )
     steps: int
-    siou: float
-    siou_sd: float
-    siou_sd_of_seeds: float
-    siou_interval: tuple[float, float]
-    iou_exact: float
-    iou_exact_interval: tuple[float, float]
-    success: float
-    tv: float
     milliseconds: float
     distance: float
     inception: float
     by_steps: dict[int, StepsRow]
-    paper: PaperRow | None
 
     def sentences(self, name: str) -> Iterator[str]:
         """The row for people: percentages, the paper's number in brackets."""
@@ -232,33 +214,13 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class FamilyTable:
-    """The rows of one family of targets, and how well the uniform sheet matches them."""
-
-    targets: int
-    uniform_siou: float
-    uniform_iou: float
-    rows: dict[str, Row]
-
-    def sentences(self) -> Iterator[str]:
-        """The table for people."""
-        yield (
-            f"  {'':15}{'sIoU %':>21}{'exact %':>8}{'success %':>17}{'ms a sample':>18}{'TV':>7}{'distance':>10}"
-            f"{'IS (ours)':>11}"
-        )
-        yield f"  {'uniform sheet':15}{100 * self.uniform_siou:7.1f}{'':15}{100 * self.uniform_iou:8.1f}"
-        for name, row in self.rows.items():
-            yield from row.sentences(name)
-
-
-@dataclass(frozen=True, slots=True)
 class GeneratorFigures:
     """The tables by family, and what their runs share; ``weights`` are SHA-256 by generator."""
 
     settings: dict[str, object]
     seeds: tuple[int, ...]
     weights: dict[str, str]
-    families: dict[str, FamilyTable]
+    families: dict[str, FamilyTable[GeneratorRow]]
 
     def sentences(self) -> Iterator[str]:
         """The tables for people."""
@@ -417,36 +379,23 @@ def _runs(
                         yield SampleRun(source, one.digest, steps, family, seeds[0], number, 1, outlines[number])
 
 
-def _table(runs: Sequence[SampleRun], sources: Sequence[str], store: RunStore) -> FamilyTable:
-    records = [store.records[run.key] for run in runs]
+def _table(runs: Sequence[SampleRun], sources: Sequence[str], store: RunStore) -> FamilyTable[GeneratorRow]:
     rows = {generator_named(one).name: _row([run for run in runs if run.source == one], store) for one in sources}
-    return FamilyTable(
-        len({run.number for run in runs}), mean_of(records, "uniform_siou"), mean_of(records, "uniform_iou"), rows
-    )
+    return FamilyTable.of([store.records[run.key] for run in runs], len({run.number for run in runs}), rows)
 
 
-def _row(runs: Sequence[SampleRun], store: RunStore) -> Row:
+def _row(runs: Sequence[SampleRun], store: RunStore) -> GeneratorRow:
     generator = generator_named(runs[0].source)
     usual = [run for run in runs if run.steps == generator.steps]
     records = [store.records[run.key] for run in usual]
     varied = [record for run, record in zip(usual, records, strict=True) if run.k > 1]
-    siou, exact = values_of(records, "siou"), values_of(records, "iou_exact")
-    numbers, seeds = [run.number for run in usual], [run.seed for run in usual]
-    return Row(
-        runs=len(records),
+    return GeneratorRow(
+        **method_figures(records, [run.number for run in usual], [run.seed for run in usual]),
         steps=generator.steps,
-        siou=float(siou.mean()),
-        siou_sd=float(siou.std()),
-        siou_sd_of_seeds=float(np.std(group_means(siou, seeds))),
-        siou_interval=bootstrap_interval(group_means(siou, numbers)),
-        iou_exact=float(exact.mean()),
-        iou_exact_interval=bootstrap_interval(group_means(exact, numbers)),
-        success=success_share(records),
-        tv=mean_of(records, "tv"),
         milliseconds=mean_of(records, "milliseconds"),
         distance=mean_of(varied, "distance"),
         inception=mean_of(varied, "inception"),
-        by_steps=_by_steps([run for run in runs if run.seed == seeds[0]], store),
+        by_steps=_by_steps([run for run in runs if run.seed == usual[0].seed], store),
         paper=paper_tables.GENERATORS.get(generator.name),
     )
 
@@ -459,8 +408,3 @@ def _by_steps(runs: Sequence[SampleRun], store: RunStore) -> dict[int, StepsRow]
     if len(found) == 1:
         return {}
     return {steps: StepsRow(mean_of(records, "siou"), success_share(records)) for steps, records in found.items()}
-
-
-def success_share(records: Sequence[Record]) -> float:
-    """Share of samples with sIoU >= 0.85 and a feasible design (paper, Sec. 3.1)."""
-    return float(np.mean([float(str(one["siou"])) >= SUCCESS_SIOU and bool(one["feasible"]) for one in records]))

@@ -22,8 +22,8 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lab.baselines.marched_sheet import marched_corners
 from kirigami_studio.lab.baselines.solvers import SOLVERS
 from kirigami_studio.lab.benchmark import paper_tables
-from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU
-from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key, values_of
+from kirigami_studio.lab.benchmark.match_table import success_share
+from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key
 from kirigami_studio.lab.benchmark.solver_suite import METHODS, SolverRun, SolverSettings, check_methods, solved
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -215,13 +215,12 @@ def _size(size: int, runs: Sequence[SweepRun], methods: Sequence[str], store: Ru
     for method in methods:
         records = [store.records[run.key] for run in runs if run.method == method]
         if records:
-            feasible = np.array([bool(record["feasible"]) for record in records])
             points.append(
                 SweepPoint(
                     method,
                     mean_of(records, "siou"),
                     mean_of(records, "iou_exact"),
-                    float(((values_of(records, "siou") >= SUCCESS_SIOU) & feasible).mean()),
+                    success_share(records),
                     mean_of(records, "evaluations"),
                     mean_of(records, "seconds"),
                 )

@@ -2,7 +2,7 @@
 
 It judges weights that ``train grpo --keep-at`` wrote, by one sample a target and seed as Table 2 does, in eight steps.
 Beside the paper's figures stands what its rule is silent about: the paired difference to the start and to a run without
-any reward, and whether the designs can be made (:mod:`kirigami_studio.studio.fabricability`).
+any reward, and whether the designs can be made (:mod:`kirigami_studio.lab.fabricability`).
 
 A *good first design* can be cut, comes within 10 degrees of being closed, has a CV of panel areas of at most 0.6, and
 lacks no more than 0.005 of the exact IoU that the start's sample from the same noise has.
@@ -29,13 +29,12 @@ from kirigami_studio.lab.benchmark.generator_table import (
     generator_named,
     mean_distance,
     score_record,
-    success_share,
 )
-from kirigami_studio.lab.benchmark.paper_tables import PaperRow
+from kirigami_studio.lab.benchmark.match_table import MatchRow, match_figures
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
+from kirigami_studio.lab.fabricability import TRIAL, Fabricability, fabricability
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.studio.fabricability import TRIAL, Fabricability, fabricability
 
 #: Exact IoU that a good first design may lack beside the start's sample.
 MAY_LACK = 0.005
@@ -145,28 +144,16 @@ class Beside:
     good: Difference
 
 
-@dataclass(frozen=True, slots=True)
-class SnapshotRow:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SnapshotRow(MatchRow):
     """Figures of one snapshot on one family; shares from 0 to 1.
 
     Attributes
     ----------
     calls : int
         Environment calls before.
-    runs : int
-        Samples.
-    siou, siou_sd : float
-        Mean and standard deviation over samples.
-    siou_sd_of_seeds : float
-        Standard deviation of the sampling seeds' means.
-    siou_interval : (float, float)
-        Bootstrap 95 % interval over targets.
-    iou_exact : float
-        On the polygons.
-    success : float
-        Share of samples with sIoU >= 0.85 and a feasible design.
-    tv, tv_log10 : float
-        The paper's sum divided by m n, and mean ``|d log10 x|`` of neighbours.
+    tv_log10 : float
+        Mean ``|d log10 x|`` of neighbours.
     distance : float
         Root mean square difference of z of two samples for one target.
     area_cv : float
@@ -175,18 +162,9 @@ class SnapshotRow:
         Shares of samples that can be cut, that close, that are even, and that are good first designs.
     over_start, over_control : Beside or None
         None for the start itself, and where no run without a reward has the same settings and as many calls.
-    paper : PaperRow or None
     """
 
     calls: int
-    runs: int
-    siou: float
-    siou_sd: float
-    siou_sd_of_seeds: float
-    siou_interval: tuple[float, float]
-    iou_exact: float
-    success: float
-    tv: float
     tv_log10: float
     distance: float
     area_cv: float
@@ -196,7 +174,6 @@ class SnapshotRow:
     good: float
     over_start: Beside | None
     over_control: Beside | None
-    paper: PaperRow | None
 
     def sentence(self) -> str:
         """The row for people: percentages, the paper's numbers in brackets."""
@@ -210,7 +187,7 @@ class SnapshotRow:
 
 
 @dataclass(frozen=True, slots=True)
-class FamilyTable:
+class SnapshotTable:
     """Rows by start and run, on one family of targets."""
 
     targets: int
@@ -237,7 +214,7 @@ class GrpoFigures:
     settings: dict[str, object]
     seeds: tuple[int, ...]
     training: dict[str, dict[str, dict[str, object]]]
-    families: dict[str, FamilyTable]
+    families: dict[str, SnapshotTable]
 
     def sentences(self) -> Iterator[str]:
         """The tables for people."""
@@ -342,7 +319,7 @@ def _table(
     records: Mapping[str, Sequence[Record]],
     numbers: Sequence[int],
     seeds: Sequence[int],
-) -> FamilyTable:
+) -> SnapshotTable:
     """Rows of one family, from the records (target by target, seed by seed) of every snapshot by its digest."""
     first = next(iter(records.values()))
     starts: dict[str, dict[str, tuple[SnapshotRow, ...]]] = {}
@@ -354,9 +331,9 @@ def _table(
             own = _Sampled.of(records[one.digest], start.records, numbers)
             control = controls.get(one.name) if one.calls else None
             beside = None if control is None else _Sampled.of(records[control], start.records, numbers)
-            rows.append(_row(run.reward, one.calls, own, start, beside, seeds))
+            rows.append(_row(run.reward, one.calls, own, start, beside, numbers, seeds))
         starts.setdefault(run.start, {})[run.name] = tuple(rows)
-    return FamilyTable(targets, mean_of(first, "uniform_siou"), mean_of(first, "uniform_iou"), starts)
+    return SnapshotTable(targets, mean_of(first, "uniform_siou"), mean_of(first, "uniform_iou"), starts)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -402,10 +379,15 @@ def made_of(records: Sequence[Record]) -> list[Fabricability]:
 
 
 def _row(
-    reward: str, calls: int, own: _Sampled, start: _Sampled, control: _Sampled | None, seeds: Sequence[int]
+    reward: str,
+    calls: int,
+    own: _Sampled,
+    start: _Sampled,
+    control: _Sampled | None,
+    numbers: Sequence[int],
+    seeds: Sequence[int],
 ) -> SnapshotRow:
     records, made = own.records, made_of(own.records)
-    siou = values_of(records, "siou")
     paper = (
         paper_tables.PRIOR
         if calls == 0
@@ -414,15 +396,8 @@ def _row(
         else None
     )
     return SnapshotRow(
+        **match_figures(records, numbers, seeds),
         calls=calls,
-        runs=len(records),
-        siou=float(siou.mean()),
-        siou_sd=float(siou.std()),
-        siou_sd_of_seeds=float(np.std(group_means(siou, seeds))),
-        siou_interval=bootstrap_interval(own.siou),
-        iou_exact=mean_of(records, "iou_exact"),
-        success=success_share(records),
-        tv=mean_of(records, "tv"),
         tv_log10=mean_of(records, "tv_log10"),
         distance=mean_of(records, "distance"),
         area_cv=mean_of(records, "area_cv"),

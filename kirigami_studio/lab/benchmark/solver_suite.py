@@ -1,6 +1,6 @@
 """Table 1 of the paper: solvers against the program's own fit, sample, and sample with fit.
 
-A forward evaluation decodes one ratio field and scores it (``evaluate.paper_evaluator``).  Solvers maximise the paper's
+A forward evaluation decodes one ratio field and scores it (``lab.paper_evaluator``).  Solvers maximise the paper's
 reward, sIoU with penalties, on the same sIoU that is reported; of the 12 best feasible candidates the one with the best
 score counts.  A fit's evaluation is a decoding with or without its derivative, so a Jacobian counts as one, as an
 evaluation of a solver does.  A sample counts the decodings that the network is shown, and that of its score.
@@ -15,12 +15,12 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cache, partial
+from typing import ClassVar
 
 import numpy as np
 
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.mask_siou import mask_siou
-from kirigami_studio.evaluate.paper_evaluator import judge
 from kirigami_studio.evaluate.score import Score, evaluate, evaluate_many
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -32,9 +32,9 @@ from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.baselines.search import Box, Judge, Stopping, search
 from kirigami_studio.lab.baselines.solvers import SOLVERS
 from kirigami_studio.lab.benchmark import paper_tables
-from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
-from kirigami_studio.lab.benchmark.paper_tables import PaperRow
-from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, group_means, mean_of, target_key, values_of
+from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures
+from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key, values_of
+from kirigami_studio.lab.paper_evaluator import judge
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -100,79 +100,42 @@ class SolverRun:
         return self.method, self.family, self.seed, self.number, target_key(self.target), self.k
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A method's figures on one family; shares from 0 to 1.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolverRow(MethodRow):
+    """A method's figures on one family.
 
     Attributes
     ----------
-    runs : int
-    siou, siou_sd : float
-        Mean and standard deviation over runs.
-    siou_sd_of_seeds : float
-        Standard deviation of the seeds' means.
-    siou_interval, iou_exact_interval : (float, float)
-        Bootstrap 95 % interval over targets.
-    iou_exact : float
-        On the polygons.
     siou_masks : float
         From 128-pixel masks alone, see ``evaluate.mask_siou``.
-    success : float
-        Share of runs with sIoU >= 0.85 and a feasible design.
     no_candidate : int
         Runs without a feasible candidate; their scores are 0.
-    tv : float
     evaluations, most_evaluations : float, int
         Mean and largest number.
     seconds : float
         Mean processor time.
-    paper : PaperRow or None
     """
 
-    runs: int
-    siou: float
-    siou_sd: float
-    siou_sd_of_seeds: float
-    siou_interval: tuple[float, float]
-    iou_exact: float
-    iou_exact_interval: tuple[float, float]
+    HEADING: ClassVar[str] = (
+        f"  {'':13}{'sIoU %':>23}{'exact %':>8}{'masks %':>9}{'success %':>16}{'evaluations':>18}{'seconds':>9}"
+    )
     siou_masks: float
-    success: float
     no_candidate: int
-    tv: float
     evaluations: float
     most_evaluations: int
     seconds: float
-    paper: PaperRow | None
 
-    def sentence(self, method: str) -> str:
+    def sentences(self, name: str) -> Iterator[str]:
         """The row for people: percentages, the paper's number in brackets."""
         siou, success, evaluations = ("", "", "")
         if self.paper is not None:
             siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * (self.paper.success or 0.0):.1f})"
             evaluations = f"({self.paper.evaluations:.0f})"
-        return (
-            f"  {method:13}{100 * self.siou:9.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
+        yield (
+            f"  {name:13}{100 * self.siou:9.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
             f"{100 * self.siou_masks:9.1f}{100 * self.success:8.1f} {success:7}{self.evaluations:10.1f} "
             f"{evaluations:7}{self.seconds:9.2f}"
         )
-
-
-@dataclass(frozen=True, slots=True)
-class FamilyTable:
-    """The rows of one family of targets, and how well the uniform sheet matches them."""
-
-    targets: int
-    uniform_siou: float
-    uniform_iou: float
-    rows: dict[str, Row]
-
-    def sentences(self) -> Iterator[str]:
-        """The table for people."""
-        yield f"  {'':13}{'sIoU %':>23}{'exact %':>8}{'masks %':>9}{'success %':>16}{'evaluations':>18}{'seconds':>9}"
-        yield f"  {'uniform sheet':13}{100 * self.uniform_siou:9.1f}{'':15}{100 * self.uniform_iou:8.1f}"
-        for method, row in self.rows.items():
-            yield row.sentence(method)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +144,7 @@ class SolverFigures:
 
     settings: dict[str, object]
     seeds: tuple[int, ...]
-    families: dict[str, FamilyTable]
+    families: dict[str, FamilyTable[SolverRow]]
 
     def sentences(self) -> Iterator[str]:
         """The tables for people."""
@@ -345,33 +308,18 @@ def _runs(
                         yield SolverRun(method, family, seed, number, outlines[number])
 
 
-def _table(runs: Sequence[SolverRun], methods: Sequence[str], store: RunStore) -> FamilyTable:
-    records = [store.records[run.key] for run in runs]
-    return FamilyTable(
-        len({run.number for run in runs}),
-        mean_of(records, "uniform_siou"),
-        mean_of(records, "uniform_iou"),
-        {method: _row(method, [run for run in runs if run.method == method], store) for method in methods},
-    )
+def _table(runs: Sequence[SolverRun], methods: Sequence[str], store: RunStore) -> FamilyTable[SolverRow]:
+    rows = {method: _row(method, [run for run in runs if run.method == method], store) for method in methods}
+    return FamilyTable.of([store.records[run.key] for run in runs], len({run.number for run in runs}), rows)
 
 
-def _row(method: str, runs: Sequence[SolverRun], store: RunStore) -> Row:
+def _row(method: str, runs: Sequence[SolverRun], store: RunStore) -> SolverRow:
     records = [store.records[run.key] for run in runs]
-    siou, exact, counted = (values_of(records, name) for name in ("siou", "iou_exact", "evaluations"))
-    numbers, seeds = [run.number for run in runs], [run.seed for run in runs]
-    feasible = np.array([bool(record["feasible"]) for record in records])
-    return Row(
-        runs=len(records),
-        siou=float(siou.mean()),
-        siou_sd=float(siou.std()),
-        siou_sd_of_seeds=float(np.std(group_means(siou, seeds))),
-        siou_interval=bootstrap_interval(group_means(siou, numbers)),
-        iou_exact=float(exact.mean()),
-        iou_exact_interval=bootstrap_interval(group_means(exact, numbers)),
+    counted = values_of(records, "evaluations")
+    return SolverRow(
+        **method_figures(records, [run.number for run in runs], [run.seed for run in runs]),
         siou_masks=mean_of(records, "siou_masks"),
-        success=float(((siou >= SUCCESS_SIOU) & feasible).mean()),
         no_candidate=sum(record["candidates"] == 0 for record in records),
-        tv=mean_of(records, "tv"),
         evaluations=float(counted.mean()),
         most_evaluations=int(counted.max()),
         seconds=mean_of(records, "seconds"),

@@ -13,9 +13,9 @@ import shapely
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.feasibility import UNION_GRID, invalid_quads, path_contact
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lab.baselines.marching import void_angle
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
-from kirigami_studio.lattice.marching import void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, anchor_points, rim_table
 from kirigami_studio.outlines.outline import Outline
@@ -36,7 +36,7 @@ OVERLAP = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class PairFigures:
     """The first design that takes a start to a target.
 
     Attributes
@@ -80,7 +80,7 @@ def design_pairs(
     polish: int,
     seed: int,
     report: Report,
-) -> list[Pair]:
+) -> list[PairFigures]:
     """Design every target from every start, unsearched."""
     pairs = []
     for number, (start, target) in enumerate((start, target) for start in starts for target in targets):
@@ -91,7 +91,7 @@ def design_pairs(
         best, (rows, columns) = result.best, result.request.chosen_grid
         even, symmetry = best.score.evenness, best.symmetry
         pairs.append(
-            Pair(
+            PairFigures(
                 start.name,
                 target.name,
                 f"{rows}x{columns}",
@@ -116,7 +116,7 @@ def _best_of(candidates: Sequence[Candidate], origin: Origin) -> float | None:
     return max((one.score.iou_exact for one in candidates if one.origin is origin and one.score.feasible), default=None)
 
 
-def pair_figures(pairs: Sequence[Pair]) -> dict[str, float]:
+def pair_figures(pairs: Sequence[PairFigures]) -> dict[str, float]:
     """Means over all pairs, and the worst of what must not be large."""
     return {
         "pairs": float(len(pairs)),

@@ -14,7 +14,7 @@ from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
-from kirigami_studio.lab.demonstrations.offscreen_session import Session, SessionError, click
+from kirigami_studio.lab.demonstrations.offscreen_session import OffscreenSession, SessionError, click
 from kirigami_studio.outlines.combining import Combine, combined
 from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.figures import BoundingBox, Figure, figure, placed_figure
@@ -39,7 +39,7 @@ stroke="#108040" stroke-width="5" stroke-linecap="round"/></g></svg>"""
 LONG_NAME = "a scanned drawing with the long name that scanners like to give, page 3 of 12"
 
 
-class BoardStates(Session):
+class BoardStates(OffscreenSession):
     """Takes one window through the states of the target, and a screenshot of each in all sizes and themes."""
 
     def sizes(self, name: str) -> tuple[QSize, ...]:
@@ -51,12 +51,12 @@ class BoardStates(Session):
     def all_sizes(self, name: str) -> None:
         """Take one picture for every size and theme."""
         for palette in (LIGHT, DARK):
-            self.window.set_theme(palette)  # styles every widget anew, which takes longer than another size
+            self.window.appearance.set_theme(palette)  # styles every widget anew, which takes longer than another size
             for size in self.sizes(name):
                 self.window.resize(size)
                 QApplication.processEvents()
                 self.picture(f"{name}-{size.width()}x{size.height()}-{palette.name}")
-        self.window.set_theme(LIGHT)
+        self.window.appearance.set_theme(LIGHT)
 
     def picture_target(self) -> None:
         """Open a blurred grey picture."""
@@ -66,8 +66,8 @@ class BoardStates(Session):
         draw.ellipse((90, 60, 310, 240), fill=60)
         draw.ellipse((40, 110, 150, 190), fill=150)
         page.save(path)
-        self.window.controller.targeting.clear()  # what was drawn is not replaced without a question
-        self.window.controller.targeting.open(str(path))
+        self.window.services.targeting.clear()  # what was drawn is not replaced without a question
+        self.window.services.targeting.open(str(path))
         self.until(lambda: self.window.target.threshold.isVisible(), "the picture was not read")
 
     def parts(self) -> None:
@@ -75,7 +75,7 @@ class BoardStates(Session):
         path = self.out / "logo.svg"
         path.write_text(LOGO, encoding="utf-8")
         dialogs = self.window.dialogs
-        self.window.controller.targeting.open(str(path))
+        self.window.services.targeting.open(str(path))
         self.until(lambda: dialogs.parts is not None and dialogs.parts.complete, "the picker did not open")
         picker = dialogs.parts
         if picker is None:
@@ -87,14 +87,14 @@ class BoardStates(Session):
             if state == "hull":
                 picker.join.choose(Join.TIGHT)
             for palette in (DARK, LIGHT):
-                self.window.set_theme(palette)
+                self.window.appearance.set_theme(palette)
                 self.until(lambda: picker.complete, "the outline was not made")
                 self.picture(f"parts-{state}-{palette.name}", picker)
         picker.reject()
 
     def editor(self) -> None:
         """A shape with a thin arm on the drawing board, its points, its handles, and a shape about to be taken away."""
-        target, reshaping = self.window.target, self.window.connections.target.reshaping
+        target, reshaping = self.window.target, self.window.presenters.target.reshaping
         body = figure(Figure.ELLIPSE, BoundingBox(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
         arm, now = figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
@@ -110,7 +110,7 @@ class BoardStates(Session):
 
     def objects(self) -> None:
         """Several objects, two of them selected, and one that hangs apart."""
-        target, reshaping = self.window.target, self.window.connections.target.reshaping
+        target, reshaping = self.window.target, self.window.presenters.target.reshaping
         boxes = (
             BoundingBox(-30.0, -20.0, 20.0, 20.0),
             BoundingBox(0.0, 0.0, 45.0, 35.0),
@@ -128,7 +128,7 @@ class BoardStates(Session):
     def replacing(self) -> None:
         """A star was opened while the board holds several objects: the question, and the star beside them."""
         messages = self.window.messages
-        self.window.controller.targeting.open("star")
+        self.window.services.targeting.open("star")
         self.until(lambda: any(message.actions for message in messages.messages), "the window did not ask")
         self.all_sizes("replace-question")
         click(next(button for button in messages.findChildren(QPushButton) if button.text() == tr("Add beside")))
@@ -137,7 +137,7 @@ class BoardStates(Session):
 
     def points_and_mirror(self) -> None:
         """Selected points with their handles, a selection box, and a shape that is mirrored as it is drawn."""
-        target, reshaping = self.window.target, self.window.connections.target.reshaping
+        target, reshaping = self.window.target, self.window.presenters.target.reshaping
         disc = placed_figure(Figure.ELLIPSE, BoundingBox(-30.0, -25.0, 30.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: disc))
         target.set_tool(Tool.POINTS)
@@ -163,20 +163,20 @@ class BoardStates(Session):
 
     def lost_designs(self) -> None:
         """A rotated target whose discarded designs can be restored."""
-        target, controller = self.window.target, self.window.controller
+        target, session = self.window.target, self.window.session
         target.set_tool(Tool.POSE)
         target.tools.options.pose.turn.setValue(20.0)
         self.all_sizes("lost-designs")
-        self.window.connections.target.discarded.bring_back()
+        self.window.presenters.target.discarded.bring_back()
         target.set_editing(False)
-        if not controller.document.candidates:
+        if not session.document.candidates:
             raise SessionError("The designs did not come back.")
         self.until(self.window.fabrication.export.isEnabled, "the designs came back without a plan")
 
     def starts(self) -> None:
         """The list of starts, a hollow shape on the start's board, the pairs, and one of them opened."""
         window, tile = self.window, self.window.target.start
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         tile.open_menu()
         self.picture("start-menu", tile.menu)
         tile.menu.close()
@@ -187,7 +187,7 @@ class BoardStates(Session):
             raise SessionError("The board or the pairs did not open.")
         board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOLLOW, "polygon")))
         for palette in (DARK, LIGHT):
-            window.set_theme(palette)
+            window.appearance.set_theme(palette)
             self.until(lambda: gallery.complete, "the pairs were not drawn")
             self.picture(f"start-board-{palette.name}", board)
             self.picture(f"pairs-{palette.name}", gallery)

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, Session, click, main
+from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, OffscreenSession, click, main
 
 #: Colours of a picture: the window has few, and smooth edges need the rest.
 COLOURS = 96
@@ -26,29 +26,29 @@ COLOURS = 96
 SIZE = QSize(1180, 760)
 
 
-class GuidePictures(Session):
+class GuidePictures(OffscreenSession):
     """Takes one window through what the guide tells, in its order."""
 
     def play(self) -> list[Path]:
         """Take all pictures and return their files."""
-        window, controller = self.window, self.window.controller
+        window, services = self.window, self.window.services
         window.resize(SIZE)
         window.show()
-        controller.start_with("heart")
-        window.connections.welcome.begin()
+        services.targeting.start_with("heart")
+        window.presenters.welcome.begin()
         page = window.stage.welcome
         self.until(lambda: page.ready and self._target_name() == "heart", "the sample did not come")
         page.stop()
         page.view.set_phi(math.radians(100.0))
         self.take("start", window.stage)
-        window.connections.welcome.decline()
+        window.presenters.welcome.decline()
         window.target.set_tool(Tool.POLYGON)
         self.settle()
         self.take("board", window.target)
         window.target.set_editing(False)
-        controller.new_project()
-        controller.open_project(resource("examples", "heart.kiri"))
-        self.until(lambda: controller.stage is not None, "the sample did not open")
+        services.project.new()
+        services.project.open(resource("examples", "heart.kiri"))
+        self.until(lambda: services.session.stage is not None, "the sample did not open")
         self._judged()
         self.take("target", window.target, window.settings)
         self.take("designs", window.gallery)
@@ -61,7 +61,7 @@ class GuidePictures(Session):
         while window.fabrication.extent is not Extent.ALL:
             click(window.fabrication.fold)
         self.take("fabrication", window.fabrication)
-        controller.history.mark_saved()
+        services.session.history.mark_saved()
         window.close()
         return self.files
 

@@ -67,16 +67,15 @@ class PresetFiles:
         return self._out
 
 
-class Session:
+class OffscreenSession:
     """Plays the steps on one window and takes screenshots."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
         self.files: list[Path] = []
         self.application = create_application(["kirigami-studio"])
-        self.window: MainWindow = create_window(LIGHT)
+        self.window: MainWindow = create_window(LIGHT, file_dialogs=PresetFiles(out))
         self.window.resize(FIRST)  # the off-screen platform's own screen is smaller than any real one
-        self.window.file_dialogs = PresetFiles(out)
 
     def play(self) -> list[Path]:
         """Run every step and return the files made.
@@ -109,7 +108,7 @@ class Session:
         self.picture("2-target")
 
     def _target_name(self) -> str:
-        target = self.window.controller.document.target
+        target = self.window.session.document.target
         return "" if target is None else target.name
 
     def generate(self) -> None:
@@ -118,33 +117,33 @@ class Session:
         click(self.window.run.generate)
         self.until(lambda: len(self.window.gallery.view.model_.entries) > 0, "no design arrived")
         self.picture("3-generating")
-        self.until(lambda: not self.window.controller.running, "the run did not end")
-        if len(self.window.controller.document.candidates) != DESIGNS:
-            raise SessionError(f"Expected {DESIGNS} designs, got {len(self.window.controller.document.candidates)}.")
+        self.until(lambda: not self.window.services.run.running, "the run did not end")
+        if len(self.window.session.document.candidates) != DESIGNS:
+            raise SessionError(f"Expected {DESIGNS} designs, got {len(self.window.session.document.candidates)}.")
         self._judged()
         self.picture("4-designs")
 
     def choose_second(self) -> None:
         """Go from the best design to the next card."""
         press_key(self.window.gallery.view, Qt.Key.Key_Right)
-        self.until(lambda: bool(self.window.controller.document.chosen), "the second card was not chosen")
+        self.until(lambda: bool(self.window.session.document.chosen), "the second card was not chosen")
         self._judged()
 
     def _judged(self) -> None:
         """Wait for the cut plan and for the verdict on the sheet as cut, fixes included."""
         self.until(lambda: self.window.fabrication.export.isEnabled(), "no cut plan was made")
-        verdict = self.window.controller.verdict
+        verdict = self.window.services.verdict
         self.until(lambda: verdict.state.verdict is not None and not verdict.busy, "the verdict did not come")
 
     def scrub(self) -> None:
         """Move the slider from flat to half open, there in the dark theme, then to the target."""
         slider = self.window.stage.deployment.slider
         for degrees, name, palette in ((180, "5-flat", LIGHT), (90, "6-half-open", DARK)):
-            self.window.set_theme(palette)
+            self.window.appearance.set_theme(palette)
             slider.setFocus()
             slider.setValue(10 * (180 - degrees))
             self.picture(name)
-        self.window.set_theme(LIGHT)
+        self.window.appearance.set_theme(LIGHT)
         slider.setValue(slider.maximum())
 
     def export(self) -> None:
@@ -163,7 +162,7 @@ class Session:
         path = self.out / "session.kiri"
         path.unlink(missing_ok=True)
         self.window.commands["save"].trigger()
-        self.until(lambda: not self.window.controller.history.unsaved, "the project was not saved")
+        self.until(lambda: not self.window.session.history.unsaved, "the project was not saved")
         self.files.append(path)
 
     def until(self, happened: Callable[[], bool], otherwise: str) -> None:
@@ -186,7 +185,7 @@ class Session:
         self.files.append(path)
 
 
-class PairPictures(Session):
+class PairPictures(OffscreenSession):
     """Pictures the bundled pairs for README and guide: the gallery that the window shows of them."""
 
     def play(self) -> list[Path]:
@@ -251,7 +250,7 @@ def send(widget: QObject, event: QEvent) -> None:
     QApplication.sendEvent(widget, event)
 
 
-def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
+def main(argv: list[str] | None = None, kind: type[OffscreenSession] = OffscreenSession) -> int:
     """Play the session, or another one made like it; 0 when every step succeeded."""
     parser = argparse.ArgumentParser(description="Play one studio session without a display.")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for screenshots, DXF and project")
@@ -262,7 +261,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     if chosen.scale != 1.0:
         os.environ["QT_SCALE_FACTOR"] = str(chosen.scale)
-    session: Session | None = None
+    session: OffscreenSession | None = None
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         create_application(["kirigami-studio"])
@@ -272,7 +271,7 @@ def main(argv: list[str] | None = None, kind: type[Session] = Session) -> int:
     except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")
         if session is not None:
-            session.window.controller.close()
+            session.window.services.close()
         return 1
     sys.stdout.write("The session was played off-screen through the real window. It wrote\n")
     sys.stdout.writelines(f"  {path}\n" for path in files)

@@ -23,7 +23,7 @@ from kirigami_studio.export.dxf_reading import DxfContent, read_content
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lab.demonstrations.offscreen_session import (
     DESIGNS,
-    Session,
+    OffscreenSession,
     SessionError,
     click,
     hover,
@@ -84,7 +84,7 @@ class Film:
         self._writer.close()
 
 
-class Screencast(Session):
+class Screencast(OffscreenSession):
     """Plays the session and films it."""
 
     def __init__(self, out: Path) -> None:
@@ -101,9 +101,9 @@ class Screencast(Session):
         """Film every step and return the files."""
         window = self.window
         window.show()
-        window.connections.welcome.begin()  # reads the sample that moves
+        window.presenters.welcome.begin()  # reads the sample that moves
         self.until(lambda: window.stage.welcome.ready, "the sample did not come")
-        window.connections.welcome.decline()
+        window.presenters.welcome.decline()
         self.say("Kirigami Studio: from a silhouette to a cut file, in two minutes")
         self.live(6.0)
         self.choose_target()
@@ -116,7 +116,7 @@ class Screencast(Session):
         self.show_file()
         self.film.close()
         self.files += [self.path, self.out / "session.jpg"]
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         window.close()
         return self.files
 
@@ -158,13 +158,13 @@ class Screencast(Session):
         self.window.settings.candidates.setValue(DESIGNS)
         self.press_on(self.window.run.generate)
         self.during(lambda: not self.window.gallery.view.model_.entries, 4.0, SHORTER)
-        self.during(lambda: self.window.controller.running, 20.0)
+        self.during(lambda: self.window.services.run.running, 20.0)
         self.say("Best first: match, evenness, and whether it can be cut")
         self.during(self._not_judged, 6.0)
         self.hold(4.5)
 
     def _not_judged(self) -> bool:
-        verdict = self.window.controller.verdict
+        verdict = self.window.services.verdict
         return not self.window.fabrication.export.isEnabled() or verdict.state.verdict is None or verdict.busy
 
     def compare(self) -> None:

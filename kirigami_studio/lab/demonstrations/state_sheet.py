@@ -153,7 +153,7 @@ class StateSheet(BoardStates):
 
     def welcome(self) -> None:
         """The welcome page with the question for machine and material, and without it."""
-        presenter, page = self.window.connections.welcome, self.window.stage.welcome
+        presenter, page = self.window.presenters.welcome, self.window.stage.welcome
         presenter.begin()
         self.until(lambda: page.ready, "the sample was not read")
         page.stop()
@@ -167,7 +167,7 @@ class StateSheet(BoardStates):
         self.window.start_again()
         speak("de")
         self.window = window = create_window(LIGHT, self.window)
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         window.show()
         window.files.open_sample()
         self.until(window.fabrication.export.isEnabled, "the sample was not opened")
@@ -188,7 +188,7 @@ class StateSheet(BoardStates):
         dialogs.show_about()
         for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
             for palette in (DARK, LIGHT) if dialog is not None else ():
-                self.window.set_theme(palette)
+                self.window.appearance.set_theme(palette)
                 self.picture(f"{name}-{palette.name}", dialog)
 
     def polishing(self) -> None:
@@ -199,18 +199,18 @@ class StateSheet(BoardStates):
         click(window.run.generate)
         self.until(lambda: window.status_text.text().startswith("Polished"), "no design was polished")
         self.all_sizes("polishing")
-        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(lambda: not window.services.run.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
 
     def collection(self) -> None:
         """Marks, filters, more designs like one, two side by side; then everything as it was."""
-        window, controller = self.window, self.window.controller
-        view, bar, before = window.gallery.view, window.gallery.bar, len(controller.document.candidates)
+        window, services = self.window, self.window.services
+        view, bar, before = window.gallery.view, window.gallery.bar, len(services.session.document.candidates)
         for row in (1, 2):
-            controller.marks.pin(controller.document.candidates[row])
-        controller.marks.reject(controller.document.candidates[3], None)
+            services.marks.pin(services.session.document.candidates[row])
+        services.marks.reject(services.session.document.candidates[3], None)
         click(bar.filter)
-        for box in (bar.filters.feasible, bar.filters.rejected):
+        for box in (bar.filters.works, bar.filters.rejected):
             box.setChecked(True)
         bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
         bar.order.activated.emit(bar.order.currentIndex())
@@ -225,37 +225,37 @@ class StateSheet(BoardStates):
         click(bar.alike)
         self.all_sizes("gallery-alike")
         click(bar.draw)
-        self.until(lambda: not controller.running, "the run near a design did not end")
+        self.until(lambda: not services.run.running, "the run near a design did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
         self.all_sizes("gallery-more")
         click(bar.alike)
         self.all_designs()
         self.side_by_side()
-        while len(controller.document.candidates) > before or set(controller.document.marks) != {Mark.NONE}:
+        while len(services.session.document.candidates) > before or set(services.session.document.marks) != {Mark.NONE}:
             window.commands["undo"].trigger()
         self.until(lambda: view.model_.rowCount() == before, "undo did not bring the first designs back")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
 
     def all_designs(self) -> None:
         """The table of all designs with a renamed one and three that are marked, these compared, and nothing left."""
-        window, controller = self.window, self.window.controller
-        label = controller.document.label_of(window.gallery.view.model_.entries[0].candidate)
+        window, services = self.window, self.window.services
+        label = services.session.document.label_of(window.gallery.view.model_.entries[0].candidate)
         if label is not None:
-            controller.labels.set(label, LONG_NAME[:30], "The lobes are even; cut this one for the fair.")
+            services.labels.set(label, LONG_NAME[:30], "The lobes are even; cut this one for the fair.")
         window.commands["all_designs"].trigger()
-        page = window.connections.all_designs.page
+        page = window.presenters.all_designs.page
         if page is None:
             raise SessionError("The table of all designs did not open.")
         for key in (Qt.Key.Key_1, Qt.Key.Key_Right, Qt.Key.Key_2, Qt.Key.Key_Right, Qt.Key.Key_3):
             press_key(page.table, key)
         for palette in (LIGHT, DARK):
-            window.set_theme(palette)
+            window.appearance.set_theme(palette)
             for size in self.sizes("all-designs"):
                 window.resize(size)
                 page.table.viewport().repaint()
                 self.until(lambda: not page.table.cards.pending, "the cards got no pictures")
                 self.picture(f"all-designs-{size.width()}x{size.height()}-{palette.name}")
-        window.set_theme(LIGHT)
+        window.appearance.set_theme(LIGHT)
         page.filters.least.setValue(100.0)
         self.all_sizes("all-designs-nothing")
         click(page.show_all)
@@ -281,8 +281,8 @@ class StateSheet(BoardStates):
         self.all_sizes("compare-half-open")
         window.stage.deployment.set_phi(0.0)
         click(window.stage.compare.leave)
-        window.connections.designs.show_menu(window.controller.document.candidates[0], QPoint(100, 100))
-        menu = window.connections.designs.menu
+        window.presenters.designs.show_menu(window.session.document.candidates[0], QPoint(100, 100))
+        menu = window.presenters.designs.menu
         if menu is not None:
             self.picture("card-menu", menu)
             menu.close()
@@ -314,11 +314,11 @@ class StateSheet(BoardStates):
 
     def before_and_after(self) -> None:
         """The first design that polishing has changed, as it was drawn."""
-        controller, stage = self.window.controller, self.window.stage
-        drawn = [candidate for candidate in controller.document.candidates if candidate.sampled_sheet is not None]
+        services, stage = self.window.services, self.window.stage
+        drawn = [candidate for candidate in services.session.document.candidates if candidate.sampled_sheet is not None]
         if not drawn:
             raise SessionError("Polishing changed no design.")
-        controller.choose(drawn[0])
+        services.chosen.choose(drawn[0])
         click(stage.before)
         self.until(lambda: stage.showing_before, "the drawn design was not shown")
         self.all_sizes("before")
@@ -326,11 +326,11 @@ class StateSheet(BoardStates):
 
     def trimmed(self) -> None:
         """The same design trimmed, opened and flat, and whole again."""
-        controller, stage = self.window.controller, self.window.stage
+        services, stage = self.window.services, self.window.stage
         click(stage.trim)
         self.picture("trimming")
-        self.until(lambda: not controller.trimming.busy, "trimming did not end")
-        if controller.stage is None or controller.stage.candidate.trim is None:
+        self.until(lambda: not services.chosen.trimming.busy, "trimming did not end")
+        if services.session.stage is None or services.session.stage.candidate.trim is None:
             raise SessionError("The design was not trimmed.")
         self.until(self._planned, "no trimmed cut plan was made")
         self.all_sizes("trimmed")
@@ -347,25 +347,25 @@ class StateSheet(BoardStates):
 
     def by_hand(self) -> None:
         """Hand editing, with locked voids and a label at the pointer."""
-        window, view, controller = self.window, self.window.stage.view, self.window.controller
+        window, view, services = self.window, self.window.stage.view, self.window.services
         click(window.stage.hand)
-        controller.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
+        services.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
         for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
             window.stage.deployment.set_phi(math.radians(degrees))
             view.voids.select(frozenset({(5, 5)}))
             for size in SIZES:
                 window.resize(size)
                 for palette in (LIGHT, DARK):
-                    window.set_theme(palette)
+                    window.appearance.set_theme(palette)
                     QApplication.processEvents()
                     view.voids.point_at((6, 6))
                     self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
-        window.set_theme(LIGHT)
+        window.appearance.set_theme(LIGHT)
         QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
-        controller.hand.nudge(frozenset({(5, 5)}), 0.3)
-        self.until(lambda: not controller.hand.busy, "the changed ratio was not scored")
+        services.hand.nudge(frozenset({(5, 5)}), 0.3)
+        self.until(lambda: not services.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")
-        while window.controller.history.undo_label is not None and "void" in window.controller.history.undo_label:
+        while window.session.history.undo_label is not None and "void" in window.session.history.undo_label:
             window.commands["undo"].trigger()
         click(window.stage.hand)
 
@@ -374,7 +374,7 @@ class StateSheet(BoardStates):
         the name engraved.
         """
         stage, fabrication = self.window.stage, self.window.fabrication
-        page, history = stage.cuts, self.window.controller.history
+        page, history = stage.cuts, self.window.session.history
         click(stage.cuts_switch)
         self.all_sizes("cuts")
         click(page.toggles[CutOverlay.TRAVEL])
@@ -408,11 +408,11 @@ class StateSheet(BoardStates):
     def exported(self) -> None:
         """The report of a cut file and the material editor, in both themes."""
         dialogs = self.window.dialogs
-        self.window.controller.export(self.out / "cut.dxf")
+        self.window.services.exporter.export(self.out / "cut.dxf")
         self.until(lambda: dialogs.report is not None, "no report was shown")
         dialogs.show_materials()
         for palette in (DARK, LIGHT):
-            self.window.set_theme(palette)
+            self.window.appearance.set_theme(palette)
             if dialogs.report is not None and dialogs.materials is not None:
                 self.picture(f"report-{palette.name}", dialogs.report)
                 self.picture(f"materials-{palette.name}", dialogs.materials)
@@ -428,10 +428,10 @@ class StateSheet(BoardStates):
     def project(self) -> None:
         """Recovered work, the submenus of files and pictures, the history with undone steps."""
         window, dialogs = self.window, self.window.dialogs
-        filing, folder = window.controller.filing, self.out / "recovery"
+        filing, folder = window.services.project, self.out / "recovery"
         left = folder / "left.kiri"
         note = RecoveryNote("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
-        recovery.keep(window.controller.document, note, left)
+        recovery.keep(window.session.document, note, left)
         filing.recovery.use(folder)
         self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
         self.all_sizes("recovery")
@@ -443,32 +443,32 @@ class StateSheet(BoardStates):
         filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
         window.recent_menu.show_missing(frozenset({str((self.out / "teapot.kiri").absolute())}))
         window.commands["history"].trigger()
-        window.controller.go_to(max(0, window.controller.history.position - 2))
+        window.services.project.go_to(max(0, window.session.history.position - 2))
         for palette in (DARK, LIGHT):
-            window.set_theme(palette)
+            window.appearance.set_theme(palette)
             for menu, name in ((window.recent_menu, "recent"), (window.picture_menu, "pictures")):
                 menu.popup(window.mapToGlobal(window.rect().topLeft()))
                 self.picture(f"menu-{name}-{palette.name}", menu)
                 menu.close()
             if dialogs.history is not None:
-                dialogs.history.show_history(window.controller.history, palette)
+                dialogs.history.show_history(window.session.history, palette)
                 self.picture(f"history-{palette.name}", dialogs.history)
-        window.controller.go_to(len(window.controller.history.steps))
+        window.services.project.go_to(len(window.session.history.steps))
         if dialogs.history is not None:
             dialogs.history.close()
 
     def second_target(self) -> None:
         """A run for a second target: its settings, and the best design at its angle; the board it is drawn on."""
-        window, controller = self.window, self.window.controller
-        controller.change_settings(grid=(8, 8))
-        controller.change_settings(k=2)
-        controller.change_settings(polish=5)
+        window, services = self.window, self.window.services
+        services.settings.change(grid=(8, 8))
+        services.settings.change(k=2)
+        services.settings.change(polish=5)
         window.settings.more.setChecked(True)
-        controller.second.open("hexagon")
-        self.until(lambda: controller.document.settings.second is not None, "the second target was not read")
+        services.second.open("hexagon")
+        self.until(lambda: services.session.document.settings.second is not None, "the second target was not read")
         window.settings.second.angle.setValue(60.0)
         click(window.run.generate)
-        self.until(lambda: not controller.running, "the run did not end")
+        self.until(lambda: not services.run.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
         window.stage.deployment.set_phi(math.radians(60.0))
         self.all_sizes("second-target-settings")

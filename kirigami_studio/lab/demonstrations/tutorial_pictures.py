@@ -22,7 +22,14 @@ from kirigami_studio.fabricate.coupon import plan_coupon
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.material import FOLDER_VARIABLE, find_material
 from kirigami_studio.gui.make.material_editor import MaterialEditor
-from kirigami_studio.lab.demonstrations.offscreen_session import Session, SessionError, click, main, press, press_key
+from kirigami_studio.lab.demonstrations.offscreen_session import (
+    OffscreenSession,
+    SessionError,
+    click,
+    main,
+    press,
+    press_key,
+)
 from kirigami_studio.outlines.merging import Join
 
 #: The window, and the width of pages, pixels.
@@ -38,7 +45,7 @@ COUPON_SCALE, COUPON_MARGIN = 13.0, 16
 INKS = {Layer.SLITS: "#2f6fb5", Layer.EDGE_SLITS: "#00805f", Layer.OUTLINE: "#1d2733", Layer.RELIEF: "#c2410c"}
 
 
-class TutorialPictures(Session):
+class TutorialPictures(OffscreenSession):
     """Takes one window through the three tutorials."""
 
     def play(self) -> list[Path]:
@@ -50,7 +57,7 @@ class TutorialPictures(Session):
         self.logo()
         self.material()
         self.coupon()
-        window.controller.history.mark_saved()
+        window.session.history.mark_saved()
         window.close()
         return self.files
 
@@ -75,7 +82,7 @@ class TutorialPictures(Session):
         click(window.stage.cuts_switch)
         self.shrunk("cuts", window.stage)
         click(window.stage.cuts_switch)
-        window.controller.export(CUT_FILE)
+        window.services.exporter.export(CUT_FILE)
         self.until(lambda: window.dialogs.report is not None, "no report was shown")
         if window.dialogs.report is not None:
             self.shrunk("report", window.dialogs.report)
@@ -85,9 +92,9 @@ class TutorialPictures(Session):
     def logo(self) -> None:
         """Parts of a drawing, and the designs for them."""
         window = self.window
-        window.controller.history.mark_saved()
-        window.controller.new_project()
-        window.controller.targeting.open(str(LOGO))
+        window.session.history.mark_saved()
+        window.services.project.new()
+        window.services.targeting.open(str(LOGO))
         self.until(lambda: window.dialogs.parts is not None and window.dialogs.parts.isVisible(), "no picker opened")
         parts = window.dialogs.parts
         if parts is None:
@@ -151,7 +158,7 @@ class TutorialPictures(Session):
         window.settings.candidates.setValue(8)
         click(window.run.generate)
         self.until(lambda: len(window.gallery.view.model_.entries) > 0, "no design arrived")
-        self.until(lambda: not window.controller.running, "the run did not end")
+        self.until(lambda: not window.services.run.running, "the run did not end")
         self._judged()
         self.until(lambda: not window.gallery.view.cards.pending, "the cards got no pictures")
 

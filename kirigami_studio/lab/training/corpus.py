@@ -132,7 +132,7 @@ class ChunkBatches:
 
 
 @dataclass(frozen=True, slots=True)
-class Disturbance:
+class TargetNoise:
     """How targets arrive: a little turned and rasterised.
 
     Attributes

@@ -6,7 +6,7 @@
     none          R = 0
     fabrication   R = -CV - jam / pi - (1 - least / needed)+ - 20 (m - sIoU)+ - P
 
-with the penalties P of :mod:`kirigami_studio.evaluate.paper_evaluator` and TV the paper's sum divided by m n (paper,
+with the penalties P of :mod:`kirigami_studio.lab.paper_evaluator` and TV the paper's sum divided by m n (paper,
 Secs. "RL for accuracy", "regularity").
 
 The paper says that the halves of its third reward are normalised and does not say how.  Here s and v are the standard
@@ -16,7 +16,7 @@ differences within a group alone, so this is the scaling under which both halves
 Without a reward all designs of a group weigh the same: whatever a run with a reward does beyond that is the reward's.
 
 The last reward has no gradient: CV is that of panel areas, jam the estimated angle at which the sheet jams, least its
-smallest edge or neck and needed what the material allows (:mod:`kirigami_studio.studio.fabricability`); m is the mean
+smallest edge or neck and needed what the material allows (:mod:`kirigami_studio.lab.fabricability`); m is the mean
 sIoU of the start's own samples for the target, so that a better match earns nothing and a worse one costs.  As much as
 a CV lower by 0.1 count 18 degrees of jamming, a tenth of the least feature and 0.005 of sIoU.  Symmetry is no part of
 it: sampling makes fields exactly symmetric where that is asked for, without any training.
@@ -31,12 +31,12 @@ from typing import Protocol
 
 import numpy as np
 
-from kirigami_studio.evaluate.paper_evaluator import PaperScore
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lab.fabricability import Fabricability, fabricability
+from kirigami_studio.lab.paper_evaluator import PaperScore
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.studio.fabricability import Fabricability, fabricability
 
 PAPER_REWARDS = ("accuracy", "regularity", "balanced")
 NONE, FABRICATION = "none", "fabrication"

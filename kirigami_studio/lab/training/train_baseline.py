@@ -18,7 +18,7 @@ from torch import Tensor
 from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import generator_of
-from kirigami_studio.lab.training.corpus import ChunkBatches, Disturbance
+from kirigami_studio.lab.training.corpus import ChunkBatches, TargetNoise
 from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
 from kirigami_studio.lab.training.learner import CHECKPOINT, Checkpoint, Learner, adamw, opened, trained
 from kirigami_studio.lab.training.ranks import Ranks
@@ -49,7 +49,7 @@ class BaselineSettings:
     average_decay : float
         Of the exponential moving average that is kept.
     vertex_noise, turn_noise : float
-        See :class:`kirigami_studio.lab.training.corpus.Disturbance`.
+        See :class:`kirigami_studio.lab.training.corpus.TargetNoise`.
     chunk : int
         Endless designs generated together.
     family, designs : str
@@ -162,7 +162,7 @@ class BaselineRun:
         pixels = network.pixels
         corpus = designs_of(settings.family, designs, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
         self.designs = ChunkBatches(corpus, ranks.share(settings.batch), PASSES)
-        self.disturbance = Disturbance(settings.vertex_noise, settings.turn_noise)
+        self.disturbance = TargetNoise(settings.vertex_noise, settings.turn_noise)
         self._descended: Callable[..., tuple[Tensor, ...]] = self._descend
         if recorded:
             self._descended = Recorded(self._descend, self.generator)

@@ -19,7 +19,7 @@ from kirigami_studio.generator.conditioning import condition
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.velocity import Network, Shape, joined, network_of
 from kirigami_studio.generator.weights import Model
-from kirigami_studio.lab.training.corpus import ChunkBatches, Disturbance, zero_outline
+from kirigami_studio.lab.training.corpus import ChunkBatches, TargetNoise, zero_outline
 from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
 from kirigami_studio.lab.training.fitted_fields import FittedBatches, FittedFields, Targets
 from kirigami_studio.lab.training.flow_path import ConditionalPath, cfm_loss, paired_noise, pairing_cost
@@ -349,7 +349,7 @@ class FlowRun:
     def _as_seen(self, polygons: Tensor, on_sheet: bool) -> tuple[Tensor, Tensor]:
         """Targets as they will arrive, a little turned and rasterised, and a shift of where their contour starts."""
         settings = self.settings
-        disturbance = Disturbance(settings.vertex_noise, settings.turn_noise)
+        disturbance = TargetNoise(settings.vertex_noise, settings.turn_noise)
         moved = disturbance.seen(polygons, self.generator, upright=not on_sheet)
         return moved, settings.shift_noise * self._normal(polygons.shape[:1])
 

@@ -12,10 +12,12 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import kirigami_studio as ks
+from kirigami_studio.api.choices import CUTS, SEARCH, keywords_of
 
 #: What the API gives on which no promise rests: they come with their base classes.
 INHERITED = {"add_note", "args", "with_traceback"}
@@ -102,3 +104,13 @@ def test_that_every_public_name_says_what_it_is() -> None:
         for function in functions
     }
     assert {name for name, missing in loose.items() if missing} == set()
+
+
+@pytest.mark.parametrize(("function", "kinds"), [(ks.design, SEARCH), (ks.Design.plan_cuts, CUTS)])
+def test_that_help_tells_of_every_keyword_once_and_with_its_meaning(function: Any, kinds: tuple[type, ...]) -> None:
+    told = inspect.getdoc(function) or ""
+    assert "**choices" not in told
+    for keyword in inspect.signature(function).parameters.keys() - {"self"}:
+        assert len(re.findall(rf"(?m)^(?:\w+, )*{keyword}(?:, \w+)* : ", told)) == 1, keyword
+    for keyword in keywords_of(*kinds):
+        assert re.search(rf"(?m)^{keyword} : .+\n    \S", told), f"{keyword} has no meaning in its dataclass"

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import kirigami_studio as ks
-from kirigami_studio.api.pictures import Curve, curves_picture
+from kirigami_studio.api.design import LEVELS
+from kirigami_studio.api.pictures import AngleCurve, curves_picture
 from kirigami_studio.project.document import Document
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -61,7 +62,7 @@ def test_that_cuts_show_their_lines_and_the_verdict(cuts: ks.Cuts) -> None:
     page = cuts._repr_html_()
     root = drawn(page[page.index("<svg") : page.index("</svg>") + 6])
     assert {"slits", "edge slits", "outline"} <= set(words(root))
-    assert f'<b style="color:#30a46c">{cuts.verdict.lines[0]}</b>' in page
+    assert f'<b style="color:{LEVELS[cuts.verdict.level]}">{cuts.verdict.lines[0]}</b>' in page
     assert page.count("<li>") == len(cuts.verdict.lines) - 1
 
 
@@ -73,7 +74,7 @@ def test_that_a_simulation_shows_force_and_stretch(cuts: ks.Cuts) -> None:
 @pytest.mark.parametrize("values", [[0.0, 0.0, 0.0], [-3.2, 0.0, 1e-3], [1e6, 2e6, 5.1e6], [0.004, 0.001, 0.0]])
 def test_that_numbers_beside_a_curve_are_round_and_around_it(values: list[float]) -> None:
     phi = np.array([np.pi, 1.0, 0.0])
-    said = words(drawn(curves_picture([Curve(phi, np.array(values), "figure")], "heading", 0.4)))
+    said = words(drawn(curves_picture([AngleCurve(phi, np.array(values), "figure")], "heading", 0.4)))
     ticks = [float(text) for text in said if re.fullmatch(r"-?[\d.]+(e[+-]?\d+)?", text)]
     assert min(ticks) <= min(values) and max(ticks) >= max(values) and 0.0 in ticks and 2 <= len(ticks) <= 7
 

@@ -139,7 +139,7 @@ def test_that_the_same_arguments_give_the_same_designs_as_the_command_line(
                   "even", "--regular", 0.2, "--no-polish", "--out", tmp_path, "--json")  # fmt: skip
     assert [one.ratios.tolist() for one in mine] == [one["ratio"] for one in told["candidates"]]
     assert ks.load_project(tmp_path / "design.kiri").document == mine.document
-    assert seen[-1].done == seen[-1].total == 2
+    assert [one for one in seen if one.done == one.total == 2] and 1 <= seen[-1].done <= 2
     small = ks.design("star", k=np.int64(1), grid=np.array([3, 3]), polish=False, start="circle", also="hexagon",
                       also_phi=1.2, phi=np.float32(0.1), material="film-uv")  # fmt: skip
     assert small.best.candidate.second is not None and small.best.sheet.deployment.sheet.start is not None

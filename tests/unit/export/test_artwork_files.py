@@ -26,7 +26,7 @@ from kirigami_studio.export.paper import tile
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lab.demonstrations import printed_states
 from kirigami_studio.lattice.deployment import deploy
@@ -65,7 +65,7 @@ def view_box(path: Path) -> list[float]:
 def test_that_the_print_has_the_frame_of_the_cut_file(
     profile: str, copies: int, picture: ArtPicture, job: ExportJob, tmp_path: Path
 ) -> None:
-    plan = plan_cuts(job.deployment, width_mm=50.0, options=CutOptions(copies=copies))
+    plan = plan_cuts(job.deployment, width_mm=50.0, options=replace(STRAIGHT, copies=copies))
     job = replace(job, plan=plan, profile=profile)
     write_cut_svg(plan, tmp_path / "cut.svg", find_profile(profile))
     artwork = Artwork(Laid(picture))
@@ -167,7 +167,7 @@ def place_of_print(page: pypdf.PageObject, reader: pypdf.PdfReader) -> tuple[np.
 def test_that_a_print_larger_than_the_paper_is_spread_over_pages(
     width_mm: float, copies: int, picture: ArtPicture, job: ExportJob, tmp_path: Path
 ) -> None:
-    plan = plan_cuts(job.deployment, width_mm=width_mm, options=CutOptions(copies=copies))
+    plan = plan_cuts(job.deployment, width_mm=width_mm, options=replace(STRAIGHT, copies=copies))
     work = ArtworkJob(Artwork(Laid(picture)), replace(job, plan=plan, paper="a4"), 20.0)
     assert len(work.places) == copies
     pdf = write_artwork(work, tmp_path)[1]

@@ -121,9 +121,9 @@ def test_that_the_record_says_how_many(design: Deployment) -> None:
     assert record["expected"]["paths"]["OUTLINE"] == COPIES
 
 
-def test_that_as_many_as_fit_follows_the_bed_of_the_material(design: Deployment) -> None:
+def test_that_as_many_as_fit_follows_the_bed_of_the_machine(design: Deployment) -> None:
     plan = job_of(design, copies=AS_MANY_AS_FIT).required_plan
-    bed = (plan.material.bed_width_mm, plan.material.bed_height_mm)
+    bed = plan.machine.reach_mm
     assert len(plan.copies) > 9
     assert np.all(np.array(plan.copies.spread_mm) <= bed)
     larger = np.array(plan.copies.spread_mm) + np.array(plan.bounds_mm) + plan.copies.gap_mm

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
@@ -16,7 +17,7 @@ from kirigami_studio.export.dxf_check import FileReport, check_file
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.svg import cut_svg_bytes
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment
 from tests.refusals import refused
@@ -301,7 +302,7 @@ def test_that_our_own_svg_is_checked_as_our_own_dxf_is(
     choices: dict[str, object], make_design: MakeDesign, tmp_path: Path
 ) -> None:
     design = make_design(4, 5, seed=4)
-    plan = plan_cuts(design, options=CutOptions(**choices))  # type: ignore[arg-type]
+    plan = plan_cuts(design, options=replace(STRAIGHT, **choices))  # type: ignore[arg-type]
     write_dxf(plan, tmp_path / "cut.dxf", "R2010")
     # The content says what a file is.
     drawing = tmp_path / "cut.dat"

@@ -29,7 +29,7 @@ from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation import files
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -55,7 +55,7 @@ def test_that_the_set_is_complete_and_every_cut_file_verified(profile: str, job:
     assert len(found.verifications) == 3
     assert all(report.pieces == 1 for report in found.verifications)
     assert seen == list(found.files)
-    names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "layout.svg", "preview.png", "reference.dxf"}
+    names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "cut-picture.svg", "preview.png", "reference.dxf"}
     names |= {"cut", "cut_r12"} if profile == "layers" else {"cut.dxf", "cut_r12.dxf"}
     if profile == "slots":
         names -= {"cut.lbrn2"}  # a LightBurn project holds open cuts
@@ -69,7 +69,7 @@ def test_that_a_lightburn_project_of_closed_slots_is_refused(job: ExportJob, tmp
 
 
 def test_that_tabs_left_out_of_closed_contours_are_named(make_design: MakeDesign, tmp_path: Path) -> None:
-    plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=CutOptions(tabs=3))
+    plan = plan_cuts(make_design(4, 5, seed=1), 90.0, options=replace(STRAIGHT, tabs=3))
     path = export(ExportJob(make_design(4, 5, seed=1), plan=plan, profile="slots"), tmp_path / "sheet.dxf")
     assert any("3 tabs are left out" in warning.text for warning in verify_export(plan, path, "slots").warnings)
 
@@ -144,7 +144,7 @@ def test_that_the_same_job_gives_the_same_set(job: ExportJob, tmp_path: Path) ->
 )
 def test_that_the_record_alone_gives_the_same_cut_file_again(sheet: Sheet, tmp_path: Path) -> None:
     design = deploy(sheet)
-    options = CutOptions(hinge_mm=((2, 0.6), (7, 0.9)))
+    options = replace(STRAIGHT, hinge_mm=((2, 0.6), (7, 0.9)))
     plan = plan_cuts(design, 120.0, connector_mm=0.4, kerf_mm=0.05, options=options)
     path = export(ExportJob(design, plan=plan), tmp_path / "sheet.dxf")
     record = json.loads(write_sidecar(ExportJob(design, plan=plan), tmp_path / "sheet.json", [path]).read_text())
@@ -253,7 +253,7 @@ def test_that_layout_and_preview_show_the_sheet_that_is_cut(make_design: MakeDes
     assert plan.made is not None
     job = ExportJob(design, plan=plan, target=design.outline(0.0))
     export_all(job, tmp_path)
-    group = next(one for one in ElementTree.parse(tmp_path / "layout.svg").iter() if one.get("id") == "PANELS")
+    group = next(one for one in ElementTree.parse(tmp_path / "cut-picture.svg").iter() if one.get("id") == "PANELS")
     drawn = []
     for path in group:
         words = path.get("d", "").replace("M", "").replace("L", "").replace("Z", "").split()

@@ -20,7 +20,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.lattice.deployment import Deployment
 
 ORIGIN = {
@@ -46,7 +46,7 @@ TOLD = {f"FROM_{name.upper()}": " ".join(text.split()) for name, text in ORIGIN.
 @pytest.fixture
 def job(make_design: Callable[..., Deployment]) -> ExportJob:
     design = make_design(4, 5, seed=1)
-    plan = plan_cuts(design, 90.0, options=CutOptions(tabs=3))
+    plan = plan_cuts(design, 90.0, options=replace(STRAIGHT, tabs=3))
     return ExportJob(design, plan=plan, provenance=ORIGIN)
 
 
@@ -86,7 +86,7 @@ def test_that_every_file_of_the_set_names_the_origin(job: ExportJob, tmp_path: P
     assert custom_properties(tmp_path / "reference.dxf").items() >= TOLD.items()
     old = [value for _, value in pairs(tmp_path / "cut_r12.dxf")]
     assert all(any(name in value or text in value for value in old) for name, text in TOLD.items() if text.isascii())
-    for name in ("cut.svg", "layout.svg"):
+    for name in ("cut.svg", "cut-picture.svg"):
         told = ElementTree.parse(tmp_path / name).getroot().findtext("{http://www.w3.org/2000/svg}desc") or ""
         assert [f"{key} {text}" for key, text in TOLD.items() if f"{key} {text}" not in told] == []
     notes = ElementTree.parse(tmp_path / "cut.lbrn2").getroot().find("Notes")

@@ -71,8 +71,9 @@ def test_that_slots_are_told_with_the_length_and_time_of_the_file(make_design: M
 @pytest.mark.parametrize("profile", [key for key, profile in PROFILES.items() if not profile.slots])
 def test_that_open_cuts_take_what_the_plan_says(profile: str, make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(3, 4, seed=1), 150.0, options=CutOptions(style=ConnectorStyle.ROUND))
-    work = work_of(strokes_of(plan, find_profile(profile)), plan.material)
+    work = work_of(strokes_of(plan, find_profile(profile)), plan)
     assert work.cut_length_mm == pytest.approx(plan.cut_length_mm, rel=2e-3)
     assert work.travel_mm == pytest.approx(plan.travel_mm, rel=1e-3)
-    double = work_of(strokes_of(plan, find_profile(profile)), replace(plan.material, passes=2))
+    twice = replace(plan, material=replace(plan.material, passes=2 * plan.material.passes))
+    double = work_of(strokes_of(plan, find_profile(profile)), twice)
     assert double.times.cut == pytest.approx(2.0 * work.times.cut)

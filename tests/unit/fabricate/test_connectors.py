@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
@@ -63,7 +64,12 @@ def test_that_finished_widths_do_not_change_with_the_kerf(make_design: MakeDesig
 
 
 def test_that_a_single_hinge_can_be_wider_than_the_rest(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(4, 4), connector_mm=0.5, kerf_mm=0.1, options=CutOptions(hinge_mm=((7, 1.25),)))
+    plan = plan_cuts(
+        make_design(4, 4),
+        connector_mm=0.5,
+        kerf_mm=0.1,
+        options=replace(STRAIGHT, hinge_mm=((7, 1.25),)),
+    )
     expected = np.full(len(plan.hinges), 0.5)
     expected[7] = 1.25
     np.testing.assert_allclose(burned_distances(plan), expected, atol=1e-3)
@@ -87,7 +93,7 @@ def test_that_a_cut_without_room_for_its_connectors_is_named_with_its_length_and
 @pytest.mark.parametrize("value", [0.0, -0.2, math.nan, math.inf, "wide", None])
 def test_that_an_impossible_connector_width_is_refused(value: object, make_design: MakeDesign) -> None:
     with refused(FabricationError, "hinge.width_not_positive", hinge=3):
-        plan_cuts(make_design(3, 3), options=CutOptions(hinge_mm=((3, value),)))  # type: ignore[arg-type]
+        plan_cuts(make_design(3, 3), options=replace(STRAIGHT, hinge_mm=((3, value),)))  # type: ignore[arg-type]
     if value is not None:
         with refused(FabricationError, "connector.width_not_positive"):
             plan_cuts(make_design(3, 3), connector_mm=value)  # type: ignore[arg-type]
@@ -95,7 +101,7 @@ def test_that_an_impossible_connector_width_is_refused(value: object, make_desig
 
 def test_that_an_unknown_hinge_is_refused(make_design: MakeDesign) -> None:
     with refused(FabricationError, "hinge.unknown", hinge=999):
-        plan_cuts(make_design(3, 3), options=CutOptions(hinge_mm=((999, 1.0),)))
+        plan_cuts(make_design(3, 3), options=replace(STRAIGHT, hinge_mm=((999, 1.0),)))
 
 
 def test_that_connectors_that_come_out_wider_are_said(make_design: MakeDesign) -> None:

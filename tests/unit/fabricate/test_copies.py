@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from kirigami_studio.fabricate.copies import alike, copy_numbers, lay_out, moved
-from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, CutOptions
+from kirigami_studio.fabricate.options import AS_MANY_AS_FIT, MOST_COPIES, STRAIGHT, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from tests.refusals import refused
 
@@ -14,7 +16,7 @@ SIZE, BED, ANY_BED = (100.3, 80.2), (320.0, 180.0), (0.0, 0.0)
 
 
 def options(copies: int, gap: float = 5.0) -> CutOptions:
-    return CutOptions(copies=copies, copy_gap_mm=gap)
+    return replace(STRAIGHT, copies=copies, copy_gap_mm=gap)
 
 
 def test_that_as_many_as_fit_fill_the_bed_in_rows() -> None:
@@ -65,9 +67,9 @@ def test_that_a_gap_as_narrow_as_the_kerf_and_senseless_numbers_are_refused() ->
     assert len(lay_out(SIZE, BED, options(1, 0.1), 0.1)) == 1  # nothing lies beside it
     for wrong in (-1, MOST_COPIES + 1, 1.5, True):
         with refused(FabricationError, "copies.number", most=200):
-            CutOptions(copies=wrong)  # type: ignore[arg-type]
+            replace(STRAIGHT, copies=wrong)  # type: ignore[arg-type]
     with refused(FabricationError, "copies.gap_not_positive"):
-        CutOptions(copy_gap_mm=0.0)
+        replace(STRAIGHT, copy_gap_mm=0.0)
 
 
 def test_that_strokes_are_told_apart_whether_written_by_copy_or_by_layer() -> None:

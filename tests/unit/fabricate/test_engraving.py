@@ -16,7 +16,7 @@ from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.engraving import LARGEST_MM, LEAST_MM, MARGIN_MM, engraved
 from kirigami_studio.fabricate.lettering import lettered
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet import Sheet
 
@@ -160,7 +160,7 @@ def test_that_a_mark_without_strokes_is_told_and_its_letter_is_written(
 
 def test_that_removed_connectors_and_tabs_leave_the_name_where_it_is_clear(make_design: MakeDesign) -> None:
     design = make_design(4, 4, seed=5, spread=0.2)
-    plan = plan_cuts(design, 100.0, 0.4, 0.1, options=CutOptions(tabs=3, removed=(4,)))
+    plan = plan_cuts(design, 100.0, 0.4, 0.1, options=replace(STRAIGHT, tabs=3, removed=(4,)))
     name = engraved(plan, "C3").engraving
     assert name is not None
     cuts = shapely.union_all([drawn_line(path) for path in plan.paths])

@@ -8,14 +8,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from cut_sheets import bitten, mouths
-from scipy.optimize import nnls
 
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.centred import LEAST_SHARE
 from kirigami_studio.fabricate.centres import void_hinges
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, largest_move, plan_cuts
-from kirigami_studio.fabricate.making_room import FACING_SPANS, UNMET, shortest, with_room
+from kirigami_studio.fabricate.making_room import FACING_SPANS, with_room
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import Cancelled
@@ -123,20 +122,6 @@ def test_that_crowded_trimmed_sheets_are_cut_as_designed_and_told(make_design: M
         assert plan.made is None and plan.cut_from(design) is design
         assert [note.code for note in plan.notes].count("plan.no_room_made_in_trimmed") == crowded
         assert (planned(design, connector).made is not None) == crowded
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_that_the_least_change_is_that_of_non_negative_least_squares(seed: int) -> None:
-    """Lawson and Hanson's way, with slack as further variables: half of these cannot be met."""
-    rng = np.random.default_rng(seed)
-    rows = rng.normal(size=(rng.integers(1, 60), rng.integers(2, 30)))
-    wanted = rng.normal(size=len(rows))
-    table = np.vstack([np.hstack([rows, np.eye(len(rows)) / UNMET]).T, wanted])
-    target = np.zeros(len(table))
-    target[-1] = 1.0
-    left = table @ nnls(table, target)[0] - target
-    expected = -left[: rows.shape[1]] / left[-1]
-    assert shortest(rows, wanted) == pytest.approx(expected, rel=1e-5, abs=1e-6)
 
 
 @pytest.mark.parametrize("asked", [1, 3, 5])

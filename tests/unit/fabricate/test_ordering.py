@@ -11,7 +11,7 @@ import pytest
 
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
-from kirigami_studio.fabricate.options import CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, CutOrder
 from kirigami_studio.fabricate.ordering import HEAT_REACH, STILL_HOT, in_cutting_order
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.lattice.deployment import Deployment
@@ -113,12 +113,12 @@ def test_that_a_turned_and_moved_closed_path_cuts_the_same_arcs() -> None:
 
 
 def test_that_rows_go_to_and_fro_from_the_bottom(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(3, 2), options=CutOptions(order=CutOrder.ROWS))
+    plan = plan_cuts(make_design(3, 2), options=replace(STRAIGHT, order=CutOrder.ROWS))
     assert [path.cut for path in plan.on_layer(Layer.SLITS)] == [4, 5, 3, 2, 0, 1]
 
 
 def test_that_rows_without_a_grid_are_bands_of_the_sheet(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(4, 4, spread=0.1), options=CutOptions(order=CutOrder.ROWS))
+    plan = plan_cuts(make_design(4, 4, spread=0.1), options=replace(STRAIGHT, order=CutOrder.ROWS))
     bands = in_cutting_order([replace(path, cut=-1) for path in plan.paths], CutOrder.ROWS)
     assert travel(bands) < 1.2 * plan.travel_mm
 
@@ -126,7 +126,9 @@ def test_that_rows_without_a_grid_are_bands_of_the_sheet(make_design: MakeDesign
 @pytest.mark.parametrize(("seed", "spread"), [(0, 0.2), (1, 0.5), (2, 0.7), (3, 1.0), (4, 1.5)])
 def test_that_the_shortest_order_is_never_longer_than_rows(seed: int, spread: float, make_design: MakeDesign) -> None:
     design = make_design(8, 7, seed, spread)
-    short, rows = (plan_cuts(design, options=CutOptions(order=order)) for order in (CutOrder.SHORTEST, CutOrder.ROWS))
+    short, rows = (
+        plan_cuts(design, options=replace(STRAIGHT, order=order)) for order in (CutOrder.SHORTEST, CutOrder.ROWS)
+    )
     assert short.travel_mm <= rows.travel_mm
     assert short.cut_length_mm == pytest.approx(rows.cut_length_mm)
 
@@ -139,18 +141,18 @@ def test_that_the_rows_are_taken_where_nothing_shorter_is_found() -> None:
 
 def test_that_the_travel_of_the_plan_is_that_of_the_order(make_design: MakeDesign) -> None:
     for order in CutOrder:
-        plan = plan_cuts(make_design(5, 6, 2), options=CutOptions(order=order))
+        plan = plan_cuts(make_design(5, 6, 2), options=replace(STRAIGHT, order=order))
         assert plan.travel_mm == pytest.approx(travel(plan.paths))
 
 
 def test_that_inside_out_moves_from_the_centre_to_the_edge(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(12, 12, 4), options=CutOptions(order=CutOrder.INSIDE_OUT))
+    plan = plan_cuts(make_design(12, 12, 4), options=replace(STRAIGHT, order=CutOrder.INSIDE_OUT))
     far = np.linalg.norm(middles(plan.on_layer(Layer.SLITS)) - 0.5 * np.array(plan.bounds_mm), axis=1)
     pitch = 100.0 / 12
     assert far[0] < 2.5 * pitch
     # No slit is cut after one that lies more than a ring further out.
     assert np.all(np.maximum.accumulate(far) - far < 2.5 * pitch)
-    rows = plan_cuts(make_design(12, 12, 4), options=CutOptions(order=CutOrder.ROWS))
+    rows = plan_cuts(make_design(12, 12, 4), options=replace(STRAIGHT, order=CutOrder.ROWS))
     elsewhere = np.linalg.norm(middles(rows.on_layer(Layer.SLITS)) - 0.5 * np.array(plan.bounds_mm), axis=1)
     assert not np.all(np.maximum.accumulate(elsewhere) - elsewhere < 2.5 * pitch)
 
@@ -165,7 +167,7 @@ def clearances(plan: CutPlan) -> np.ndarray:
 def test_that_spread_keeps_away_from_what_is_still_hot(make_design: MakeDesign) -> None:
     design = make_design(12, 12, 4)
     spread, short, rows = (
-        plan_cuts(design, options=CutOptions(order=order))
+        plan_cuts(design, options=replace(STRAIGHT, order=order))
         for order in (CutOrder.SPREAD, CutOrder.SHORTEST, CutOrder.ROWS)
     )
     pitch = 100.0 / 12

@@ -14,7 +14,7 @@ from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import Layer, plan_cuts
 from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.joints import ending_on_others
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
@@ -45,7 +45,11 @@ def test_that_a_slit_cut_through_to_the_edge_runs_over_it_like_an_edge_cut(make_
     table = cut_table(5, 6)
     on_edge = tuple(np.flatnonzero(table.hinge_through == SHEET_EDGE).tolist())
     for seed in range(3):
-        plan = plan_cuts(make_design(5, 6, seed, spread=1.0), 150.0, options=CutOptions(removed=on_edge[::3]))
+        plan = plan_cuts(
+            make_design(5, 6, seed, spread=1.0),
+            150.0,
+            options=replace(STRAIGHT, removed=on_edge[::3]),
+        )
         outline = Polygon(plan.outline)
         for hinge in on_edge[::3]:
             (path,) = [path for path in plan.paths if path.cut == table.hinge_cut[hinge]]
@@ -66,7 +70,7 @@ def test_that_the_sheet_falls_into_as_many_pieces_as_its_panels_hang_together_in
         hinges = cut_table(4, 5).hinge_count
         removed = tuple(sorted(np.random.default_rng(seed).choice(hinges, 9, replace=False).tolist()))
         kept = bitten(design, mouths(design), 0.15) if trimmed else None
-        plan = plan_cuts(design, 150.0, options=CutOptions(removed=removed), kept=kept)
+        plan = plan_cuts(design, 150.0, options=replace(STRAIGHT, removed=removed), kept=kept)
         expected = hanging_together(design, removed)
         report = check_plan(plan)
         assert report.pieces == expected == finished_pieces(plan, plan.kerf_mm)
@@ -85,7 +89,7 @@ def test_that_a_slit_whose_through_cut_ends_before_it_is_led_to_that_end(make_de
         everything = plan_cuts(design, 120.0, connector_mm=0.8, kerf_mm=0.05)
         wider = everything.hinges.finished_mm - everything.hinges.requested_mm > 1e-3
         hinges = tuple(np.flatnonzero(wider & (everything.hinges.through != SHEET_EDGE)).tolist())[:1]
-        plan = plan_cuts(design, 120.0, connector_mm=0.8, kerf_mm=0.05, options=CutOptions(removed=hinges))
+        plan = plan_cuts(design, 120.0, connector_mm=0.8, kerf_mm=0.05, options=replace(STRAIGHT, removed=hinges))
         for hinge in hinges:
             lines = [path for path in plan.paths if path.cut == plan.hinges.cut[hinge]]
             bent += any(len(path.points) > 2 for path in lines)
@@ -95,7 +99,7 @@ def test_that_a_slit_whose_through_cut_ends_before_it_is_led_to_that_end(make_de
 
 
 def test_that_a_removed_connector_that_is_still_there_is_said(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(4, 4), options=CutOptions(removed=(3,)))
+    plan = plan_cuts(make_design(4, 4), options=replace(STRAIGHT, removed=(3,)))
     left = plan.hinges.finished_mm.copy()
     left[3] = 0.1
     report = check_plan(replace(plan, hinges=replace(plan.hinges, finished_mm=left)))
@@ -104,7 +108,7 @@ def test_that_a_removed_connector_that_is_still_there_is_said(make_design: MakeD
 
 
 def test_that_two_slits_that_meet_unasked_are_an_error(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(4, 4, seed=2), options=CutOptions(removed=(3,)))
+    plan = plan_cuts(make_design(4, 4, seed=2), options=replace(STRAIGHT, removed=(3,)))
     asked = replace(plan, hinges=replace(plan.hinges, requested_mm=np.full(len(plan.hinges), 0.2)))
     report = check_plan(asked)
     assert not report.ok
@@ -115,7 +119,7 @@ def test_that_two_slits_that_meet_unasked_are_an_error(make_design: MakeDesign) 
 def test_that_joints_are_the_removed_connectors_inside(make_design: MakeDesign) -> None:
     table = cut_table(4, 5)
     removed = tuple(np.flatnonzero(table.hinge_through != SHEET_EDGE)[:4].tolist())
-    plan = plan_cuts(make_design(4, 5, seed=3), options=CutOptions(removed=removed))
+    plan = plan_cuts(make_design(4, 5, seed=3), options=replace(STRAIGHT, removed=removed))
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     pairs = {frozenset((inner[a].cut, inner[b].cut)) for a, b in ending_on_others([drawn_line(p) for p in inner])}
     assert pairs == {frozenset((int(table.hinge_cut[h]), int(table.hinge_through[h]))) for h in removed}
@@ -123,12 +127,12 @@ def test_that_joints_are_the_removed_connectors_inside(make_design: MakeDesign) 
 
 def test_that_removing_an_unknown_hinge_is_refused(make_design: MakeDesign) -> None:
     with refused(FabricationError, "hinge.unknown", hinge=400):
-        plan_cuts(make_design(3, 3), options=CutOptions(removed=(400,)))
+        plan_cuts(make_design(3, 3), options=replace(STRAIGHT, removed=(400,)))
 
 
 def test_that_all_connectors_can_be_removed_and_the_check_tells_what_that_means(make_design: MakeDesign) -> None:
     hinges = cut_table(3, 4).hinge_count
-    plan = plan_cuts(make_design(3, 4, seed=1), options=CutOptions(removed=tuple(range(hinges))))
+    plan = plan_cuts(make_design(3, 4, seed=1), options=replace(STRAIGHT, removed=tuple(range(hinges))))
     report = check_plan(plan)
     assert report.pieces == 4 * 5 and not report.ok
     assert plan.min_connector_mm == 0.0
@@ -138,6 +142,6 @@ def test_that_a_slit_is_cut_over_the_edge_without_a_kerf(make_design: MakeDesign
     design = make_design(4, 4, seed=2, spread=0.3)
     on_edge = int(np.flatnonzero(cut_table(4, 4).hinge_through == SHEET_EDGE)[0])
     with np.errstate(all="raise"):
-        plan = plan_cuts(design, 100.0, 1e-9, 0.0, options=CutOptions(removed=(on_edge,)))
+        plan = plan_cuts(design, 100.0, 1e-9, 0.0, options=replace(STRAIGHT, removed=(on_edge,)))
     assert plan.hinges.finished_mm[on_edge] == 0.0
     assert all(np.all(np.isfinite(path.points)) for path in plan.paths)

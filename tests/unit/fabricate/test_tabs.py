@@ -13,7 +13,7 @@ from shapely.geometry import LineString, Point, Polygon
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.material import find_material
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
@@ -41,7 +41,7 @@ def test_that_tabs_have_their_finished_width_and_lie_off_corners_and_edge_slits(
     kept = bitten(design, mouths(design), 0.2) if trimmed else None
     card = find_material("card-co2")
     whole = plan_cuts(design, 180.0, material=card, kept=kept)
-    plan = plan_cuts(design, 180.0, material=card, options=CutOptions(tabs=count, tab_mm=0.7), kept=kept)
+    plan = plan_cuts(design, 180.0, material=card, options=replace(STRAIGHT, tabs=count, tab_mm=0.7), kept=kept)
     report = check_plan(plan)
     assert report.ok, [problem.text for problem in report.problems]
     parts = outline_parts(plan)
@@ -89,15 +89,15 @@ def test_that_parts_are_joined_to_the_ring_in_any_order_and_direction() -> None:
 def test_that_too_many_tabs_are_refused_with_how_many_fit(make_design: MakeDesign) -> None:
     design = make_design(5, 5, seed=1)
     with refused(FabricationError, "tabs.no_room", tabs=60) as refusal:
-        plan_cuts(design, 40.0, connector_mm=0.1, options=CutOptions(tabs=60, tab_mm=1.5))
+        plan_cuts(design, 40.0, connector_mm=0.1, options=replace(STRAIGHT, tabs=60, tab_mm=1.5))
     most = int(str(refusal.value.fields["count"]))
     assert 0 < most < 60
-    plan = plan_cuts(design, 40.0, connector_mm=0.1, options=CutOptions(tabs=most, tab_mm=1.5))
+    plan = plan_cuts(design, 40.0, connector_mm=0.1, options=replace(STRAIGHT, tabs=most, tab_mm=1.5))
     assert check_plan(plan).ok and len(outline_parts(plan)) == most
 
 
 def test_that_an_accidental_gap_is_an_error_with_a_place(make_design: MakeDesign) -> None:
-    plan = plan_cuts(make_design(4, 4), options=CutOptions(tabs=3))
+    plan = plan_cuts(make_design(4, 4), options=replace(STRAIGHT, tabs=3))
     assert check_plan(plan).ok
     last = plan.paths[-1]
     short = replace(plan, paths=(*plan.paths[:-1], replace(last, points=last.points[:-1])))
@@ -107,7 +107,7 @@ def test_that_an_accidental_gap_is_an_error_with_a_place(make_design: MakeDesign
             problem for problem in check_plan(faulty).problems if problem.code in ("plan.tab_width", "plan.tab_count")
         ]
         assert problem.where is not None
-    fewer = check_plan(replace(plan, options=CutOptions()))
+    fewer = check_plan(replace(plan, options=STRAIGHT))
     assert not fewer.ok and any("but the plan has 0 tabs" in problem.text for problem in fewer.problems)
 
 

@@ -6,6 +6,7 @@ import gettext
 import string
 
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.machine import cuttable, machines
 from kirigami_studio.fabricate.material import library
 from kirigami_studio.foundation.words import DOMAIN
 from kirigami_studio.outlines import silhouettes
@@ -90,6 +91,9 @@ def test_that_bundled_silhouettes_materials_and_profiles_have_german_names_and_n
     shown = [entry for name in silhouettes.names() for entry in (name, *titles(name))]
     shown += [words for one in library().materials.values() for words in (one.name, one.machine, one.note)]
     shown += [profile.name for profile in PROFILES.values()]
+    for machine in machines().items.values():
+        shown += [machine.name, machine.note, machine.kind.words]
+        shown += [words for one in cuttable(machine).values() for words in (one.name, one.machine, one.note)]
     assert [words for words in shown if GERMAN.get(words) is None] == []
 
 

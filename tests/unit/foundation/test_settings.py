@@ -8,11 +8,13 @@ from enum import StrEnum
 
 import pytest
 
+from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import FabricationError, KirigamiError
 from kirigami_studio.foundation.settings import NamedSetting, Setting, check, settings_of
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignChoices, DesignSettings, chosen_settings
+from kirigami_studio.settings.fabrication import FabricationSettings
 
 
 class Colour(StrEnum):
@@ -110,3 +112,7 @@ def test_that_a_request_of_settings_gives_them_back() -> None:
     asked = Request.of(load("circle"), free)
     assert asked.grid is None and asked.regular == 0.2
     assert asked.resolved(free.grid).settings == free
+
+
+def test_that_a_cut_has_one_set_of_usual_options() -> None:
+    assert CutOptions() == FabricationSettings().options

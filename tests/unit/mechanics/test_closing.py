@@ -33,7 +33,7 @@ from kirigami_studio.mechanics.connectors import (
     junctions,
     turning_stiffness,
 )
-from kirigami_studio.mechanics.drive import prescribed_turns
+from kirigami_studio.mechanics.drive import Drive, rated
 from kirigami_studio.mechanics.energy import NetworkEnergy
 from kirigami_studio.mechanics.equilibrium import follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
@@ -177,7 +177,10 @@ def test_that_turning_all_panels_stretches_more_than_letting_them_find_their_way
     parity = np.zeros(network.panel_count)
     parity[shifted.sheet.connectors.panels[:, 0]] = -shifted.sheet.connectors.sign
     parity[shifted.sheet.connectors.panels[:, 1]] = shifted.sheet.connectors.sign
-    forced = follow(network, prescribed_turns(network, 0.5 * turns[:, None] * parity, turns))
+    # Every panel turns as told, and the first one's middle is held.
+    freedoms = np.concatenate([3 * np.arange(network.panel_count) + 2, [0, 1]])
+    path = np.concatenate([0.5 * turns[:, None] * parity, np.zeros((len(turns), 2))], axis=1)
+    forced = follow(network, Drive(freedoms, path, turns, rated(path, turns)))
     free = follow(network, even_closing(shifted.sheet, math.pi - 1.2, 7))
     assert shifted.sheet.opening(forced.motion[-1]) == pytest.approx(1.2)
     assert forced.energy[-1] > free.energy[-1]

@@ -19,7 +19,7 @@ from kirigami_studio.pipeline import best_as_cut
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
-from kirigami_studio.studio.verdict import CloseLook
+from kirigami_studio.studio.verdict import CloseLook, Verdict
 
 REFUSED = CloseLook(Note.of("rank.not_feasible"))
 Looks = dict[Candidate, CloseLook]
@@ -101,7 +101,7 @@ def test_that_no_more_than_the_most_are_looked_at(monkeypatch: pytest.MonkeyPatc
 def test_that_design_says_where_no_trimmed_design_can_be_cut(run: Result, capsys: pytest.CaptureFixture[str]) -> None:
     asked = replace(run, request=replace(run.request, trim=True))
     words = "no trimmed design can be cut in this material"
-    _say_result(run.request.target, asked, {}, None)
+    _say_result(run.request.target, asked, {}, Verdict())
     assert words in capsys.readouterr().out
-    _say_result(run.request.target, run, {}, None)
+    _say_result(run.request.target, run, {}, Verdict())
     assert words not in capsys.readouterr().out

@@ -14,6 +14,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -24,9 +25,11 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import (
     Outcome,
     SimulatedSheet,
+    Source,
     StrainFigure,
     estimate,
-    jam_angles,
+    estimates,
+    jam_json,
     simulate,
 )
 from kirigami_studio.studio.cutting import plan_sheet
@@ -145,11 +148,40 @@ def test_that_designs_are_ranked_by_the_way_that_they_come_as_cut(design: Deploy
     request = Request(target, (6, 6), regular=0.0, polish=0)
     result = Result(request, (irregular, uniform), 2, 0.0)
     assert Ranking.of(request).ranked([uniform, irregular]) == result.candidates
-    jams = jam_angles(result.candidates, STRAIGHT)
+    jams = jam_angles(result, STRAIGHT)
     assert jams[irregular] > math.radians(10.0) > jams[uniform]
     again = result.ranked_as_cut(jams)
     assert again.candidates == (uniform, irregular) and again.best == uniform
     assert [reason.code for reason in again.ranking.reasons(again.candidates)][1] == "rank.jams"
-    assert result.ranked_as_cut(jam_angles(result.candidates, CENTRED)).candidates == result.candidates
-    apart = CutOptions(removed=tuple(range(cut_table(6, 6).hinge_count)))
-    assert jam_angles(result.candidates, replace(STRAIGHT, options=apart)) == {}
+    assert result.ranked_as_cut(jam_angles(result, CENTRED)).candidates == result.candidates
+    apart = replace(STRAIGHT.options, removed=tuple(range(cut_table(6, 6).hinge_count)))
+    assert jam_angles(result, replace(STRAIGHT, options=apart)) == {}
+
+
+def jam_angles(result: Result, settings: FabricationSettings) -> dict[Candidate, float]:
+    return {candidate: found.jam_phi for candidate, found in estimates(result.candidates, settings).items()}
+
+
+@pytest.mark.parametrize("connector_mm", [1.0, 8.0, 16.0, 30.0, 60.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_that_an_estimate_of_wide_connectors_jams_no_earlier_than_at_once(seed: int, connector_mm: float) -> None:
+    design = deploy(RatioField.from_log10(np.random.default_rng(seed).uniform(-0.9, 0.9, (6, 6))))
+    found = estimate(design, replace(STRAIGHT, connector_mm=connector_mm), 0.0)
+    assert 0.0 <= found.jam_deg <= 180.0 and found.source is Source.ESTIMATE
+    assert jam_json(found) == {"jam_deg": found.jam_deg, "jam_from": "estimate"}
+
+
+def test_that_a_jam_beyond_the_flat_sheet_is_refused(straight: SimulatedSheet) -> None:
+    with pytest.raises(AngleError):
+        replace(straight.as_cut, jam_phi=math.radians(230.0))
+    assert straight.as_cut.source is Source.SIMULATION
+    assert jam_json(None) == {"jam_deg": None, "jam_from": None}
+
+
+def test_that_share_of_way_and_word_say_how_far_a_sheet_comes(straight: SimulatedSheet) -> None:
+    half = replace(straight.as_cut, jam_phi=math.radians(90.0), outcome=Outcome.STRETCHED)
+    assert half.opened == pytest.approx(0.5) and half.word == "jams at 90°"
+    assert replace(half, phi=math.radians(90.0), outcome=Outcome.CLOSES).word == "opens to 90°"
+    closed = replace(half, jam_phi=0.0, outcome=Outcome.CLOSES, iou=0.97, ideal_iou=0.98)
+    assert closed.word == "closes" and closed.opened == 1.0 and closed.lost == pytest.approx(0.01)
+    assert closed.to_json() == {"jam_deg": 0.0, "jam_from": "simulation", "iou": 0.97, "max_strain": closed.strain}

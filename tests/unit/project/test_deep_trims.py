@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT
 from kirigami_studio.foundation.errors import MechanicsError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.mechanics.closing import CLOSED, closing, even_closing, silhouette
@@ -101,7 +101,7 @@ def test_that_its_cuts_leave_one_piece_and_every_other_connector(design: Candida
 def test_that_widths_asked_for_lost_connectors_do_not_matter(design: Candidate, plan: CutPlan) -> None:
     lost, other = int(np.flatnonzero(plan.hinges.lost)[0]), int(np.flatnonzero(~plan.hinges.lost)[0])
     assert design.trim is not None
-    options = CutOptions(hinge_mm=((min(lost, other), 0.35), (max(lost, other), 0.35)))
+    options = replace(STRAIGHT, hinge_mm=((min(lost, other), 0.35), (max(lost, other), 0.35)))
     wide = plan_cuts(deploy(design.final_sheet), WIDTH, 0.3, options=options, kept=design.trim.kept)
     assert wide.hinges.finished_mm[lost] == 0.0
     assert wide.hinges.finished_mm[other] == pytest.approx(0.35, abs=1e-3)

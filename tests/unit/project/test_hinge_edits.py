@@ -9,7 +9,7 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.fabricate.options import STRAIGHT, ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -85,6 +85,9 @@ def test_that_choices_about_hinges_stay_only_while_the_grid_stays(
         return Candidate(Sheet(field), evaluate(deploy(field), target, 0.0), seed=0, index=0)
 
     before = edits.set_candidates(Document(target=target), [design(3, 4)], {}).document
-    before = replace(before, fabrication=replace(before.fabrication, options=CutOptions(tabs=3, removed=(1,))))
+    before = replace(
+        before,
+        fabrication=replace(before.fabrication, options=replace(STRAIGHT, tabs=3, removed=(1,))),
+    )
     after = edits.set_candidates(before, [design(*shape)], {}).document
-    assert options_of(after) == CutOptions(tabs=3, removed=kept)
+    assert options_of(after) == replace(STRAIGHT, tabs=3, removed=kept)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from kirigami_studio.cli import main
 from kirigami_studio.fabricate.cut_plan import plan_cuts
-from kirigami_studio.fabricate.options import CutOptions, CutOrder
+from kirigami_studio.fabricate.options import STRAIGHT, CutOrder
 from kirigami_studio.fabricate.routing import Ways, best_ways, shortest_tour
 from kirigami_studio.lab.benchmark import fabrication_suite
 from kirigami_studio.lab.benchmark.fabrication_suite import (
@@ -59,7 +60,7 @@ def test_that_the_figures_are_those_of_the_plans(monkeypatch: pytest.MonkeyPatch
     (_, wide) = figures["orders"]  # type: ignore[misc]
     design = random_design((6, 5), 0.7, 0)
     for order in CutOrder:
-        plan = plan_cuts(design, fabrication_suite.WIDTH_MM, options=CutOptions(order=order))
+        plan = plan_cuts(design, fabrication_suite.WIDTH_MM, options=replace(STRAIGHT, order=order))
         assert wide["orders"][order.value]["travel_mm"] == plan.travel_mm
         assert wide["orders"][order.value]["job_seconds"] == plan.times.total
     slits = wide["slits"]

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.paper_evaluator import judge
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lab.baselines.search import Stopping
@@ -23,6 +22,7 @@ from kirigami_studio.lab.benchmark.solver_suite import (
     ratio_judge,
     solved,
 )
+from kirigami_studio.lab.paper_evaluator import judge
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

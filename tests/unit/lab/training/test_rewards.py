@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, overlap_ratio
-from kirigami_studio.evaluate.paper_evaluator import PaperScore, judge, judge_sheets
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lab.fabricability import Fabricability, fabricability
+from kirigami_studio.lab.paper_evaluator import PaperScore, judge, judge_sheets
 from kirigami_studio.lab.training.rewards import PAPER_REWARDS, FabricationReward, Group, Reward
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.studio.fabricability import Fabricability, fabricability
 
 GOOD = PaperScore(0.9, 0.8, 0, 0.0, has_layout=True, feasible=True)
 ACCURACY, REGULARITY = Reward("accuracy"), Reward("regularity")

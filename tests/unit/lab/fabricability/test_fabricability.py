@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from kirigami_studio.lab.fabricability import TRIAL, Fabricability, fabricability
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import estimate
-from kirigami_studio.studio.fabricability import TRIAL, Fabricability, fabricability
 
 
 def test_that_a_uniform_sheet_can_be_made_and_one_with_slivers_cannot() -> None:

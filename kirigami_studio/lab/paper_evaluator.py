@@ -1,4 +1,4 @@
-"""The paper's evaluator: what one environment call, or one forward evaluation #F, says about one ratio field.
+"""The paper's evaluator: one environment call, or forward evaluation #F, of a ratio field.
 
 It decodes the ratios, measures the sIoU of the silhouette at phi = 0 and checks the layout.  What cannot be made is
 penalised (paper, Secs. "RL for accuracy" and "Solver comparison"):
@@ -30,7 +30,7 @@ OVERLAP = 2.0
 
 @dataclass(frozen=True, slots=True)
 class PaperScore:
-    """What the evaluator says about one design at phi = 0.
+    """Score and checks of one design at phi = 0.
 
     Attributes
     ----------

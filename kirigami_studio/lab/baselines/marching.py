@@ -1,4 +1,4 @@
-"""The paper's marching decoder, void by void: the readable reference that the fast path is tested against.
+"""The paper's marching decoder, void by void: the reference of the fast path.
 
 Eq. 1 is the parity rule (:func:`void_angle`), Eq. 2 the local rule of every void (:func:`march`).
 
@@ -19,7 +19,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 
 
 def void_angle(row: int, column: int, phi: float) -> float:
-    """Interior angle at p0 of a void by the parity rule (Eq. 1): phi where i + j is even, else pi - phi; radians."""
+    """Interior angle at p0 of a void by the parity rule (Eq. 1): phi or pi - phi, radians."""
     return phi if (row + column) % 2 == 0 else math.pi - phi
 
 

@@ -1,4 +1,4 @@
-"""Whether a sheet can be made, by what its flat layout tells in milliseconds: without planned cuts or a simulation.
+"""Whether sheets can be made, by their flat layouts: milliseconds, no planned cuts.
 
 For judging many designs at once, as generators are trained and compared.  ``verdict`` has the whole answer for one.
 """
@@ -27,7 +27,7 @@ EVEN = 0.6
 
 @dataclass(frozen=True, slots=True)
 class Fabricability:
-    """What is known of a sheet that is to be cut.
+    """Measures of a sheet that is to be cut.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Fabricability:
 
 
 def fabricability(sheets: Sequence[Deployment], settings: FabricationSettings = TRIAL) -> list[Fabricability]:
-    """What is known of sheets of one grid that are cut by the same settings.
+    """Measures of sheets of one grid that are cut by the same settings.
 
     Raises
     ------

@@ -1,0 +1,326 @@
+"""The presenters of all places, and the calls from place to place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QObject, QPoint, QRect
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QLabel
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.gui.gallery.all_designs_presenter import AllDesignsPresenter
+from kirigami_studio.gui.gallery.comparing import Comparison
+from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
+from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
+from kirigami_studio.gui.run.run_presenter import RunPresenter
+from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
+from kirigami_studio.gui.session.session import Entry
+from kirigami_studio.gui.stage.void_presenter import VoidPresenter
+from kirigami_studio.gui.target.pasting import PasteReader
+from kirigami_studio.gui.target.target_presenter import SecondPresenter, StartPresenter, TargetPresenter
+from kirigami_studio.gui.window.columns import Columns
+from kirigami_studio.gui.window.file_commands import FileCommands
+from kirigami_studio.gui.window.open_dialogs import Dialogs
+from kirigami_studio.gui.window.services import Services
+from kirigami_studio.gui.window.stage_presenter import StagePresenter
+from kirigami_studio.gui.window.welcome_page import WelcomePresenter
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.sheet_size import size_of
+from kirigami_studio.studio.making import Motion
+from kirigami_studio.studio.parts import Purpose
+from kirigami_studio.studio.targets import TargetReading
+
+
+class Presenters(QObject):
+    """Gives each place's presenter its panel and services, and passes on calls between places.
+
+    Parameters
+    ----------
+    columns : Columns
+    services : Services
+    dialogs : Dialogs
+    files : FileCommands
+    pasting : PasteReader
+    status : QLabel
+        Tells of the void that is pointed at.
+    command : callable
+        The action of a command, by its id.
+    """
+
+    def __init__(
+        self,
+        columns: Columns,
+        services: Services,
+        *,
+        dialogs: Dialogs,
+        files: FileCommands,
+        pasting: PasteReader,
+        status: QLabel,
+        command: Callable[[str], QAction],
+    ) -> None:
+        super().__init__(columns)
+        self._columns, self._services, self._dialogs, self._files = columns, services, dialogs, files
+        session, chosen = services.session, services.chosen
+        target, settings, stage, gallery = columns.target, columns.settings, columns.stage, columns.gallery
+        self.designs = GalleryPresenter(
+            gallery,
+            settings,
+            session,
+            generation=services.generation,
+            marks=services.marks,
+            alikes=services.alikes,
+            estimates=services.estimates,
+            regularity=services.regularity,
+            hand=services.hand,
+            choose=chosen.choose,
+            change=services.settings.change,
+        )
+        self.comparison = Comparison(
+            gallery, stage.compare, session, services.as_cut, choose=chosen.choose, turn=stage.set_comparing
+        )
+        self.all_designs = AllDesignsPresenter(
+            columns.pages,
+            gallery,
+            self.designs,
+            session,
+            generation=services.generation,
+            marks=services.marks,
+            choose=chosen.choose,
+            compare=self.comparison.compare,
+        )
+        self.target = TargetPresenter(
+            target,
+            session,
+            targeting=services.targeting,
+            pasting=pasting,
+            undo=services.project.undo,
+        )
+        self.stage = StagePresenter(
+            stage,
+            session,
+            curves=services.curves,
+            grips=services.grips,
+            name_of=gallery.view.model_.name_of,
+        )
+        self.making = FabricationPresenter(
+            columns.fabrication,
+            stage.cuts,
+            stage.verdict,
+            session,
+            editor=services.fabrication,
+            planner=services.cutting,
+            keeper=services.verdict,
+            estimates=services.estimates,
+            hand=services.hand,
+            run=services.run,
+        )
+        self.run = RunPresenter(
+            settings,
+            columns.run,
+            session,
+            services.generation,
+            services.regularity,
+            editor=services.settings,
+            cancel=chosen.cancel,
+        )
+        self.start = StartPresenter(
+            target.start,
+            settings,
+            session,
+            reader=services.start,
+            openers={
+                LIBRARY_START: lambda: dialogs.show_start_library(settings.start),
+                FILE_START: files.ask_start,
+                DRAWN_START: dialogs.show_start_board,
+                PAIRS: dialogs.show_pairs,
+            },
+            editor=services.settings,
+        )
+        self.second = SecondPresenter(
+            settings.second,
+            services.second,
+            {
+                LIBRARY_START: lambda: dialogs.show_second_library(settings.second.shape),
+                FILE_START: files.ask_second,
+                DRAWN_START: dialogs.show_second_board,
+            },
+        )
+        self.voids = VoidPresenter(
+            stage.view,
+            stage.voids,
+            stage.deployment.play,
+            status,
+            session,
+            hand=services.hand,
+            running=lambda: services.run.running,
+            showing_before=lambda: stage.showing_before,
+            command=command,
+        )
+        self.welcome = WelcomePresenter(stage.welcome, session, services.preferences)
+        self._connect_session()
+        self._connect_stage()
+        self._connect_pages()
+        self._connect_target()
+        self._connect_files(pasting)
+        self._show_idle()
+        self._show_document(session.document)
+
+    def _connect_session(self) -> None:
+        """Signals of document, stage and run, passed down to each place in this order."""
+        session, run = self._services.session, self._services.run
+        run.started.connect(self._show_run)
+        run.ended.connect(self._show_idle)
+        session.document_changed.connect(self._show_document)
+        session.display.stage_changed.connect(self._show_design)
+        session.display.gallery_reset.connect(self._show_gallery)
+        session.display.candidate_found.connect(self._show_found)
+        self._services.reader.known.connect(self._show_reading)
+
+    def _connect_stage(self) -> None:
+        stage, services = self._columns.stage, self._services
+        chosen = services.chosen
+        self.designs.named.connect(stage.set_name)
+        self.designs.label_wanted.connect(self._show_label)
+        self.voids.editable.connect(stage.set_editable)
+        self.voids.refresh()
+        stage.before_wanted.connect(chosen.show_before)
+        stage.trim.switch.triggered.connect(chosen.trim)
+        stage.voids.refit.clicked.connect(self.refit)
+        chosen.sampled.known.connect(stage.show_sample)
+        chosen.trimming.busy_changed.connect(stage.show_trimming)
+        chosen.refitting.busy_changed.connect(stage.voids.show_fitting)
+        services.as_cut.changed.connect(stage.show_as_cut)
+        services.artwork.painted.connect(stage.view.show_artwork)
+        services.cutting.planned.connect(stage.show_title)
+        stage.switches_changed.connect(self.voids.refresh)
+
+    def _connect_pages(self) -> None:
+        """A view in the place of another."""
+        stage = self._columns.stage
+        self.designs.compare_wanted.connect(self.comparison.compare_with)
+        stage.comparing_changed.connect(self.comparison.follow)
+        for hidden_by_table in (self._columns.target.editing_changed, stage.comparing_changed):
+            hidden_by_table.connect(self.all_designs.leave_to)
+        self.all_designs.shown_changed.connect(self._make_way)
+
+    def _connect_target(self) -> None:
+        panel, services, dialogs, files = self._columns.target, self._services, self._dialogs, self._files
+        panel.buttons["openTarget"].clicked.connect(files.ask_target)
+        panel.buttons["library"].clicked.connect(dialogs.show_library)
+        panel.view.file_dropped.connect(files.open)
+        services.targeting.reader.design_read.connect(files.open_design)
+        panel.opened.size_wanted.connect(services.fabrication.set_opened_size)
+        panel.opened.drawn_wanted.connect(services.fabrication.cut_at_drawn_size)
+        panel.opened.edited.connect(services.session.history.end_drag)
+        for reader, purpose in (
+            (services.targeting.reader, Purpose.TARGET),
+            (services.start, Purpose.START),
+            (services.second, Purpose.SECOND),
+        ):
+            reader.choice_wanted.connect(partial(dialogs.show_parts, purpose, reader.take_chosen))
+
+    def _connect_files(self, pasting: PasteReader) -> None:
+        panel, services, dialogs, files = self._columns.fabrication, self._services, self._dialogs, self._files
+        panel.materials_wanted.connect(dialogs.show_materials)
+        panel.export_wanted.connect(files.export)
+        panel.exports.all_wanted.connect(files.export_all)
+        panel.exports.artwork_wanted.connect(dialogs.export_artwork)
+        panel.exports.ideal_wanted.connect(lambda: files.animate(Motion.IDEAL))
+        services.exporter.exported.connect(dialogs.show_report)
+        services.project.recovery.recover_wanted.connect(files.recover)
+        for changed in (services.project.materials.material_added, dialogs.materials_changed):
+            changed.connect(self.making.reload_materials)
+        pasting.file_wanted.connect(files.open)
+
+    # what concerns several places ----------------------------------------------------------------------------------
+
+    def _show_run(self, total: int) -> None:
+        """A run has begun."""
+        self.designs.show_run()
+        self.all_designs.show_run()
+        self._columns.target.set_editing(False)
+        self.stage.show_run()
+        self.making.show_run()
+        self.run.show_run(total)
+        self.voids.refresh()
+
+    def _show_idle(self) -> None:
+        """No run is in progress."""
+        self.designs.show_idle()
+        self.all_designs.show_run()
+        self.stage.show_idle()
+        self.run.show_idle()
+        self.voids.refresh()
+
+    def _show_document(self, document: Document) -> None:
+        """The document has changed."""
+        self.designs.show_document(document)
+        self.comparison.refresh()
+        self.all_designs.show_document()
+        self.target.show_document(document)
+        self.stage.show_document()
+        self.making.show_document(document)
+        self.run.show_document(document)
+        self.start.show()
+        self.voids.refresh()
+        self._columns.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
+
+    def _show_design(self, entry: Entry | None) -> None:
+        """Another design is on the stage, or none."""
+        self.designs.show_design(entry)
+        self.comparison.show_design(entry)
+        self.all_designs.show_design(entry)
+        self.stage.show_design(entry)
+        self.making.show_design(entry)
+        self.start.show()
+        self.voids.refresh()
+
+    def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
+        """Other designs are in the gallery."""
+        self.designs.show_gallery(entries)
+        self.comparison.refresh()
+        self.all_designs.show_document()
+
+    def _show_found(self, entry: Entry) -> None:
+        """A run has found a design, or improved one."""
+        self.designs.add(entry)
+        self.comparison.refresh()
+
+    def _show_reading(self, reading: TargetReading | None) -> None:
+        """Show what the target's shape says of symmetry and grid."""
+        columns, settings = self._columns, self._services.session.document.settings
+        columns.settings.show_symmetry("" if reading is None else reading.symmetry)
+        columns.settings.show_grid_choice(
+            None if reading is None else reading.grid, "" if reading is None else reading.reason
+        )
+        columns.target.show_start_refusal("" if reading is None else reading.start_refusal)
+        if reading is not None and reading.grid is not None and settings.auto_grid:
+            columns.target.show_reach(reading.grid)
+        self.start.show()
+
+    def _show_label(self, candidate: Candidate | None, card: QRect) -> None:
+        """Open name and note of a design beside its card, or beside the title of the stage."""
+        title = self._columns.stage.title
+        beside = card if card.isValid() else QRect(title.mapToGlobal(QPoint(0, 0)), title.size())
+        self._dialogs.show_label(candidate, beside)
+
+    def _make_way(self, shown: bool) -> None:
+        """The table of all designs comes, or is gone."""
+        columns = self._columns
+        if not shown:
+            columns.stage.take_focus()
+            return
+        if columns.target.editing:
+            columns.target.set_editing(False)
+        columns.stage.player.play.setChecked(False)
+
+    def refit(self, on: bool) -> None:
+        """Fit the chosen design again, or stop fitting."""
+        chosen = self._services.chosen
+        if on:
+            chosen.refit()
+        else:
+            chosen.cancel()
+        self._columns.stage.voids.show_fitting(chosen.refitting.busy)
