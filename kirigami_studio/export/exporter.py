@@ -48,7 +48,9 @@ class ExportJob:
     markers : bool
         A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
     motion : CutMotion or None
-        What an animation shows: the sheet as cut; None for its ideal motion.
+        What pictures and animations show: the sheet as cut; None for its ideal motion.
+    picture_phi : float or None, radians
+        Angle that pictures show; the target angle unless given.
     artwork : Artwork or None
         What is printed on the sheet; only a whole set of files has it.
     record : bytes
@@ -71,6 +73,7 @@ class ExportJob:
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
+    picture_phi: float | None = None
     artwork: Artwork | None = None
     record: bytes = b""
     simulated_jam: float | None = None
@@ -95,6 +98,11 @@ class ExportJob:
             raise ExportError("export.no_plan")
         origin = self.provenance or self.plan.origin
         return replace(self.plan, origin=origin, verdict=self.verdict or self.plan.verdict)
+
+    @property
+    def shown_phi(self) -> float:
+        """Angle (radians) that pictures show."""
+        return self.phi if self.picture_phi is None else self.picture_phi
 
     @property
     def posed(self) -> PosedDesign:
