@@ -7,34 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio.api.design import Design
-from kirigami_studio.export.dxf_check import FileReport, check_file
-from kirigami_studio.export.verification import Verification
-from kirigami_studio.studio.making import judged_file
-from kirigami_studio.studio.verdict import Verdict
+from kirigami_studio.studio.checking import Checked, checked
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class CheckedFile:
+class CheckedFile(Checked):
     """Content of a cut file.
 
     Attributes
     ----------
     report : FileReport
-        Units, layers, lengths, pieces, narrowest ligament, problems.
+        Units, layers, lengths, pieces, narrowest ligament, problems, and how the file says it was made.
     verification : Verification or None
         Beside the cuts of its design, where one was named.
     verdict : Verdict or None
         On the sheet of that design.
     """
-
-    report: FileReport
-    verification: Verification | None = None
-    verdict: Verdict | None = None
-
-    @property
-    def ok(self) -> bool:
-        """Whether it is ready to cut."""
-        return self.report.ok and (self.verdict is None or self.verdict.ok)
 
     @property
     def problems(self) -> tuple[str, ...]:
@@ -44,27 +32,27 @@ class CheckedFile:
         return tuple(dict.fromkeys(found))
 
     def __repr__(self) -> str:
-        name, told = self.report.path.name, "ready to cut" if self.ok else "not ready to cut"
-        return f"<CheckedFile {name}: {told}{'' if self.ok else ': ' + ' '.join(self.problems)}>"
+        told = "sound" if self.sound else "not sound"
+        if self.verdict is not None:
+            told += f", {self.verdict.level.words}"
+        return f"<CheckedFile {self.report.path.name}: {told}{'' if self.ok else ': ' + ' '.join(self.problems)}>"
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin or a cut SVG of this program: units, duplicates, gaps, ligaments.
+    """Read a DXF of any origin or a cut file of this program: units, duplicates, ligaments.
 
     Parameters
     ----------
     path : path
         A file, or a folder of layer files.
     design : Design, optional
-        That it should be a cut file of, with the choices of its project: the file is compared with its cuts, and the
-        sheet is judged.
+        That it should be a cut file of: the file is compared with its cuts, made as the file says, and the sheet is
+        judged.
 
     Raises
     ------
     ExportError
         Missing, damaged, or of another kind.
     """
-    report = check_file(Path(path))
-    if design is None:
-        return CheckedFile(report)
-    return CheckedFile(report, *judged_file(Path(path), design.document))
+    found = checked(Path(path), None if design is None else design.document)
+    return CheckedFile(found.report, found.verification, found.verdict)

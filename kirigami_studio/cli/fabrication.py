@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,10 @@ from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import engraved_json, narrowed_json
-from kirigami_studio.export.registry import find_exporter
+from kirigami_studio.export.registry import find_writer
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -27,8 +27,9 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, new_settings, with_choices
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
+from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
@@ -39,22 +40,32 @@ from kirigami_studio.studio.making import (
     closed,
     export_job,
     fixing,
-    judged_file,
     planned,
     written,
 )
 from kirigami_studio.studio.verdict import Verdict, refused
 
+#: Angle of the flat sheet.
+FLAT_DEG = 180.0
+
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings of the width options; unknown materials are refused before any work."""
-    return new_settings(_given(arguments))
+    """Fabrication settings from the width options, else the material's; warns of what it cannot do.
+
+    Unknown materials are refused here, before any work.
+    """
+    settings = new_settings(_given(arguments))
+    limits = material_for(settings).limits_note
+    if limits is not None:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
+    return settings
 
 
 def export(arguments: argparse.Namespace) -> int:
     """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
-        find_exporter(arguments.out)
+        find_writer(arguments.out)
+    _check_picture(arguments)
     document = load(arguments.project)
     chosen_candidate(document)
     if arguments.name is not None and document.chosen is not None and document.label is not None:
@@ -73,7 +84,12 @@ def export(arguments: argparse.Namespace) -> int:
     plan, report = made.plan, made.report
     record = arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, record)
-    found = written(request, made, output, closed(request, made))
+    motion = None
+    if arguments.as_cut:
+        sheet = simulated(request.candidate, plan, settings.width_mm, request.target, request.deployment)
+        request, motion = replace(request, as_cut=sheet.as_cut), sheet.motion
+    angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
+    found = written(request, made, output, closed(request, made), motion, picture_phi=angle)
     verdict = found.verdict
     assert verdict is not None  # planned sheets are judged
     advice = _advice(request, verdict) if arguments.fixes and not verdict.ok else None
@@ -149,6 +165,16 @@ def export(arguments: argparse.Namespace) -> int:
     return 0 if found.ok else 1
 
 
+def _check_picture(arguments: argparse.Namespace) -> None:
+    """Refuse choices for pictures where none is written, and angles that no sheet has."""
+    suffix, angle = Path(arguments.out).suffix.lower(), arguments.at_deg
+    if angle is not None and angle > FLAT_DEG:
+        raise UsageError("picture.angle", angle=angle)
+    wanted = (".png",) if angle is not None else (".png", ".gif")
+    if (arguments.as_cut or angle is not None) and not arguments.all and suffix not in wanted:
+        raise UsageError("picture.none", kinds=" ".join(wanted), path=arguments.out)
+
+
 def _advice(request: CutRequest, verdict: Verdict) -> Advice:
     """Try changes on the chosen design, all in one go."""
     document = request.document
@@ -195,13 +221,14 @@ def _summary(found: Verification) -> dict[str, object]:
 
 def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
-    report = check_file(Path(arguments.file))
+    document = None if arguments.design is None else load(arguments.design)
+    found = checked(Path(arguments.file), document)
+    report, record = found.report, found.report.record
     problems = [problem.text for problem in report.problems]
-    judged = None if arguments.design is None else judged_file(Path(arguments.file), load(arguments.design))
-    ok = report.ok and (judged is None or judged[1].ok)
     if arguments.json:
         answer: dict[str, object] = {
-            "ok": ok,
+            "ok": found.ok,
+            "sound": found.sound,
             "problems": problems,
             "unit": report.unit,
             "layers": report.layers,
@@ -211,19 +238,22 @@ def check(arguments: argparse.Namespace) -> int:
             "overlap_mm": report.overlap_mm,
             "pieces": report.pieces,
             "min_ligament_mm": report.min_ligament_mm,
+            "record": None if record is None else record.to_json(),
+            "verdict_at_export": None if found.said is None else found.said.value,
         }
-        if judged is not None:
-            answer |= {"void_miss_um": judged[0].void_miss_um, **jam_json(judged[1].as_cut)}
-            answer["verdict"] = judged[1].to_json()
+        if found.verification is not None:
+            answer["void_miss_um"] = found.verification.void_miss_um
+        if found.verdict is not None:
+            answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
         print_json(answer)
-    else:
-        ready = tr("{file}: ready to cut", file=arguments.file)
-        say(ready if ok else tr("{file}: not ready to cut", file=arguments.file))
-        for problem in problems:
-            say(f"  {problem}")
-        if judged is not None:
-            say_verdict(judged[1])
-    return 0 if ok else 1
+        return 0 if found.ok else 1
+    sound = tr("{file}: the file is sound", file=arguments.file)
+    say(sound if found.sound else tr("{file}: the file is not sound", file=arguments.file))
+    for line in (*problems, *found.lines):
+        say(f"  {line}")
+    if found.verdict is not None:
+        say_verdict(found.verdict)
+    return 0 if found.ok else 1
 
 
 def animate(arguments: argparse.Namespace) -> int:
@@ -254,8 +284,8 @@ def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
     request = CutRequest.of(document, settings)
     check_connectors(request.candidate, settings.options)
-    width = settings.width_mm
-    return simulated(request.candidate, planned(request).plan, width, request.target, request.deployment).motion(width)
+    made, width = planned(request), settings.width_mm
+    return simulated(request.candidate, made.plan, width, request.target, request.deployment).motion
 
 
 def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:

@@ -1,8 +1,9 @@
-"""Judge any cut file: units, layers, duplicates, gaps in the outline, pieces and the narrowest ligament.
+"""Judge any cut file: units, layers, duplicates, gaps, pieces, narrowest ligament.
 
 :func:`check_file` reads a DXF of any origin, a cut SVG of this program, or a folder of layer files.  A file written
-here says how many tabs its outline has and how many cuts end on other cuts, and is held to that; in a foreign file the
-outline is the largest closed contour.  A name that such a file says it engraves is no cut.
+here says how it was made, how many tabs its outline has and how many cuts end on other cuts, and is held to that; in a
+foreign file the outline is the largest closed contour.  A name that such a file says it engraves is no cut.  A sound
+file is no verdict on its sheet: whether that closes and its material holds is known by the design alone.
 """
 
 from __future__ import annotations
@@ -27,11 +28,13 @@ from kirigami_studio.export.dxf_reading import (
     read_content,
 )
 from kirigami_studio.export.file_content import MILLIMETRES
+from kirigami_studio.export.file_record import FileRecord, record_of
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
+from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
 from kirigami_studio.export.provenance import PROGRAM
-from kirigami_studio.export.svg_reading import facts_of_svg, is_svg, read_with_xml
-from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, place_of
+from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
+from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.engraving import nearest_cut
@@ -40,7 +43,11 @@ from kirigami_studio.fabricate.finished_sheet import RepeatedCut, overlap, remai
 from kirigami_studio.fabricate.joints import ending_on_others
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import read_at_most
+from kirigami_studio.foundation.plain_text import plain_line
 
+#: Kinds of file that an export has beside cut files.
+NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".json", ".kiri"})
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.
@@ -81,6 +88,8 @@ class FileReport:
         Pieces of the sheet after cutting; None without a closed outline.
     min_ligament_mm : float or None
         Finished width of the narrowest place between two cuts.
+    record : FileRecord or None
+        How the file says it was made; None for files of others, of earlier versions, and for damaged records.
     """
 
     path: Path
@@ -94,6 +103,7 @@ class FileReport:
     kerf_mm: float
     pieces: int | None
     min_ligament_mm: float | None
+    record: FileRecord | None = None
 
     @property
     def ok(self) -> bool:
@@ -119,9 +129,15 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     """
     content = _read(Path(path))
     kerf = _kerf(content, kerf_mm)
+    if purpose := content.facts.get("PURPOSE"):
+        # Whatever else it has is meant for eyes.
+        problems = [Problem.error("cut_file.not_for_cutting", purpose=plain_line(purpose))]
+        return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(content.paths), 0.0, 0.0,
+                          (0.0, 0.0), kerf, None, None)  # fmt: skip
     problems = [*content.problems, *_layer_problems(content.layers)]
     drawn = content.paths
     content = _without_name(content, kerf, problems)
+    record = _record(content, problems)
     if not content.paths:
         of_the_name = drawn and "PART" in content.facts
         problems.append(Problem.warning("cut_file.name_alone") if of_the_name else Problem.error("cut_file.empty"))
@@ -143,12 +159,27 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         outline = tabbed_outline(content, problems)
     problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content, outline, kerf, problems)
+    if record is not None and ligament is not None and ligament < record.least_connector_mm - WIDTH_TOLERANCE_MM:
+        widths = {"width_mm": ligament, "recorded_mm": record.least_connector_mm}
+        problems.append(Problem.warning("cut_file.narrower_than_recorded", **widths))
     return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, twice.length_mm,
-                      bounds, kerf, None if pieces is None else copies * pieces, ligament)  # fmt: skip
+                      bounds, kerf, None if pieces is None else copies * pieces, ligament, record)  # fmt: skip
+
+
+def _record(content: DxfContent, problems: list[Problem]) -> FileRecord | None:
+    """How a file says it was made, and whether it has as many cuts as it says."""
+    try:
+        record = record_of(content.facts)
+    except ExportError as error:
+        problems.append(Problem.error(error.code, **error.fields))
+        return None
+    if record is not None and "PART" not in content.facts and len(content.paths) != record.lines:
+        problems.append(Problem.error("cut_file.lines_differ", count=len(content.paths), promised=record.lines))
+    return record
 
 
 def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) -> tuple[DxfContent, int]:
-    """The first of the copies that a file says it holds, and their number; they have to be alike and apart."""
+    """The first of the copies that a file names, and their number; they are alike and apart."""
     said, gap = content.facts.get("COPIES", "1"), _number(content, "COPY_GAP_MM")
     copies = int(said) if said.isdecimal() and len(said) <= 3 else 0
     if copies == 1:
@@ -168,6 +199,10 @@ def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) ->
 def _read(path: Path) -> DxfContent:
     """A file, or the files of a folder as one drawing; registration marks are no cuts."""
     if not path.is_dir() or not any(path.iterdir()):
+        if path.suffix.lower() in NO_CUT_FILES:
+            raise ExportError("cut_file.other_kind", path=path)
+        if path.suffix.lower() == ".lbrn2":
+            return _lightburn_content(path)
         return _without_marks(_svg_content(path) if is_svg(path) else read_content(path))
     contents = [read_content(part) for part in layer_paths(path)]
     marks = [[p.points.tolist() for p in content.paths if p.layer == REGISTRATION_LAYER] for content in contents]
@@ -216,6 +251,22 @@ def _svg_content(path: Path) -> DxfContent:
     return DxfContent(paths, unit, tuple(sorted(found.layers)), facts, problems)
 
 
+def _lightburn_content(path: Path) -> DxfContent:
+    """A LightBurn project, as if it were a DXF.
+
+    Raises
+    ------
+    ExportError
+        It is missing or damaged, or holds other things than paths.
+    """
+    try:
+        found = read_lightburn(read_at_most(path, LARGEST_FILE), path)
+    except OSError as error:
+        raise ExportError("dxf.cannot_open", path=path, reason=error.strerror or str(error)) from error
+    paths = [FilePath(one.points, one.layer, one.closed) for one in found.paths]
+    return DxfContent(paths, "mm", tuple(sorted(found.layers)), dict(found.facts), [])
+
+
 def _without_marks(content: DxfContent) -> DxfContent:
     return replace(
         content,
@@ -225,7 +276,7 @@ def _without_marks(content: DxfContent) -> DxfContent:
 
 
 def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
-    """The cuts alone of a file that says in how many lines it engraves a name; those have to be there, and clear.
+    """The cuts alone of a file that engraves a name in so many lines.
 
     Of files for single layers one holds all of the name, and the others nothing of it.
     """
@@ -377,7 +428,7 @@ def _number(content: DxfContent, key: str) -> float:
 
 
 def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
-    """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
+    """List cuts outside the outline, across it, below the origin, and after it."""
     problems: list[Problem] = []
     low = np.concatenate([path.points for path in paths]).min(axis=0)
     if low.min() < -TOUCH_MM:
@@ -432,7 +483,7 @@ def _physics(
 
 
 def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
-    """Closed cuts inside the outline, beside relief holes and slots: what they enclose falls out."""
+    """Closed cuts inside the outline, beside relief holes and slots: their inside falls out."""
     closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
               and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.

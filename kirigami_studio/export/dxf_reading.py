@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -45,9 +46,14 @@ FARTHEST_MM = 1e12
 LARGEST_CURVE_MM = 100_000.0
 #: Chord tolerance (mm) for curves.
 FLATTEN_MM = 0.005
-#: Facts about a file's making that its check needs; R12 files keep them among ezdxf's own records.
-RECORDED_FACTS = ("KERF_MM", "TABS", "TAB_MM", "JOINS", "PART", "COPIES", "COPY_GAP_MM",
-                  "ENGRAVED_LINES")  # fmt: skip
+#: Facts about a file's making that its check needs, the last two in numbered pieces; R12 files keep them among ezdxf's
+#: own records.
+RECORDED_FACTS = (
+    "KIRIGAMI_STUDIO", "CONSTRUCTION", "DESIGN", "WIDTH_MM", "CONNECTOR_MM", "LEAST_CONNECTOR_MM", "KERF_MM",
+    "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "MACHINE", "LINES", "TRIMMED", "TABS", "TABS_ASKED",
+    "TAB_MM", "JOINS", "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
+)  # fmt: skip
+RECORDED_LISTS, MOST_PIECES = ("HINGE_MM", "REMOVED"), 400
 #: What ezdxf raises on damaged files, depending on where the damage is.
 PARSER_FAULTS = (
     DXFError,
@@ -277,6 +283,9 @@ def _facts(document: Drawing) -> dict[str, str]:
     for key in RECORDED_FACTS:
         if key not in facts and key in record:
             facts[key] = str(record[key])
+    for name in RECORDED_LISTS:
+        for piece in takewhile(record.__contains__, (f"{name}_{number}" for number in range(MOST_PIECES))):
+            facts.setdefault(piece, str(record[piece]))
     return facts
 
 

@@ -6,7 +6,7 @@ import hashlib
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -105,6 +105,53 @@ def drafted(job: ExportJob, path: Path) -> Iterator[Draft]:
         yield Draft(job, path, written, replace(found, path=written_path(path, job.profile)))
 
 
+def placed(
+    job: ExportJob,
+    goals: Sequence[tuple[Path, DxfVersion]],
+    judged: Judged | None,
+    done: Callable[[Path], None],
+) -> tuple[ExportJob, list[Verification]]:
+    """Write cut files aside, read all back, add their verdict, and put them in place.
+
+    Parameters
+    ----------
+    job : ExportJob
+    goals : sequence of (Path, DxfVersion)
+        Where they are to appear.
+    judged : function or None
+        As for :func:`export_all`.
+    done : function
+        Gets each path once it is there.
+
+    Returns
+    -------
+    job : ExportJob
+        With the level of the verdict.
+    verifications : list of Verification
+
+    Raises
+    ------
+    ExportError
+        As :func:`~kirigami_studio.export.registry.export`.
+    """
+    level = _level(judged, ())
+    while True:
+        job = replace(job, verdict=level)
+        with ExitStack() as stack:
+            drafts = [stack.enter_context(drafted(replace(job, dxf_version=version), goal)) for goal, version in goals]
+            verified = [draft.verification for draft in drafts]
+            # What is judged does not depend on what the files say of it: they are written twice at most.
+            before, level = level, _level(judged, verified)
+            if level == before:
+                for draft in drafts:
+                    done(draft.place())
+                return job, verified
+
+
+def _level(judged: Judged | None, verifications: Sequence[Verification]) -> str:
+    return "" if judged is None else str(judged(verifications)["level"])
+
+
 def export_all(
     job: ExportJob, folder: str | Path, name: str = "cut", sidecar: bool = True,
     on_written: Callable[[Path], None] | None = None, judged: Judged | None = None,
@@ -156,33 +203,32 @@ def _written(
     cut = home / f"{name}.dxf"
     before = _recorded(sidecar_path(cut))
     written: list[Path] = []
-    verified: list[Verification] = []
 
     def done(path: Path) -> None:
         written.append(path)
         if on_written is not None:
             on_written(path)
 
-    for goal, version in (
+    goals = (
         (cut, DxfVersion.R2010),
         (home / f"{name}_r12.dxf", DxfVersion.R12),
         (home / f"{name}.svg", DxfVersion.R2010),
-    ):
-        with drafted(replace(job, dxf_version=version), goal) as draft:
-            verified.append(draft.verification)
-            done(draft.place())
+    )
+    job, verified = placed(job, goals, judged, done)
+    verdict = None if judged is None else judged(verified)
     if not find_profile(job.profile).slots:
         done(export(job, home / f"{name}.lbrn2"))
     for goal in (home / f"{name}.pdf", home / "preview.png"):
         done(export(job, goal))
-    write_layout_svg(job, home / "layout.svg", plan.size_mm[0])
-    done(home / "layout.svg")
+    picture = home / f"{name}-picture.svg"
+    write_layout_svg(job, picture, plan.size_mm[0])
+    done(picture)
     if job.artwork is not None:
         for path in write_artwork(ArtworkJob.usual(job.artwork, job), home):
             done(path)
     done(write_reference(plan, home / "reference.dxf"))
     if sidecar:
-        done(write_sidecar(job, sidecar_path(cut), written, None if judged is None else judged(verified)))
+        done(write_sidecar(job, sidecar_path(cut), written, verdict))
     known = (f"{name}{rest}" for rest in ("", ".dxf", ".lbrn2", ".json", "_r12", "_r12.dxf"))
     older = tuple(path for path in map(home.joinpath, known) if path.exists() and path not in written)
     return ExportSet(tuple(written), tuple(verified), older, _remove(home, before, written))
@@ -196,7 +242,7 @@ def _refuse_other_sets(home: Path, name: str) -> None:
 
 
 def _recorded(path: Path) -> dict[str, str]:
-    """SHA-256 of the files that a record names, by their paths in its folder; none where it is no record of ours."""
+    """SHA-256 of the files that a record names, by their paths; none without a record."""
     try:
         if path.stat().st_size > LARGEST_RECORD:
             return {}
@@ -209,7 +255,7 @@ def _recorded(path: Path) -> dict[str, str]:
 
 
 def _remove(home: Path, before: Mapping[str, str], written: Sequence[Path]) -> tuple[Path, ...]:
-    """Remove what an earlier set recorded, this one did not write, and nobody changed; returns files and folders."""
+    """Remove files of an earlier set that nobody changed; return files and folders."""
     removed = []
     for name, digest in before.items():
         path = home / name

@@ -1,11 +1,9 @@
-"""The request and the interface of every exporter."""
+"""The request for every kind of file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -50,13 +48,17 @@ class ExportJob:
     markers : bool
         A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
     motion : CutMotion or None
-        What an animation shows: the sheet as cut; None for its ideal motion.
+        What pictures and animations show: the sheet as cut; None for its ideal motion.
+    picture_phi : float or None, radians
+        Angle that pictures show; the target angle unless given.
     artwork : Artwork or None
         What is printed on the sheet; only a whole set of files has it.
     record : bytes
         The design as a packed project, which DXF and SVG cut files carry; empty for none.
     simulated_jam : float or None, radians
         Where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked.
+    verdict : str
+        Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it.
     """
 
     deployment: Deployment
@@ -71,9 +73,11 @@ class ExportJob:
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
+    picture_phi: float | None = None
     artwork: Artwork | None = None
     record: bytes = b""
     simulated_jam: float | None = None
+    verdict: str = ""
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
@@ -83,7 +87,7 @@ class ExportJob:
 
     @property
     def required_plan(self) -> CutPlan:
-        """The plan, with the provenance of its design.
+        """The plan, with the provenance of its design and the verdict on it.
 
         Raises
         ------
@@ -92,7 +96,13 @@ class ExportJob:
         """
         if self.plan is None:
             raise ExportError("export.no_plan")
-        return replace(self.plan, origin=self.provenance) if self.provenance else self.plan
+        origin = self.provenance or self.plan.origin
+        return replace(self.plan, origin=origin, verdict=self.verdict or self.plan.verdict)
+
+    @property
+    def shown_phi(self) -> float:
+        """Angle (radians) that pictures show."""
+        return self.phi if self.picture_phi is None else self.picture_phi
 
     @property
     def posed(self) -> PosedDesign:
@@ -103,18 +113,3 @@ class ExportJob:
         design = PosedDesign(self.deployment, self.transform, self.phi, self.trim)
         made = self.motion.made if self.motion is not None else None if self.plan is None else self.plan.made
         return design if made is None else design.laid_over(made)
-
-
-class Exporter(Protocol):
-    """Writes one kind of file."""
-
-    @property
-    def extension(self) -> str:
-        """Lower case, with the dot."""
-
-    @property
-    def name(self) -> str:
-        """Name of the format in a file dialog."""
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write and verify; raises ExportError and leaves an older file alone when that fails."""

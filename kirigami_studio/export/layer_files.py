@@ -42,7 +42,7 @@ def layer_folder(path: Path) -> Path:
     return path.with_suffix("") if path.suffix.lower() == ".dxf" else path
 
 
-def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Profile) -> Path:
+def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Profile, record: bytes = b"") -> Path:
     """Write the folder and return it.
 
     Parameters
@@ -52,6 +52,8 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
         The folder, or a ``.dxf`` name whose stem names it.
     version : str
     profile : Profile
+    record : bytes
+        The design that the plan cuts, see ``design_record``; the first file has it.
 
     Raises
     ------
@@ -71,7 +73,8 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
             drawn = [*marks, *(_moved(stroke, MARK_GAP_MM) for stroke in part)]
             said = facts | {"PART": f"{number} of {len(parts)}"}
             verify = partial(check_written, strokes=drawn, size=size, version=version)
-            write_atomically(fresh / name, strokes_dxf(drawn, size, version, said), verify)
+            enclosed = record if number == 1 else b""
+            write_atomically(fresh / name, strokes_dxf(drawn, size, version, said, record=enclosed), verify)
         fresh.chmod(0o755)
         _put_in_place(fresh, folder)
         fresh = None

@@ -1,4 +1,4 @@
-"""Cut plan -> LightBurn project (.lbrn2): named layers with speed, power and passes, in the order of cutting.
+"""Cut plan -> LightBurn project (.lbrn2): named layers, speed, power, passes, order.
 
 A name is engraved first, by lines with a setting of their own: in one pass at a share of the material's power, since
 materials know only what cuts them.  Connectors are marked on the tool layer T1 where that is asked for: LightBurn
@@ -20,7 +20,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes
@@ -47,31 +46,14 @@ LARGEST_TURN = math.pi / 2.0
 SAME_LENGTH = 5e-4
 #: Chords that a Bezier curve of a quarter turn is measured with; they miss 3e-5 of it.
 CHORDS = 64
+#: Chords of a curve where the cuts of a project are checked.
+CURVE_CHORDS = 24
 #: x and y of the four control points of a cubic Bezier curve, mm.
 Curve = tuple[float, ...]
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _VERTEX = re.compile(rf"V{_NUMBER} {_NUMBER}(?:c0x{_NUMBER}(?:c0y{_NUMBER})?)?(?:c1x{_NUMBER}(?:c1y{_NUMBER})?)?")
+_FACT = re.compile(r"([A-Z][A-Z0-9_]{1,60}) (.{1,255})")
 _PRIMITIVE = re.compile(r"([LB])(\d+) (\d+)")
-
-
-@dataclass(frozen=True, slots=True)
-class LightBurnExporter:
-    """Cut plan as LightBurn project."""
-
-    extension: str = ".lbrn2"
-    name: str = "LightBurn project"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan; the layers are LightBurn's own, whatever the profile.
-
-        Raises
-        ------
-        ExportError
-            The profile asks for closed slots, which such a project does not hold; or as :func:`write_lightburn`.
-        """
-        if find_profile(job.profile).slots:
-            raise ExportError("lightburn.open_cuts_only")
-        write_lightburn(job.required_plan, path, job.markers)
 
 
 def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> None:
@@ -152,7 +134,7 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
 
 
 def power_notes(material: Material) -> tuple[Note, ...]:
-    """What to do about the power in LightBurn where the material does not know it."""
+    """Advice about the power in LightBurn where the material does not know it."""
     return () if material.power_percent else (Note.of("lightburn.no_power", material=material.name),)
 
 
@@ -236,21 +218,92 @@ def layer_lengths(path: Path) -> dict[str, float]:
         No readable project, or a shape on a layer without settings.
     """
     try:
-        root = ElementTree.parse(path).getroot()
-        names = {
-            _value(setting, "index"): _value(setting, "name")
-            for setting in root.findall("CutSetting")
-            if setting.get("type") == "Cut"
-        }
-        tools = {_value(setting, "index") for setting in root.findall("CutSetting") if setting.get("type") == "Tool"}
-        curves: dict[str, list[Curve]] = {name: [] for name in names.values()}
-        for shape in root.findall("Shape"):
-            index = str(shape.get("CutIndex"))
-            if index not in tools:
-                curves[names[index]] += _control_points(shape)
-    except (OSError, ElementTree.ParseError, KeyError, ValueError, IndexError) as error:
+        found = read_lightburn(path.read_bytes(), path)
+    except OSError as error:
         raise ExportError("lightburn.not_readable", path=path, reason=str(error)) from error
-    return {name: _length(np.array(some, dtype=np.float64).reshape(-1, 4, 2)) for name, some in curves.items()}
+    lengths = dict.fromkeys(found.layers, 0.0)
+    for one in found.paths:
+        lengths[one.layer] += _length(one.curves)
+    return lengths
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProjectPath:
+    """One path of a LightBurn project.
+
+    Attributes
+    ----------
+    layer : str
+        Name of its cut setting.
+    curves : (C, 4, 2) float, mm
+        Cubic Bezier curves, one after the other.
+    """
+
+    layer: str
+    curves: FloatArray
+
+    @property
+    def closed(self) -> bool:
+        """Whether it ends where it begins."""
+        return len(self.curves) > 1 and bool(np.array_equal(self.curves[-1, -1], self.curves[0, 0]))
+
+    @property
+    def points(self) -> FloatArray:
+        """Points (P, 2), mm, along it, with chords for the curves."""
+        straight = np.all(self.curves[:, 1] == self.curves[:, 0], axis=1)
+        parts = [
+            curve[-1:] if line else _weights(CURVE_CHORDS)[1:] @ curve
+            for curve, line in zip(self.curves, straight, strict=True)
+        ]
+        return np.concatenate([self.curves[0, :1], *parts])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProjectContent:
+    """A LightBurn project as it is read: what it cuts, and what it says of itself.
+
+    Attributes
+    ----------
+    paths : tuple of ProjectPath
+    facts : mapping of str to str
+    layers : tuple of str
+    """
+
+    paths: tuple[ProjectPath, ...]
+    facts: Mapping[str, str]
+    layers: tuple[str, ...]
+
+
+def read_lightburn(content: bytes, path: Path) -> ProjectContent:
+    """Read the bytes of a project; ``path`` is named in refusals.
+
+    Raises
+    ------
+    ExportError
+        No readable project, a shape on a layer without settings, or one that is no path.
+    """
+    try:
+        root = ElementTree.fromstring(content)
+        names = {_value(one, "index"): _value(one, "name") for one in root.findall("CutSetting[@type='Cut']")}
+        tools = {_value(one, "index") for one in root.findall("CutSetting[@type='Tool']")}
+        if root.tag != "LightBurnProject" or root.find(".//Shape//Shape") is not None:
+            raise ValueError("it is no project of plain paths")
+        shapes = [shape for shape in root.findall("Shape") if shape.get("CutIndex") not in tools]
+        paths = tuple(
+            ProjectPath(names[str(shape.get("CutIndex"))], np.array(_control_points(shape)).reshape(-1, 4, 2))
+            for shape in shapes
+        )
+        if not all(len(one.curves) and np.all(np.isfinite(one.curves)) for one in paths):
+            raise ValueError("a path has no length")
+        notes = root.find("Notes")
+        lines = "" if notes is None else str(notes.get("Notes"))
+    except (ElementTree.ParseError, KeyError, ValueError, IndexError, LookupError) as error:
+        raise ExportError("lightburn.not_readable", path=path, reason=str(error)) from error
+    facts: dict[str, str] = {}
+    for line in lines.splitlines():
+        if found := _FACT.fullmatch(line):
+            facts.setdefault(found[1], found[2])
+    return ProjectContent(paths, facts, tuple(names.values()))
 
 
 def _value(setting: ElementTree.Element, name: str) -> str:
@@ -275,6 +328,11 @@ def _control_points(shape: ElementTree.Element) -> list[Curve]:
 
 def _length(curves: FloatArray) -> float:
     """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords."""
-    t = np.linspace(0.0, 1.0, CHORDS + 1)
-    weights = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3])
-    return float(np.linalg.norm(np.diff(weights, axis=1).T @ curves, axis=2).sum())
+    return float(np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves, axis=2).sum())
+
+
+def _weights(chords: int) -> FloatArray:
+    """Weights (chords + 1, 4) of control points of a cubic Bezier curve at equal steps."""
+    t = np.linspace(0.0, 1.0, chords + 1)
+    weights: FloatArray = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
+    return weights

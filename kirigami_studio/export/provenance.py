@@ -1,4 +1,4 @@
-"""How a file was made: a few facts that every exported file repeats, and the full record as JSON beside a cut file.
+"""Origin of a file: facts that every exported file repeats, and the full record as JSON.
 
 The record (sidecar) holds enough to make the same bytes again.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from enum import Enum
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from kirigami_studio import __version__
+from kirigami_studio.export.design_record import PIECE
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import name_strokes, strokes_of, work_of
@@ -32,49 +34,89 @@ NOT_IN_NAMES = re.compile(r"[^A-Z0-9_]")
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 #: The fact by which a cut file is known as one of this program.
 PROGRAM = "KIRIGAMI_STUDIO"
+#: How a sheet is made: the panels hang together by bridges of the sheet itself.
+ONE_SHEET = "one-sheet"
+#: The fact with the kerf that slots are as wide as, and that with the level of the verdict of the export.
+SLOT_KERF, VERDICT = "SLOT_KERF_MM", "VERDICT"
 #: Raised when entries change their meaning.
 VERSION = 1
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """The record in a file of how it was made."""
+    """The record in a file of its making: all that its plan is made of again."""
     kerf = 0.0 if profile.slots else plan.kerf_mm
     paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
     return {
         PROGRAM: __version__,
+        "CONSTRUCTION": ONE_SHEET,
         "DESIGN": plan.design_hash,
         "SIZE_MM": f"{plan.size_mm[0]:.4f} x {plan.size_mm[1]:.4f}",
-        "CONNECTOR_MM": f"{plan.connector_mm:g}",
-        "KERF_MM": f"{kerf:g}",
+        "WIDTH_MM": exactly(plan.size_mm[0]),
+        "CONNECTOR_MM": exactly(plan.connector_mm),
+        "LEAST_CONNECTOR_MM": f"{plan.min_connector_mm:.4f}",
+        "KERF_MM": exactly(kerf),
+        **({SLOT_KERF: exactly(plan.kerf_mm)} if profile.slots else {}),
+        "STYLE": plan.options.style.value,
+        "ORDER": plan.options.order.value,
+        "PROFILE": profile.key,
         "MATERIAL": plan.material.key,
+        **({} if plan.chosen_machine is None else {"MACHINE": plan.chosen_machine.key}),
         "PATHS": "edges of the finished part: apply the kerf offset of the machine" if profile.slots else paths,
-        **({} if profile.slots else _deliberate(plan)),
+        "LINES": f"{len(strokes_of(plan, profile))}",
+        **({"TRIMMED": f"{plan.trimmed}"} if plan.trimmed else {}),
+        **_single_connectors(plan),
+        **_tabs(plan, profile),
         **_copies(plan),
         **_name(plan, profile),
+        **({VERDICT: plan.verdict} if plan.verdict else {}),
         **origin_facts(plan.origin),
     }
 
 
+def exactly(value: float) -> str:
+    """The shortest text of a number that reads as that very number."""
+    short = f"{value:g}"
+    return short if float(short) == value else repr(float(value))
+
+
+def _single_connectors(plan: CutPlan) -> dict[str, str]:
+    """Connectors with a width of their own and removed ones, in pieces that every program keeps."""
+    widths = " ".join(f"{hinge}={exactly(width)}" for hinge, width in plan.options.hinge_mm)
+    removed = " ".join(f"{hinge}" for hinge in plan.options.removed)
+    facts: dict[str, str] = {}
+    for key, text in (("HINGE_MM", widths), ("REMOVED", removed)):
+        facts |= {f"{key}_{number}": line for number, line in enumerate(textwrap.wrap(text, PIECE))}
+    return facts
+
+
 def _copies(plan: CutPlan) -> dict[str, str]:
-    """How many sheets the file holds, where it is not one, and how far they are apart."""
-    copies = plan.copies
-    return {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": f"{copies.gap_mm:g}"}
+    """Number of sheets in the file, where not one, their distance, and the number asked for."""
+    copies, asked = plan.copies, plan.options.copies
+    facts = {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": exactly(copies.gap_mm)}
+    return facts if asked == 1 else {**facts, "COPIES_ASKED": f"{asked}", "COPY_GAP_MM": exactly(copies.gap_mm)}
 
 
 def _name(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """What is engraved, where the file has it, and in how many lines, so that a check can tell it from cuts."""
+    """The name that was to be engraved; what is, where the file has it, and in how many lines, so that a check can
+    tell it from cuts.
+    """
+    asked = {"NAME": _one_line(plan.name)} if plan.name else {}
     lines = name_strokes(plan, profile)
     if plan.engraving is None or not lines:
-        return {}
-    return {"ENGRAVED": plan.engraving.text, "ENGRAVED_LINES": f"{len(lines)}"}
+        return asked
+    return {**asked, "ENGRAVED": plan.engraving.text, "ENGRAVED_LINES": f"{len(lines)}"}
 
 
-def _deliberate(plan: CutPlan) -> dict[str, str]:
-    """What a check of the file would otherwise take for faults: gaps of the outline, cuts that end on other cuts."""
+def _tabs(plan: CutPlan, profile: Profile) -> dict[str, str]:
+    """Tabs, and cuts that end on others on purpose, which a check would take for faults.
+
+    Files of closed contours have neither, and say only what was asked for.
+    """
     facts: dict[str, str] = {}
     if plan.options.tabs:
-        facts |= {"TABS": f"{plan.options.tabs}", "TAB_MM": f"{plan.options.tab_mm:g}"}
-    if joints := joint_count(plan):
+        name = "TABS_ASKED" if profile.slots else "TABS"
+        facts |= {name: f"{plan.options.tabs}", "TAB_MM": exactly(plan.options.tab_mm)}
+    if not profile.slots and (joints := joint_count(plan)):
         facts["JOINS"] = f"{joints}"
     return facts
 
@@ -85,7 +127,7 @@ def origin_facts(origin: Mapping[str, str]) -> dict[str, str]:
 
 
 def _one_line(text: str) -> str:
-    """The text as every kind of file can hold it; names of files may have characters that XML or UTF-8 cannot."""
+    """The text as every kind of file holds it, without characters that XML or UTF-8 lack."""
     return printable(" ".join(text.split()), REPLACEMENT)
 
 
@@ -186,7 +228,7 @@ def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
 
 
 def narrowed_json(plan: CutPlan) -> list[dict[str, float]]:
-    """Number, place, planned and asked width, mm, of every connector that is narrower than asked for."""
+    """Number, place, planned and asked width, mm, of connectors narrower than asked for."""
     hinges = plan.hinges
     return [
         {

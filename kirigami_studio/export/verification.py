@@ -21,17 +21,19 @@ from kirigami_studio.export.file_content import MILLIMETRES, FileContent, bent_o
 from kirigami_studio.export.group_codes import read_group_codes
 from kirigami_studio.export.jam_angle import jam_angle_of_file, matched_connectors
 from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
-from kirigami_studio.export.profile import NAME_LAYER, Profile, find_profile
+from kirigami_studio.export.lightburn import lightburn_bytes, read_lightburn
+from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
 from kirigami_studio.export.strokes import (
     Stroke,
     extent,
     frame_origin,
     layer_colours,
     name_strokes,
+    sheet_strokes,
     strokes_of,
     work_of,
 )
-from kirigami_studio.export.svg_reading import read_with_svgelements, read_with_xml
+from kirigami_studio.export.svg_reading import LARGEST_FILE, read_with_svgelements, read_with_xml
 from kirigami_studio.export.voids_read import FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
 from kirigami_studio.fabricate.copies import SAME_MM, alike, copy_numbers
@@ -43,6 +45,7 @@ from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_p
 from kirigami_studio.fabricate.joints import Pair, joined_pairs
 from kirigami_studio.fabricate.tabs import joined_ring
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.deployment import Deployment
 
@@ -153,7 +156,7 @@ def verify_export(
     plan: CutPlan,
     path: str | Path,
     profile_key: str,
-    version: str = "R2010",
+    version: str | None = "R2010",
     deployment: Deployment | None = None,
     simulated_jam: float | None = None,
 ) -> Verification:
@@ -163,10 +166,11 @@ def verify_export(
     ----------
     plan : CutPlan
     path : str or Path
-        A cut file; of a profile with one file per layer, its folder or the name that the folder was made for.
+        A cut file, or a LightBurn project; of a profile with one file per layer, its folder or the name that the folder
+        was made for.
     profile_key : str
-    version : str
-        DXF dialect that it was written in.
+    version : str or None
+        DXF dialect that it was written in; None for the one that it says it is in.
     deployment : Deployment, optional
         The design of the plan; without it nothing is said about where the sheet jams.
     simulated_jam : float, optional, radians
@@ -178,6 +182,8 @@ def verify_export(
         Unknown profile, a kind of file that cannot be verified, or a file that does not read.
     """
     goal, profile = Path(path), find_profile(profile_key)
+    if goal.suffix.lower() == ".lbrn2":
+        return _project_verified(plan, goal, simulated_jam)
     strokes = strokes_of(plan, profile)
     if profile.file_per_layer and goal.suffix.lower() != ".svg":
         goal, kind = layer_folder(goal), FORMATS[".dxf"]
@@ -196,13 +202,15 @@ def _judged(
     plan: CutPlan,
     path: Path,
     profile: Profile,
-    version: str,
+    dialect: str | None,
     strokes: Sequence[Stroke],
     contents: Sequence[FileContent],
     kind: Format,
     deployment: Deployment | None,
     simulated_jam: float | None,
 ) -> Verification:
+    old = path.suffix.lower() != ".svg" and all(content.unit is None for content in contents)
+    version = dialect or (DxfVersion.R12 if old else DxfVersion.R2010)
     written, contents = contents, [_cuts_of(content) for content in contents]
     sheets = _copies_read(contents[-1].strokes, plan)
     physics = file_physics(sheets[0], plan, profile)
@@ -234,6 +242,42 @@ def _judged(
         void_miss_um=voids.miss_um if voids.voids else None,
         jam_phi=jam,
     )
+
+
+def _project_verified(plan: CutPlan, path: Path, simulated_jam: float | None) -> Verification:
+    """Compare a LightBurn project with the one that its plan makes: every path, on its layer, in its order."""
+    found = read_lightburn(_bytes_of(path), path)
+    meant = read_lightburn(lightburn_bytes(plan), path)
+    same = len(found.paths) == len(meant.paths) and all(
+        one.layer == other.layer and np.array_equal(one.curves, other.curves)
+        for one, other in zip(found.paths, meant.paths, strict=True)
+    )
+    profile = find_profile(DEFAULT_PROFILE)
+    strokes = sheet_strokes(plan, profile)
+    work = work_of(strokes_of(plan, profile), plan)
+    findings = [Finding.judged(same, "verify.project_as_planned" if same else "verify.project_differs")]
+    physics = file_physics(strokes, plan, profile) if same else None
+    if physics is not None:
+        findings += _physics_findings(physics, plan)
+    return Verification(
+        path=path,
+        ok=all(finding.ok for finding in findings),
+        size_mm=plan.bounds_mm,
+        pieces=None if physics is None else physics.pieces * len(plan.copies),
+        cut_length_mm=work.cut_length_mm,
+        seconds_low=work.times.low,
+        seconds_high=work.times.high,
+        findings=tuple(findings),
+        warnings=plan.notes,
+        jam_phi=simulated_jam if same else None,
+    )
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return read_at_most(path, LARGEST_FILE)
+    except OSError as error:
+        raise ExportError("dxf.cannot_open", path=path, reason=error.strerror or str(error)) from error
 
 
 def _agreed(contents: Sequence[FileContent], by_reader: Sequence[Sequence[Finding]]) -> list[Finding]:
@@ -452,7 +496,7 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
 
 
 def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
-    """Find connectors and voids in the strokes of a file, in the plan's frame; see :func:`file_physics`."""
+    """Find connectors and voids in the strokes of a file; see :func:`file_physics`."""
     outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
     return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
 

@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -92,6 +93,12 @@ class CutPlan:
         Where the design comes from, repeated in every file of the plan; decides nothing.
     engraving : Engraving or None
         A name on the sheet, which is engraved before anything is cut and counts as no cut.
+    name : str
+        That was to be engraved, "" for none; the sheet may have no room for it.
+    trimmed : int
+        Panels of which something was trimmed off.
+    verdict : str
+        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
     chosen_machine : Machine or None
         That was asked for; None for the one that the material is for.
     """
@@ -112,6 +119,9 @@ class CutPlan:
     made: Deployment | None = None
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
     engraving: Engraving | None = None
+    name: str = ""
+    trimmed: int = 0
+    verdict: str = ""
     chosen_machine: Machine | None = None
 
     @cached_property
@@ -160,6 +170,11 @@ class CutPlan:
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
         return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
+
+    @cached_property
+    def cut_panels(self) -> CutPanels:
+        """The panels as the cuts leave them."""
+        return cut_panels(self)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -232,7 +247,7 @@ def plan_cuts(
     overcut = check_length("overcut.not_positive", overcut_mm)
     table = cut_table(*deployment.sheet.grid)
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
-    design_hash = _design_hash(deployment, parts)
+    identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
     left = _without(options, lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
@@ -294,7 +309,8 @@ def plan_cuts(
         overcut_mm=overcut,
         hinges=hinges,
         material=material,
-        design_hash=design_hash,
+        design_hash=identity,
+        trimmed=sum(part is not None for part in parts),
         options=options,
         notes=(
             *plan_notes(hinges, material, connector, kerf, options.style, cuts.straight),
@@ -364,7 +380,7 @@ def _plain_cuts(
 
 
 def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
-    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    """Widths (H,), mm, where the outline is no rectangle and leaves less of a connector."""
     left = (finished > 0.0) & (finished < planned - WIDER_MM)
     widths: FloatArray = np.where(left, finished, planned)
     return widths
@@ -423,7 +439,8 @@ def _on_grid(points: FloatArray) -> FloatArray:
     return rounded
 
 
-def _design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
+    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:

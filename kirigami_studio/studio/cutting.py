@@ -49,7 +49,7 @@ def plan_of(
     trim = candidate.trim
     kept = None if trim is None else trim.kept
     plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
-    return engraved(plan, name) if settings.engrave and name else plan
+    return replace(engraved(plan, name), name=name) if settings.engrave and name else plan
 
 
 def plan_sheet(

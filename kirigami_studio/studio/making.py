@@ -84,6 +84,23 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
+class TimedDesign:
+    """Time of cutting a design.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    settings : FabricationSettings
+        How it is cut.
+    seconds : float
+    """
+
+    candidate: Candidate
+    settings: FabricationSettings
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """What is to be written.
 
@@ -177,6 +194,8 @@ class CutRequest:
         How it does as cut, or why that cannot be told, if that is known already.
     document : Document or None
         The project of the design, which cut files carry with this design alone.
+    engraved : str or None
+        The name that the sheet gets engraved if the settings say so; that of the design unless given.
     """
 
     candidate: Candidate
@@ -185,6 +204,7 @@ class CutRequest:
     settings: FabricationSettings
     as_cut: AsCut | str | None = None
     document: Document | None = None
+    engraved: str | None = None
 
     @classmethod
     def of(cls, document: Document, settings: FabricationSettings | None = None) -> CutRequest:
@@ -202,6 +222,8 @@ class CutRequest:
     @property
     def name(self) -> str:
         """What the design is called, "" where nobody knows."""
+        if self.engraved is not None:
+            return self.engraved
         return "" if self.document is None else self.document.name_of(self.candidate)
 
     @property
@@ -230,25 +252,28 @@ def chosen_candidate(document: Document) -> Candidate:
 
 
 def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
-    """Choose the first design of a project, from the chosen one on, whose cuts the sheet survives.
+    """Choose the first design of a project, from the chosen one on, that survives its cuts.
 
     Returns
     -------
     document : Document
-        With that design chosen; as it was where there is none.
+        With that design chosen; where there is none, the first one whose cuts can be planned at all.
     refusal : KirigamiError or None
         Why the design that was chosen before cannot be cut; None where it can.
     """
     first: KirigamiError | None = None
+    planned_at_least: Document | None = None
     for number in range(document.chosen or 0, len(document.candidates)):
         chosen = replace(document, chosen=number)
         try:
-            refuse_errors(planned(CutRequest.of(chosen)).report)
+            report = planned(CutRequest.of(chosen)).report
+            planned_at_least = planned_at_least or chosen
+            refuse_errors(report)
         except FabricationError as error:
             first = first or error
             continue
         return chosen, first
-    return document, first
+    return planned_at_least or document, first
 
 
 # from a design to its files -------------------------------------------------------------------------------------------
@@ -357,6 +382,7 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
+    picture_phi: float | None = None,
 ) -> ExportedFiles:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
@@ -368,42 +394,42 @@ def written(
     as_cut : AsCut, str or None
         As :func:`closed` tells; None where nobody has looked, for the verdict.
     motion : CutMotion, optional
-        What an animation shows.
+        What pictures and animations show instead of the ideal motion.
     on_written : callable, optional
         Gets each path of a whole set once it is there, and may raise to stop.
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
 
     Raises
     ------
     ExportError
         An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
     """
-    from kirigami_studio.export.export_set import drafted, export_all
+    from kirigami_studio.export.export_set import export_all, placed
     from kirigami_studio.export.provenance import sidecar_path, write_sidecar
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion, simulated_jam=_jam_of(as_cut)), output.path
+    job = replace(export_job(request, made), motion=motion, picture_phi=picture_phi, simulated_jam=jam_of(as_cut))
+    path = output.path
+
+    def told(verifications: Sequence[Verification]) -> Mapping[str, object]:
+        return judged(request, made, as_cut, verifications).to_json()
+
     if output.name is not None:
-        found = export_all(
-            job,
-            path,
-            output.name,
-            output.record,
-            on_written,
-            lambda verifications: judged(request, made, as_cut, verifications).to_json(),
-        )
+        found = export_all(job, path, output.name, output.record, on_written, told)
         left, gone = (tuple(one.name for one in paths) for paths in (found.older, found.removed))
         verdict = judged(request, made, as_cut, found.verifications)
         files, verified = found.files, found.verifications
         return ExportedFiles(path, made, verified, older=left, removed=gone, verdict=verdict, files=files)
     if path.suffix.lower() in FORMATS:
-        with drafted(job, path) as draft:
-            verified = (draft.verification,)
-            verdict = judged(request, made, as_cut, verified)
-            place = draft.place()
+        places: list[Path] = []
+        job, found_in_files = placed(job, ((path, job.dxf_version),), told, places.append)
+        verified, (place,) = tuple(found_in_files), places
     else:
-        verified, verdict = (), judged(request, made, as_cut)
+        job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
         place = export(job, path)
+    verdict = judged(request, made, as_cut, verified)
     files = (place,)
     if output.record:
         files = (place, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
@@ -419,11 +445,11 @@ def exporting(
     """
     importing.import_exporters()
     importing.import_as_cut()
-    from kirigami_studio.export.registry import export, find_exporter
+    from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
     if output.name is None:
-        find_exporter(path)  # an unknown kind is refused before anything is planned
+        find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(export_job(request, None), path), None)
             return
@@ -499,19 +525,8 @@ def exporting_coupon(
     yield ExportedFiles(path, Planned(plan, check_plan(plan), Verdict()), (found,))
 
 
-def judged_file(path: Path, document: Document) -> tuple[Verification, Verdict]:
-    """Compare a cut file with a project's chosen design as it would be cut; judge the sheet."""
-    from kirigami_studio.export.verification import verify_export
-
-    request = CutRequest.of(document)
-    made, cut = planned(request), request.settings
-    as_cut = closed(request, made)
-    found = verify_export(made.plan, path, cut.profile, cut.dxf_version, request.deployment, _jam_of(as_cut))
-    return found, judged(request, made, as_cut, [found])
-
-
-def _jam_of(as_cut: AsCut | str | None) -> float | None:
-    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+def jam_of(as_cut: AsCut | str | None) -> float | None:
+    """Where a simulated sheet jams (radians); None where that is unknown."""
     return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
@@ -520,7 +535,7 @@ def _jam_of(as_cut: AsCut | str | None) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and the material that they were estimated in.
+    """Estimates of some designs as cut, and their material.
 
     Designs that cannot be cut at all are left out.
     """
@@ -569,7 +584,7 @@ def animating(
             raise
         except KirigamiError as error:
             why = str(error)
-    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
     written = export(replace(export_job(request, None), motion=shown), path)
     yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
@@ -621,6 +636,18 @@ def gripping(
     end = max(sheet.as_cut.reached, CLOSED)
     steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
     yield from in_turns(steps, cancel)
+
+
+def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDesign]:
+    """Yield the cutting times of designs, but for those whose cuts cannot be planned."""
+    importing.import_as_cut()
+    for request in requests:
+        try:
+            made = planned(request, cancel)
+        except FabricationError:
+            continue  # which planning explains once it is chosen
+        times = made.plan.times if made.work is None else made.work.times
+        yield TimedDesign(request.candidate, request.settings, times.total)
 
 
 def estimating(

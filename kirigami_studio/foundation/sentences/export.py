@@ -270,6 +270,25 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file promises a name engraved in {promised:.20} lines on layer {layer}, and has {count} there. Export it "
         "again."
     ),
+    "cut_file.not_for_cutting": mark("This is no cut file: {purpose}."),
+    "cut_file.other_kind": mark(
+        "{path} is no file for a cutter. Check the DXF, the SVG or the LightBurn project that was exported with it."
+    ),
+    "cut_file.record_not_readable": mark(
+        "The file's record of how it was made is damaged: its entry {name} is '{value}'. Export it again."
+    ),
+    "cut_file.lines_differ": mark_n(
+        "The file holds {count} cut; its record says {promised}. Export it again.",
+        "The file holds {count} cuts; its record says {promised}. Export it again.",
+    ),
+    "cut_file.narrower_than_recorded": mark(
+        "Two cuts leave only {width_mm:.3f} mm of material between them; the narrowest connector was made "
+        "{recorded_mm:.3f} mm wide."
+    ),
+    "check.other_design": mark(
+        "The project does not have the design {design} that the file was made of. Name the project that it was "
+        "exported from."
+    ),
     "cut_file.name_alone": mark("The file holds only an engraved name and no cuts."),
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
@@ -314,6 +333,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.cut_once": mark("Nothing is cut twice."),
     "verify.cut_twice": mark("{length_mm:.4f} mm would be cut twice."),
+    "verify.project_as_planned": mark("Every path is as the design gives it, on its layer and in its order."),
+    "verify.project_differs": mark("Its paths are not those that the design gives. Export it again."),
     "verify.pieces": mark_n(
         "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} piece.",
         "After cutting with a kerf of {kerf_mm:g} mm, the sheet is {count} pieces.",

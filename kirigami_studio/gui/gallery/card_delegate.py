@@ -100,7 +100,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, name, match, sort value, whether it closes, its verdict, its mark."""
+    """Paints one candidate: pictures, name, match, sort value, verdict and mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -69,6 +70,15 @@ def test_that_a_simulated_sheet_has_panels_on_its_way(cuts: ks.Cuts) -> None:
     assert np.ptp(np.concatenate(open_), axis=0).prod() > 1.3 * np.ptp(np.concatenate(closed), axis=0).prod()
 
 
+def test_that_a_picture_shows_the_angle_that_is_asked_for_as_cut_or_ideal(cuts: ks.Cuts, tmp_path: Path) -> None:
+    ways: list[dict[str, Any]] = [{}, {"phi": math.pi / 2}, {"as_cut": True}, {"phi": math.pi / 2, "as_cut": True}]
+    written = set()
+    for number, way in enumerate(ways):
+        cuts.export(tmp_path / f"{number}.png", **way)
+        written.add((tmp_path / f"{number}.png").read_bytes())
+    assert len(written) == 4
+
+
 def test_that_a_file_is_checked_alone_and_beside_its_design(cuts: ks.Cuts, design: ks.Design, tmp_path: Path) -> None:
     alone = design.plan_cuts()
     path = alone.export(tmp_path / "cut.dxf").path
@@ -76,9 +86,11 @@ def test_that_a_file_is_checked_alone_and_beside_its_design(cuts: ks.Cuts, desig
     beside = ks.check(path, design)
     assert beside.verification is not None and beside.verification.ok
     assert beside.verdict is not None and beside.ok is beside.verdict.ok
-    other = cuts.export(tmp_path / "other.dxf").path
-    wrong = ks.check(other, design)
-    assert not wrong.ok and wrong.problems and repr(wrong).startswith("<CheckedFile other.dxf: not ready to cut: ")
+    assert ks.check(path).sound and repr(ks.check(path)) == "<CheckedFile cut.dxf: sound>"
+    other = ks.check(cuts.export(tmp_path / "other.dxf").path, design)
+    assert other.verification is not None and other.verification.ok and other.verdict is not None
+    assert other.said is other.verdict.level
+    assert repr(other).startswith(f"<CheckedFile other.dxf: sound, {other.verdict.level.words}")
 
 
 def test_that_a_sheet_that_would_fall_apart_is_written_with_the_verdict_that_it_will_not_work(

@@ -155,3 +155,31 @@ def test_that_options_of_sheets_are_checked(sheet_file: Path, capsys: pytest.Cap
         found, sentence = refusal(capsys, "mechanics", sheet_file, *words)
         assert found == code
         assert told in sentence
+
+
+def test_that_card_which_would_close_is_said_to_break(sheet_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("mechanics", sheet_file, "--material", "card-co2", "--connector-mm", 0.5, "--steps", 9)
+    found = answer(capsys, *words, "--json")
+    assert found["breaks"] and 90.0 < found["breaks_deg"] < 180.0
+    assert (found["strain_limit"], found["strain_believed"]) == (0.03, "in_plane")
+    assert max(found["max_strain"]) > 0.5
+    assert main([str(word) for word in words]) == 0
+    told = capsys.readouterr().out
+    assert "breaks at 3 %" in told and "Closes" not in told
+    film = answer(capsys, "mechanics", sheet_file, "--steps", 5, "--json")
+    assert (film["breaks"], film["breaks_deg"]) == (False, None)
+
+
+def test_that_energy_torque_and_force_are_named_by_their_units_in_all_figures(
+    sheet_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = answer(capsys, "mechanics", sheet_file, "--steps", 5, "--json")
+    for figure in (found, found["in_plane_yielding"], found["out_of_plane"]):
+        for torque, force in zip(figure["torque_nmm"], figure["force_n"], strict=True):
+            assert torque == pytest.approx(force * found["lever_mm"], rel=1e-9, abs=1e-9)
+    assert found["out_of_plane"]["energy_mj"][-1] < found["in_plane_yielding"]["energy_mj"][-1] < found["energy_mj"][-1]
+    gripped = answer(
+        capsys, "mechanics", sheet_file, "--hold", 0, "--move", 15, "--steps", 5, "--end-deg", 120, "--json"
+    )
+    assert "torque_nmm" not in gripped and gripped["lever_mm"] is None
+    assert set(gripped["out_of_plane"]) == {"energy_mj", "force_n"}

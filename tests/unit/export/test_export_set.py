@@ -55,7 +55,7 @@ def test_that_the_set_is_complete_and_every_cut_file_verified(profile: str, job:
     assert len(found.verifications) == 3
     assert all(report.pieces == 1 for report in found.verifications)
     assert seen == list(found.files)
-    names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "layout.svg", "preview.png", "reference.dxf"}
+    names = {"cut.svg", "cut.lbrn2", "cut.pdf", "cut.json", "cut-picture.svg", "preview.png", "reference.dxf"}
     names |= {"cut", "cut_r12"} if profile == "layers" else {"cut.dxf", "cut_r12.dxf"}
     if profile == "slots":
         names -= {"cut.lbrn2"}  # a LightBurn project holds open cuts
@@ -253,7 +253,7 @@ def test_that_layout_and_preview_show_the_sheet_that_is_cut(make_design: MakeDes
     assert plan.made is not None
     job = ExportJob(design, plan=plan, target=design.outline(0.0))
     export_all(job, tmp_path)
-    group = next(one for one in ElementTree.parse(tmp_path / "layout.svg").iter() if one.get("id") == "PANELS")
+    group = next(one for one in ElementTree.parse(tmp_path / "cut-picture.svg").iter() if one.get("id") == "PANELS")
     drawn = []
     for path in group:
         words = path.get("d", "").replace("M", "").replace("L", "").replace("Z", "").split()

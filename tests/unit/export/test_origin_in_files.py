@@ -86,7 +86,7 @@ def test_that_every_file_of_the_set_names_the_origin(job: ExportJob, tmp_path: P
     assert custom_properties(tmp_path / "reference.dxf").items() >= TOLD.items()
     old = [value for _, value in pairs(tmp_path / "cut_r12.dxf")]
     assert all(any(name in value or text in value for value in old) for name, text in TOLD.items() if text.isascii())
-    for name in ("cut.svg", "layout.svg"):
+    for name in ("cut.svg", "cut-picture.svg"):
         told = ElementTree.parse(tmp_path / name).getroot().findtext("{http://www.w3.org/2000/svg}desc") or ""
         assert [f"{key} {text}" for key, text in TOLD.items() if f"{key} {text}" not in told] == []
     notes = ElementTree.parse(tmp_path / "cut.lbrn2").getroot().find("Notes")

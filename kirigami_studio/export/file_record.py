@@ -1,0 +1,205 @@
+"""The record that a cut file has of how it was made, read from its facts.
+
+A file may come from anywhere: its record is plain text of which only bounded numbers and known words are taken.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from kirigami_studio.export.dxf_reading import MOST_PIECES
+from kirigami_studio.export.profile import Profile, find_profile
+from kirigami_studio.export.provenance import ONE_SHEET, PROGRAM, SLOT_KERF, VERDICT
+from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM
+from kirigami_studio.fabricate.options import COPY_GAP_MM, TAB_MM, ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.foundation.errors import ExportError, KirigamiError
+from kirigami_studio.foundation.plain_text import plain_line
+
+#: Letters of a fact that are looked at, and the largest number of anything.
+LONGEST_FACT, LARGEST_COUNT = 255, 10_000_000
+#: A connector with a width of its own, and the name of a piece of a list.
+SINGLE = re.compile(r"(\d{1,6})=(\d{1,6}(?:\.\d{1,20})?(?:e-?\d{1,2})?)")
+
+
+@dataclass(frozen=True, slots=True)
+class FileRecord:
+    """How a cut file says it was made.
+
+    Attributes
+    ----------
+    version : str
+        Of the program.
+    design : str
+        Identifies the sheet, see ``CutPlan.design_hash``.
+    construction : str
+        "one-sheet".
+    material, machine : str
+        Keys of the preset, and of the machine that was asked for, "" for the one that the material is for.
+    profile : Profile
+    options : CutOptions
+    width_mm, connector_mm, kerf_mm : float
+        Of the flat sheet, of connectors as asked for, and of the cut that the plan allowed for.
+    least_connector_mm : float
+        Width of the narrowest connector.
+    lines : int
+        Lines that are cut.
+    trimmed : int
+        Panels of which something was trimmed off.
+    name : str
+        That was to be engraved, "" for none.
+    verdict : str
+        Level of the verdict of the export, "" where there was none.
+    """
+
+    version: str
+    design: str
+    construction: str
+    material: str
+    machine: str
+    profile: Profile
+    options: CutOptions
+    width_mm: float
+    connector_mm: float
+    kerf_mm: float
+    least_connector_mm: float
+    lines: int
+    trimmed: int
+    name: str
+    verdict: str
+
+    def to_json(self) -> dict[str, object]:
+        """For the command line."""
+        options = self.options
+        return {
+            "version": self.version,
+            "design": self.design,
+            "construction": self.construction,
+            "material": self.material,
+            "machine": self.machine,
+            "profile": self.profile.key,
+            "style": options.style.value,
+            "order": options.order.value,
+            "width_mm": self.width_mm,
+            "connector_mm": self.connector_mm,
+            "least_connector_mm": self.least_connector_mm,
+            "kerf_mm": self.kerf_mm,
+            "copies": options.copies,
+            "tabs": options.tabs,
+            "removed": list(options.removed),
+            "hinge_mm": [list(pair) for pair in options.hinge_mm],
+            "trimmed_panels": self.trimmed,
+            "engraved": self.name,
+        }
+
+
+def record_of(facts: Mapping[str, str]) -> FileRecord | None:
+    """The record among a file's facts; None for files of others and of earlier versions.
+
+    Raises
+    ------
+    ExportError
+        A record that no export writes.
+    """
+    if PROGRAM not in facts or "STYLE" not in facts:
+        return None
+    read = _Facts(facts)
+    return FileRecord(
+        version=read.text(PROGRAM),
+        design=read.text("DESIGN"),
+        construction=read.one_of("CONSTRUCTION", (ONE_SHEET,)),
+        material=read.text("MATERIAL"),
+        machine=read.text("MACHINE", ""),
+        profile=read.profile(),
+        options=read.options(),
+        width_mm=read.number("WIDTH_MM"),
+        connector_mm=read.number("CONNECTOR_MM"),
+        kerf_mm=read.number(SLOT_KERF if SLOT_KERF in facts else "KERF_MM"),
+        least_connector_mm=read.number("LEAST_CONNECTOR_MM"),
+        lines=read.count("LINES"),
+        trimmed=read.count("TRIMMED", 0),
+        name=read.text("NAME", ""),
+        verdict=read.one_of(VERDICT, ("", "ready_to_cut", "cut_with_care", "will_not_work"), ""),
+    )
+
+
+class _Facts:
+    """Facts that are taken as numbers and words, or refused."""
+
+    def __init__(self, facts: Mapping[str, str]) -> None:
+        self._facts = facts
+
+    def _refusal(self, key: str) -> ExportError:
+        return ExportError("cut_file.record_not_readable", name=key, value=plain_line(self._facts.get(key, ""), 40))
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """One short line."""
+        found = self._facts.get(key, default)
+        if found is None or len(found) > LONGEST_FACT:
+            raise self._refusal(key)
+        return plain_line(found)
+
+    def one_of(self, key: str, known: tuple[str, ...], default: str | None = None) -> str:
+        """A known word."""
+        found = self.text(key, default)
+        if found not in known:
+            raise self._refusal(key)
+        return found
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """A length in mm."""
+        if key not in self._facts and default is not None:
+            return default
+        try:
+            found = float(self.text(key))
+        except ValueError:
+            raise self._refusal(key) from None
+        if not (math.isfinite(found) and 0.0 <= found <= LARGEST_SHEET_MM):
+            raise self._refusal(key)
+        return found
+
+    def count(self, key: str, default: int | None = None) -> int:
+        """A whole number."""
+        found = self.text(key, None if default is None else f"{default}")
+        if not (found.isascii() and found.isdecimal() and len(found) <= 8 and int(found) <= LARGEST_COUNT):
+            raise self._refusal(key)
+        return int(found)
+
+    def profile(self) -> Profile:
+        """A known machine profile."""
+        try:
+            return find_profile(self.text("PROFILE"))
+        except ExportError:
+            raise self._refusal("PROFILE") from None
+
+    def options(self) -> CutOptions:
+        """The choices about the cuts."""
+        widths = self._pieces("HINGE_MM")
+        singles = [SINGLE.fullmatch(word) for word in widths]
+        removed = self._pieces("REMOVED")
+        if any(match is None for match in singles) or not all(word.isdecimal() and len(word) <= 6 for word in removed):
+            raise self._refusal("HINGE_MM_0")
+        try:
+            return CutOptions(
+                style=ConnectorStyle(self.one_of("STYLE", tuple(ConnectorStyle))),
+                order=CutOrder(self.one_of("ORDER", tuple(CutOrder))),
+                tabs=self.count("TABS", self.count("TABS_ASKED", 0)),
+                tab_mm=self.number("TAB_MM", TAB_MM),
+                hinge_mm=tuple((int(match[1]), float(match[2])) for match in singles if match is not None),
+                removed=tuple(int(word) for word in removed),
+                copies=self.count("COPIES_ASKED", 1),
+                copy_gap_mm=self.number("COPY_GAP_MM", COPY_GAP_MM),
+            )
+        except KirigamiError:
+            raise self._refusal("STYLE") from None
+
+    def _pieces(self, key: str) -> list[str]:
+        """The words of a list that stands in pieces."""
+        words: list[str] = []
+        for number in range(MOST_PIECES):
+            if f"{key}_{number}" not in self._facts:
+                break
+            words += self.text(f"{key}_{number}").split()
+        return words

@@ -1,0 +1,220 @@
+"""Checking a cut file: by itself, by its own record of how it was made, and by the design that it was made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.dxf_check import FileReport, check_file
+from kirigami_studio.export.file_record import FileRecord
+from kirigami_studio.export.layer_files import layer_paths
+from kirigami_studio.export.verification import Verification, verify_export
+from kirigami_studio.fabricate.cut_plan import design_hash
+from kirigami_studio.fabricate.findings import Problem
+from kirigami_studio.fabricate.material import library
+from kirigami_studio.foundation.errors import ExportError, FabricationError, KirigamiError, ProjectError
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.project.document import Document
+from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
+from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, planned
+from kirigami_studio.studio.verdict import Level, Verdict, refused
+
+if TYPE_CHECKING:
+    from kirigami_studio.fabricate.material import Material
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Checked:
+    """What was found in a cut file.
+
+    Attributes
+    ----------
+    report : FileReport
+        What the file alone shows: whether it is sound.
+    verification : Verification or None
+        Beside the cuts of its design, where one was named.
+    verdict : Verdict or None
+        On the sheet of that design.
+    """
+
+    report: FileReport
+    verification: Verification | None = None
+    verdict: Verdict | None = None
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing is wrong with the file itself; says nothing about the sheet."""
+        return self.report.ok
+
+    @property
+    def ok(self) -> bool:
+        """Whether the file is sound, and the sheet of its design, where that is known, ready to cut."""
+        return self.sound and (self.verdict is None or self.verdict.ok)
+
+    @property
+    def said(self) -> Level | None:
+        """The verdict of the export, as the file has it."""
+        record = self.report.record
+        return None if record is None or not record.verdict else Level(record.verdict)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What was checked of the file itself, what it says of its making, and what was said of its sheet then."""
+        report, record = self.report, self.report.record
+        found = []
+        if report.pieces is not None and report.min_ligament_mm is not None:
+            found.append(
+                tr_n(
+                    "checked: {cuts} lines, {pieces} piece, {width:.3f} mm of material or more between cuts of "
+                    "{kerf:g} mm",
+                    "checked: {cuts} lines, {pieces} pieces, {width:.3f} mm of material or more between cuts of "
+                    "{kerf:g} mm",
+                    report.pieces,
+                    cuts=report.path_count,
+                    pieces=report.pieces,
+                    width=report.min_ligament_mm,
+                    kerf=report.kerf_mm,
+                )
+            )
+        if record is not None:
+            found.append(
+                tr(
+                    "made with: {material}, connectors {connector:g} mm {style}, kerf {kerf:g} mm, profile {profile}, "
+                    "version {version}",
+                    material=record.material,
+                    connector=record.connector_mm,
+                    style=record.options.style.value,
+                    kerf=record.kerf_mm,
+                    profile=record.profile.key,
+                    version=record.version,
+                )
+            )
+        if self.said is not None:
+            found.append(tr("verdict when it was exported: {level}", level=self.said.words))
+        if self.verdict is None and record is not None:
+            found.append(
+                tr("not checked: whether the sheet closes and its material holds; name its project by --design")
+            )
+        return tuple(found)
+
+
+def checked(path: Path, document: Document | None = None) -> Checked:
+    """Read a cut file; compare it with the design of a project, and judge the sheet, where one is given.
+
+    Parameters
+    ----------
+    path : Path
+        A file, or a folder of layer files.
+    document : Document, optional
+        The project that it was exported from.  How the design was cut is taken from the file, and so is which of the
+        designs it is.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    ProjectError
+        The project has no chosen design.
+    """
+    report = check_file(path)
+    if document is None or not _is_cut_file(report):
+        return Checked(report)
+    request, unlike = _request(report.record, path, document)
+    try:
+        made = planned(request)
+    except FabricationError as error:
+        return Checked(report, None, refused(error))
+    as_cut = closed(request, made)
+    settings = request.settings
+    try:
+        found = verify_export(made.plan, path, settings.profile, None, request.deployment, jam_of(as_cut))
+    except FabricationError as error:
+        return Checked(report, None, refused(error))
+    verdict = judged(request, made, as_cut, [found])
+    return Checked(report, found, replace(verdict, problems=(*unlike, *verdict.problems)))
+
+
+def _is_cut_file(report: FileReport) -> bool:
+    return all(problem.code != "cut_file.not_for_cutting" for problem in report.problems)
+
+
+def _request(record: FileRecord | None, path: Path, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
+    """The design of a file, cut as its record says; a problem where the project does not have that design."""
+    if record is None:
+        return CutRequest.of(document, _enclosed(path) or document.fabrication), ()
+    found = _design_of(document, record.design)
+    unlike = () if found is not None else (Problem.error("check.other_design", design=record.design),)
+    chosen = document if found is None else replace(document, chosen=found)
+    request = CutRequest.of(chosen, recorded_settings(record, path, document.fabrication))
+    return replace(request, engraved=record.name), unlike
+
+
+def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings) -> FabricationSettings:
+    """The settings that a file was exported with.
+
+    Parameters
+    ----------
+    record : FileRecord
+    path : Path
+        The file, which has the numbers of a material that is no preset.
+    saved : FabricationSettings
+        Of the project; what the record does not tell is taken from there.
+
+    Raises
+    ------
+    ExportError
+        A record of settings that there are none of.
+    """
+    try:
+        return replace(
+            saved,
+            width_mm=record.width_mm,
+            material=record.material,
+            machine=record.machine,
+            own=_own_material(record.material, path, saved),
+            connector_mm=record.connector_mm,
+            kerf_mm=record.kerf_mm,
+            options=record.options,
+            profile=record.profile.key,
+            engrave=bool(record.name),
+            opened_mm=None,
+        )
+    except KirigamiError as error:
+        raise ExportError("cut_file.record_not_readable", name=error.code, value="") from error
+
+
+def _own_material(key: str, path: Path, saved: FabricationSettings) -> Material | None:
+    """The numbers of a material that is no preset: the project's, else those of the design in the file."""
+    if key in library().materials:
+        return None
+    stored = stored_material(saved)
+    if stored is not None and stored.key == key:
+        return stored
+    enclosed = _enclosed(path)
+    return None if enclosed is None else enclosed.own
+
+
+def _enclosed(path: Path) -> FabricationSettings | None:
+    """The settings of the design that a file carries; None where it carries none."""
+    try:
+        return load(layer_paths(path)[0] if path.is_dir() else path).fabrication
+    except (ProjectError, IndexError):
+        return None
+
+
+def _design_of(document: Document, identity: str) -> int | None:
+    """Number of the design with an identity, the chosen one first; None where the project does not have it."""
+    first: list[int] = [] if document.chosen is None else [document.chosen]
+    for number in [*first, *range(len(document.candidates))]:
+        if _identity(document.candidates[number]) == identity:
+            return number
+    return None
+
+
+def _identity(candidate: Candidate) -> str:
+    kept = () if candidate.trim is None or all(part is None for part in candidate.trim.kept) else candidate.trim.kept
+    return design_hash(deploy(candidate.final_sheet), kept)
