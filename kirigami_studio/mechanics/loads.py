@@ -8,7 +8,7 @@ turns, connector by connector, each a strip that bends evenly over its length l 
 
 Beyond the turn y at which the outer fibre yields, an elastic, ideally plastic strip of rectangular section has the
 moment 3/2 M (1 - (y / turn)^2 / 3), with M its moment at y (any textbook of plasticity): the plastic neck.  The last
-figure is a lower bound; which one is to be believed is told by the sheet's thickness over the connectors' width.
+figure is a lower bound; which one is to be believed depends on the sheet's thickness over the connectors' width.
 """
 
 from __future__ import annotations
