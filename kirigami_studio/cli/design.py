@@ -175,7 +175,7 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     line.clear()
     document = document_of(result, job.fabrication)
     untrimmed = why_untrimmed(result)
-    notes = () if untrimmed is None else (untrimmed,)
+    notes: tuple[Note, ...] = () if untrimmed is None else (untrimmed,)
     if job.files:
         document, refusal = with_cuttable_chosen(document)
         if refusal is not None and document.chosen and document.label is not None:

@@ -29,7 +29,15 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, Source, breaking_phi, overlap, planned_sheet
+from kirigami_studio.studio.as_cut import (
+    CLOSE_TO,
+    Overlap,
+    Source,
+    breaking_phi,
+    estimated_jam,
+    overlap,
+    planned_sheet,
+)
 from kirigami_studio.studio.cutting import plan_sheet
 
 FLAT_DEG = 180.0
@@ -94,7 +102,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     jam, source = math.degrees(found.jam_phi(tolerated)), Source.SIMULATION
     if _ended_early(found, tolerated):
         beyond = estimate_stretch(cut.deployment, cut.sheet, width)
-        jam, source = math.degrees(beyond.jam_phi(tolerated)), Source.ESTIMATE
+        jam, source = math.degrees(estimated_jam(beyond, tolerated)), Source.ESTIMATE
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)

@@ -51,7 +51,7 @@ from kirigami_studio.mechanics.connectors import (
     flexure_length,
     junctions,
 )
-from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
@@ -359,14 +359,19 @@ def estimate(
     chosen = material_for(settings) if material is None else material
     sheet = _unplanned_sheet(deployment, settings, chosen)
     found = estimate_stretch(deployment, sheet, settings.width_mm)
-    jam = found.jam_phi()
-    jam = 0.0 if jam <= ESTIMATE_CLOSES else jam
+    jam = estimated_jam(found)
     largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
     blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
     figures = _both_figures(sheet, phi if outcome is Outcome.CLOSES else max(jam, phi))
     judged = survival(chosen, sheet.connectors.width_mm, *figures)
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
+
+
+def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
+    """Angle (radians) at which a sheet is estimated to jam; 0 where its contacts give."""
+    jam = found.jam_phi(tolerated)
+    return 0.0 if jam <= ESTIMATE_CLOSES else jam
 
 
 def all_break(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> bool:
@@ -452,8 +457,8 @@ def simulate(
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
-    found_as_cut = _simulated(plan.material, found, jam, phi, lap)
-    return SimulatedSheet(found_as_cut, found, node, width_mm, panels, plan.made)
+    as_cut = _simulated(plan.material, found, jam, phi, lap)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
 
 
 def simulated(

@@ -149,7 +149,7 @@ def judged_preset(material: Material, shape: str, k: int, seed: int = 0) -> Pres
     """Design a shape as ``design --material`` does, and judge the best."""
     target, settings = load(shape), new_settings({"material": material.key})
     wanted = DesignSettings(k=k, seed=seed)
-    best = completed(run_design(request_for(target, wanted, settings), settings, as_cut=True), lambda _: None).best
+    best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best
     try:
         found = assess(best, settings, target)
     except KirigamiError as error:
