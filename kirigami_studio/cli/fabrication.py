@@ -50,7 +50,7 @@ FLAT_DEG = 180.0
 
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings from the width options, else the material's; warns of what it cannot do.
+    """Fabrication settings of the width options, else the material's; warn of its limits.
 
     Unknown materials are refused here, before any work.
     """

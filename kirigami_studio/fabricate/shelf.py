@@ -153,7 +153,7 @@ class Shelf(Generic[Item]):
             entries = read_toml(path)
         except (OSError, ValueError) as error:
             raise FabricationError(self.codes["unreadable"], path=path, reason=str(error)) from error
-        entries = self.now(entries)
+        entries = dict(self.now(entries))
         expected = {
             one.name: one.default is MISSING and one.default_factory is MISSING
             for one in fields(self.kind)

@@ -1,4 +1,4 @@
-"""What a cut sheet does as it opens from flat towards phi = 0: force, energy, stretch, strain, and where it jams."""
+"""Opening of a cut sheet from flat towards phi = 0: force, energy, stretch, strain, and jams."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ turns, connector by connector, each a strip that bends evenly over its length l 
 
 Beyond the turn y at which the outer fibre yields, an elastic, ideally plastic strip of rectangular section has the
 moment 3/2 M (1 - (y / turn)^2 / 3), with M its moment at y (any textbook of plasticity): the plastic neck.  The last
-figure is a lower bound; which one is to be believed is told by the sheet's thickness over the connectors' width.
+figure is a lower bound; which one is to be believed depends on the sheet's thickness over the connectors' width.
 """
 
 from __future__ import annotations
@@ -19,6 +19,10 @@ import numpy as np
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import Closing
+from kirigami_studio.mechanics.drive import rated
+
+#: A slope needs as many steps; a closing that got stuck before them has none.
+LEAST_STEPS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +109,7 @@ def _load(found: Closing, energy: FloatArray, slope: FloatArray | None = None) -
     """Load of an energy (S,); its slope by the displacement is that of its steps unless given."""
     at = found.path.drive.displacement
     if slope is None:
-        slope = np.gradient(energy, at, edge_order=min(2, len(at) - 1)) if len(at) > 1 else np.zeros(len(at))
+        slope = rated(energy[:, None], at)[:, 0] if len(at) >= LEAST_STEPS else np.zeros(len(at))
     if found.path.drive.weights.size:
         return Load(energy, slope, slope / found.sheet.network.panel_size)
     return Load(energy, None, slope)

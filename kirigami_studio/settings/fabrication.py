@@ -335,7 +335,7 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
 
 
 def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
-    """The changes that come with a material: its connector and kerf; its usual size for the usual one of the last."""
+    """Changes that come with a material: connector and kerf; a usual size becomes its own."""
     changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
     try:
         before, after = material_for(settings), material_for(replace(settings, material=key))

@@ -320,12 +320,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "(not built yet)."
     ),
     "strain.escapes": mark(
-        "the sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
-        "plane, across its thickness"
+        "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
+        "plane, across its thickness."
     ),
     "strain.stays_flat": mark(
-        "the sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
-        "plane, across its width"
+        "The sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
+        "plane, across its width."
     ),
     "material.no_such_word": mark(
         "Material {key!r:.60}: {name} must be one of {choices}, got {value!r:.40}. Correct its file."
@@ -359,13 +359,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.strain_choose_style": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm: {why}). "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm). {why} "
         "Choose arc or double connectors, thinner material or a target angle nearer to flat."
     ),
     "plan.strain_larger_sheet": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm: {why}). "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm). {why} "
         "Choose a larger sheet, so that every slit end has room for its style, thinner material or "
         "a target angle nearer to flat."
     ),
