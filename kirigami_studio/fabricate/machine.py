@@ -332,7 +332,7 @@ def usual_material(machine: Machine, taken: Mapping[str, Material]) -> str:
 
     def order(key: str) -> tuple[bool, bool, bool]:
         made_for = MachineKind.of(known[key].machine) is machine.kind
-        return key != DEFAULT_PRESET, not made_for, not taken[key].connectors_hold
+        return key != DEFAULT_PRESET, not made_for, taken[key].limits_note is not None
 
     return min(taken, key=order)
 

@@ -84,6 +84,8 @@ class Shelf(Generic[Item]):
         Codes of the problems, by what they are about.
     judged : frozenset of str
         Fields that nobody changes by name.
+    now : callable
+        Makes entries of today's files of those that older files have.
     """
 
     kind: type[Item]
@@ -92,6 +94,7 @@ class Shelf(Generic[Item]):
     first: str
     codes: Mapping[str, str]
     judged: frozenset[str] = frozenset({"key"})
+    now: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda entries: entries
 
     def bundled(self) -> dict[str, Item]:
         """Return the bundled values by key, the first one first, the rest in alphabetical order."""
@@ -150,7 +153,12 @@ class Shelf(Generic[Item]):
             entries = read_toml(path)
         except (OSError, ValueError) as error:
             raise FabricationError(self.codes["unreadable"], path=path, reason=str(error)) from error
-        expected = {one.name: one.default is MISSING for one in fields(self.kind) if one.name != "key"}
+        entries = self.now(entries)
+        expected = {
+            one.name: one.default is MISSING and one.default_factory is MISSING
+            for one in fields(self.kind)
+            if one.name != "key"
+        }
         if missing := {name for name, needed in expected.items() if needed} - entries.keys():
             names = ", ".join(sorted(missing))
             raise FabricationError(self.codes["missing"], path=path, names=names, count=len(missing))

@@ -334,8 +334,24 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
     return changes
 
 
+def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
+    """The changes that come with a material: its connector and kerf; its usual size for the usual one of the last."""
+    changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
+    try:
+        before, after = material_for(settings), material_for(replace(settings, material=key))
+    except FabricationError:
+        return changes
+    if settings.opened_mm == before.sheet_mm:
+        changes["opened_mm"] = after.sheet_mm
+    elif settings.opened_mm is None and settings.width_mm == before.sheet_mm:
+        changes["width_mm"] = after.sheet_mm
+    return changes
+
+
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     """Settings without a project: with the given material, or one that the machine cuts.
+
+    The width is the material's usual one unless given.
 
     Raises
     ------
@@ -348,7 +364,9 @@ def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     if given.get("machine") is not None and given.get("material") is None:
         changes = machine_changes(usual, find_machine(given["machine"]))
         usual = replace(usual, material=changes.get("material", usual.material))
-    return with_choices(usual, given)
+    material = material_for(with_choices(usual, given))
+    own_style = replace(usual.options, style=material.style)
+    return with_choices(replace(usual, width_mm=material.sheet_mm, options=own_style), given)
 
 
 def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:

@@ -208,7 +208,7 @@ def _enclosed(path: Path) -> FabricationSettings | None:
 
 def _design_of(document: Document, identity: str) -> int | None:
     """Number of the design with an identity, the chosen one first; None where the project does not have it."""
-    first = [] if document.chosen is None else [document.chosen]
+    first: list[int] = [] if document.chosen is None else [document.chosen]
     for number in [*first, *range(len(document.candidates))]:
         if _identity(document.candidates[number]) == identity:
             return number

@@ -20,6 +20,7 @@ from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -31,7 +32,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
 from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
-from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
+from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
@@ -317,7 +318,7 @@ class _Search:
         settings, phi = change.settings, change.candidate.final_phi
         try:
             material = material_for(settings)
-            if least_strain(motion, settings, phi, material) > material.strain_limit:
+            if all_break(motion, settings, phi, material):
                 return True
             found = estimate(motion, settings, phi, material)
         except KirigamiError:
@@ -439,7 +440,7 @@ def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Ite
     """All other materials with centred connectors; of a chosen machine, those that it cuts."""
     machine = named_machine(settings)
     for key, material in (library().materials if machine is None else cuttable(machine)).items():
-        if key != settings.material and material.connectors_hold:
+        if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)

@@ -382,6 +382,7 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
+    picture_phi: float | None = None,
 ) -> ExportedFiles:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
@@ -393,9 +394,11 @@ def written(
     as_cut : AsCut, str or None
         As :func:`closed` tells; None where nobody has looked, for the verdict.
     motion : CutMotion, optional
-        What an animation shows.
+        What pictures and animations show instead of the ideal motion.
     on_written : callable, optional
         Gets each path of a whole set once it is there, and may raise to stop.
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
 
     Raises
     ------
@@ -407,7 +410,8 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion, simulated_jam=jam_of(as_cut)), output.path
+    job = replace(export_job(request, made), motion=motion, picture_phi=picture_phi, simulated_jam=jam_of(as_cut))
+    path = output.path
 
     def told(verifications: Sequence[Verification]) -> Mapping[str, object]:
         return judged(request, made, as_cut, verifications).to_json()
@@ -441,11 +445,11 @@ def exporting(
     """
     importing.import_exporters()
     importing.import_as_cut()
-    from kirigami_studio.export.registry import export, find_exporter
+    from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
     if output.name is None:
-        find_exporter(path)  # an unknown kind is refused before anything is planned
+        find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(export_job(request, None), path), None)
             return
@@ -580,7 +584,7 @@ def animating(
             raise
         except KirigamiError as error:
             why = str(error)
-    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
     written = export(replace(export_job(request, None), motion=shown), path)
     yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 

@@ -8,7 +8,7 @@ Python show this one value.  What is only estimated says so, and gives way to th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
@@ -18,6 +18,7 @@ from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
 from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.strain import StrainFigure, strain_note
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, number, tr
@@ -31,7 +32,6 @@ from kirigami_studio.studio.as_cut import (
     AsCut,
     Outcome,
     Source,
-    StrainFigure,
     jam_json,
     simulate,
 )
@@ -42,8 +42,10 @@ if TYPE_CHECKING:
 
 #: What the check of a plan finds about strain; the verdict has one sentence for it, without advice that nobody tried.
 STRAINED = frozenset({"plan.strain_choose_style", "plan.strain_larger_sheet"})
+#: Fields that both have.
+STRAIN_FIELDS = ("strain_percent", "limit_percent", "material", "why")
 #: Warnings of that check that mean that the sheet does not survive.
-FATAL = frozenset({"plan.material_does_not_hold"})
+FATAL = frozenset({"plan.material_does_not_hold", "plan.material_needs_backing"})
 #: Findings about panels smaller than the material needs.
 TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
 #: Notes of a plan that mean that a person does not get what was asked for.
@@ -484,7 +486,8 @@ def judge(
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
-    notes: list[Note] = [*plan.notes, *(note for one in verifications for note in one.warnings)]
+    warned = (note for one in verifications for note in one.warnings)
+    notes: list[Note] = [*plan.notes, *_strain_notes(plan, known), *warned]
     if known is not None and known.closes:
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]
     told = {problem.text for problem in problems}
@@ -519,7 +522,7 @@ def expected(
         *_of_room(candidate, ranking),
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
-        *([] if as_cut is None or material is None else _strained(material, [as_cut.strain])),
+        *([] if as_cut is None or material is None else _of_expected_strain(material, as_cut)),
         *_of_match(as_cut),
     ]
     return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match_of(candidate, as_cut))
@@ -625,18 +628,27 @@ def _of_jam(as_cut: AsCut | None) -> list[Problem]:
 def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
     """One problem for connectors that break, by the larger of planned and simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
-    strains = [0.01 * float(str(problem.fields["strain_percent"])) for problem in planned]
-    return _strained(
-        plan.material,
-        [*strains, *([] if as_cut is None else [as_cut.strain])],
-        planned[0].where if planned else None,
-    )
+    found = [{name: problem.fields[name] for name in STRAIN_FIELDS} for problem in planned]
+    if as_cut is not None and as_cut.survival.breaks:
+        found.append(dict(strain_note(plan.material, as_cut.survival).fields))
+    return _strained(found, planned[0].where if planned else None)
 
 
-def _strained(material: Material, strains: Sequence[float], where: tuple[float, float] | None = None) -> list[Problem]:
-    """The largest of these strains where the material does not bear it: compared here alone."""
-    strain, limit = max(strains, default=0.0), material.strain_limit
-    if strain <= limit:
+def _of_expected_strain(material: Material, as_cut: AsCut) -> list[Problem]:
+    found = as_cut.survival
+    return _strained([strain_note(material, found).fields] if found.breaks else [])
+
+
+def _strained(found: Sequence[Mapping[str, object]], where: tuple[float, float] | None = None) -> list[Problem]:
+    """One sentence for connectors that break, of the strain that is furthest above its limit."""
+    if not found:
         return []
-    values = {"strain_percent": 100.0 * strain, "material": material.name, "limit_percent": 100.0 * limit}
-    return [Problem.error("as_cut.breaks", where, **values)]
+    worst = max(found, key=lambda fields: float(str(fields["strain_percent"])) / float(str(fields["limit_percent"])))
+    return [Problem.error("as_cut.breaks", where, **worst)]
+
+
+def _strain_notes(plan: CutPlan, as_cut: AsCut | None) -> list[Note]:
+    """Note on the strain that a sheet survives, and whether its connectors stay bent."""
+    if as_cut is None or as_cut.survival.breaks:
+        return []
+    return [strain_note(plan.material, as_cut.survival)]

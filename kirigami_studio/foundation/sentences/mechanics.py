@@ -101,7 +101,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "as_cut.breaks": mark(
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "
-        "{limit_percent:g} %."
+        "{limit_percent:g} % ({why})."
+    ),
+    "as_cut.survives": mark(
+        "Connectors are strained by {strain_percent:.0f} % at most; {material!r} breaks at {limit_percent:g} % ({why})."
+    ),
+    "as_cut.stays_bent": mark(
+        "Connectors stay bent: they are strained by up to {strain_percent:.0f} %, {material!r} yields at "
+        "{yield_percent:g} % and breaks at {limit_percent:g} % ({why})."
     ),
     "as_cut.not_known": mark("The sheet could not be closed as cut, in simulation: {reason}"),
     # The command

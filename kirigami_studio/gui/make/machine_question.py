@@ -7,6 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, QPushButton, QSizePolicy, QVBoxLayout
 
 from kirigami_studio.fabricate.machine import Machine, MachineKind, cuttable, machines
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
 
 #: Kinds of machines in the order in which they are offered, with their names on the buttons.
@@ -73,10 +74,14 @@ class CuttingQuestion(QFrame):
         self._arrange()
 
     def _offer_materials(self, menu: QMenu, machine: Machine) -> None:
-        """The materials that a machine cuts, in the order of their names."""
-        taken = sorted((tr(material.name), key) for key, material in cuttable(machine).items())
-        for name, key in taken:
-            action = menu.addAction(name)
+        """The materials that a machine cuts, by name; those that one sheet cannot be made of come last and say so."""
+        menu.setToolTipsVisible(True)
+        taken = [
+            (material.limits_note is not None, tr(material.name), key) for key, material in cuttable(machine).items()
+        ]
+        for _, name, key in sorted(taken):
+            action, material = menu.addAction(name), find_material(key)
+            action.setToolTip(tr(material.note) if material.limits_note is None else material.limits_note.text)
             action.triggered.connect(lambda _=False, key=key: self.answered.emit(machine.key, key))
 
     def _arrange(self) -> None:

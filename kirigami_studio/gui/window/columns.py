@@ -45,7 +45,8 @@ class Columns(QWidget):
         self.settings.body.insertWidget(0, self.fabrication.material_row)
         self.settings.body.addWidget(self.run)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        for part in (_column(self.target, self.settings), self.stage, _column(self.gallery, self.fabrication)):
+        self._outer = _column(self.target, self.settings), _column(self.gallery, self.fabrication)
+        for part in (self._outer[0], self.stage, self._outer[1]):
             self.splitter.addWidget(part)
         self.splitter.setChildrenCollapsible(False)
         self.splitter.setStretchFactor(1, 1)
@@ -94,12 +95,11 @@ class Columns(QWidget):
 
     def _give_whole_width(self, whole: bool) -> None:
         """Three designs and more beside each other take the place of the outer columns."""
-        outer = self.splitter.widget(0), self.splitter.widget(2)
-        if whole == outer[0].isHidden():
+        if whole == self._outer[0].isHidden():
             return
         if whole:
             self._sizes_before = self.splitter.sizes()
-        for column in outer:
+        for column in self._outer:
             column.setVisible(not whole)
         if not whole:
             self.splitter.setSizes(self._sizes_before)

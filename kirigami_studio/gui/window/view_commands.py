@@ -105,6 +105,15 @@ def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
             shortcuts=("Ctrl+Right",),
         ),
         Command(
+            "as_cut",
+            menu,
+            tr("As &cut"),
+            tr("Show the panels with their bows and connectors, as they are cut"),
+            bar.as_cut.trigger,
+            shortcuts=("Shift+C",),
+            switch=bar.as_cut,
+        ),
+        Command(
             "ideal",
             menu,
             tr("Ideal beyond the &jam"),

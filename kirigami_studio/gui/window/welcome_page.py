@@ -259,7 +259,8 @@ class WelcomePresenter(QObject):
 
     def choose(self, machine: str, material: str) -> None:
         """Cut this material on this machine from now on, in this project and in new ones."""
-        preferences, session, chosen = self._preferences, self._session, find_machine(machine)
+        preferences, session = self._preferences, self._session
+        chosen, known = find_machine(machine), find_material(material)
         wanted = replace(
             preferences.present, machine=machine, material=material, profile=chosen.profile, machine_asked=True
         )
@@ -268,6 +269,8 @@ class WelcomePresenter(QObject):
             wanted = replace(
                 wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
             )
+        else:
+            wanted = replace(wanted, size=TypedSize.OPENED, opened_mm=known.sheet_mm)
         preferences.keep(wanted)
         cut = wanted.new_document().fabrication
         changed = replace(session.document, fabrication=cut)
@@ -276,8 +279,8 @@ class WelcomePresenter(QObject):
         else:  # nothing was done yet: this is how it starts
             session.restart(changed, session.path)
         self._page.question.hide()
-        name = tr(find_material(material).name)
-        session.set_status(tr("Cutting {material}. Press Generate (Ctrl+G).", material=name))
+        begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
+        session.set_status(begin if known.limits_note is None else known.limits_note.text)
 
     def decline(self) -> None:
         """Do not ask again."""

@@ -210,7 +210,7 @@ class StateSheet(BoardStates):
             services.marks.pin(services.session.document.candidates[row])
         services.marks.reject(services.session.document.candidates[3], None)
         click(bar.filter)
-        for box in (bar.filters.feasible, bar.filters.rejected):
+        for box in (bar.filters.works, bar.filters.rejected):
             box.setChecked(True)
         bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
         bar.order.activated.emit(bar.order.currentIndex())

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.machine import (
@@ -33,7 +33,13 @@ from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import read_sheet
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, new_settings
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    machine_for,
+    material_changes,
+    material_for,
+    new_settings,
+)
 from kirigami_studio.studio.cutting import plan_sheet
 from tests.refusals import refused
 
@@ -46,7 +52,7 @@ def test_that_every_bundled_machine_names_a_profile_a_file_and_where_its_numbers
     found = machines()
     assert not found.faults and not found.own and next(iter(found.items)) == "uv-laser"
     for machine in found.items.values():
-        assert machine.profile in PROFILES and machine.file in exporters(), machine.key
+        assert machine.profile in PROFILES and machine.file in WRITERS, machine.key
         assert min(machine.reach_mm) > 150.0 and machine.note, machine.key
     kinds = {machine.kind for machine in found.items.values()}
     assert kinds == set(MachineKind) - {MachineKind.OTHER} == set(USUAL)
@@ -75,7 +81,7 @@ def test_that_a_material_has_its_own_figures_on_another_kind_of_machine() -> Non
     card, blade = find_material("card-co2"), find_machine("cricut-maker")
     on_blade = material_on(card, blade)
     assert (on_blade.kerf_mm, on_blade.relief_radius_mm, on_blade.power_percent) == (0.0, 0.0, 0.0)
-    assert (on_blade.thickness_mm, on_blade.strain_limit) == (card.thickness_mm, card.strain_limit)
+    assert (on_blade.thickness_mm, on_blade.bend_strain) == (card.thickness_mm, card.bend_strain)
     assert material_on(card, find_machine("k40")) == card
     acrylic = find_material("acrylic-co2")
     assert kinds_for(acrylic) == (MachineKind.CO2,) and material_on(acrylic, blade) == acrylic
@@ -119,6 +125,25 @@ def test_that_settings_that_name_a_material_only_are_for_the_machine_of_that_mat
         settings = FabricationSettings(material=key)
         assert settings.machine == "" and machine_for(settings).key == wanted
         assert material_for(settings) == find_material(key)
+
+
+def test_that_new_settings_have_the_usual_size_of_their_material_unless_told_otherwise() -> None:
+    for key in ("film-uv", "card-co2", "leather-co2"):
+        assert new_settings({"material": key}).width_mm == find_material(key).sheet_mm
+    assert new_settings({}).width_mm == 100.0
+    assert new_settings({"material": "card-co2", "width_mm": 90.0}).width_mm == 90.0
+    assert new_settings({"material": "card-co2", "machine": "hand"}).width_mm == 280.0
+
+
+def test_that_a_change_of_material_takes_its_usual_size_along_and_leaves_a_typed_one() -> None:
+    card = find_material("card-co2").sheet_mm
+    assert material_changes(FabricationSettings(), "card-co2") == {
+        "material": "card-co2", "connector_mm": None, "kerf_mm": None, "width_mm": card,
+    }  # fmt: skip
+    assert "width_mm" not in material_changes(FabricationSettings(width_mm=123.0), "card-co2")
+    opened = material_changes(FabricationSettings(width_mm=87.0, opened_mm=100.0), "card-co2")
+    assert opened["opened_mm"] == card and "width_mm" not in opened
+    assert set(material_changes(FabricationSettings(), "gone")) == {"material", "connector_mm", "kerf_mm"}
 
 
 def test_that_a_machine_alone_brings_its_profile_and_a_material_that_it_cuts() -> None:

@@ -82,7 +82,7 @@ def test_that_a_sheet_without_problems_is_ready_to_cut(
     design: Candidate, ready: Assessment, written: Verification
 ) -> None:
     assert ready.verdict.level is Level.READY and ready.verdict.ok and ready.verdict.problems == ()
-    assert [note.code for note in ready.verdict.notes] == ["plan.material_uncalibrated"]
+    assert [note.code for note in ready.verdict.notes] == ["plan.material_uncalibrated", "as_cut.stays_bent"]
     assert ready.verdict.lines[0] == "Ready to cut" and ready.verdict.lines[1] == ready.verdict.summary
     with_file = judge(design, ready.plan, ready.report, ready.as_cut, [written])
     assert written.ok and with_file == replace(ready.verdict, read=True)
@@ -119,7 +119,7 @@ def test_that_a_design_says_why_it_cannot_be_cut(design: Candidate) -> None:
     assert good.refusal is None and good.as_cut is not None and good.as_cut.closes
     reasons = {
         "as_cut.jams_while_flat": replace(FILM, options=STRAIGHT),
-        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0),
+        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0, connector_mm=1.0),
         "edge_cut.no_room": replace(FILM, connector_mm=30.0),
     }
     for code, settings in reasons.items():
@@ -232,14 +232,25 @@ def test_that_a_connector_which_breaks_will_not_work(design: Candidate) -> None:
     made = assess(design, card)
     assert made.verdict.level is Level.FAILS and codes(made.verdict)[0] == "as_cut.breaks"
     assert isinstance(made.as_cut, AsCut)
-    text = made.verdict.problems[0].text
-    assert "breaks at 3 %" in text and "Choose" not in text
+    told = made.verdict.problems[0]
+    assert told.fields["limit_percent"] == 25.0 and "0.30 times" in str(told.fields["why"])
+    assert "Choose" not in told.text
     # Either prediction is enough.
     calm = replace(CLOSES, strain=0.0)
     assert codes(judge(design, made.plan, made.report, calm))[0] == "as_cut.breaks"
     unstrained = replace(made.report, problems=())
-    assert codes(judge(design, made.plan, unstrained, replace(CLOSES, strain=0.031))) == ["as_cut.breaks"]
-    assert judge(design, made.plan, unstrained, replace(CLOSES, strain=0.029)).ok
+    limited = replace(CLOSES, strain_limit=0.03)
+    assert codes(judge(design, made.plan, unstrained, replace(limited, strain=0.031))) == ["as_cut.breaks"]
+    assert judge(design, made.plan, unstrained, replace(limited, strain=0.029)).ok
+
+
+def test_that_a_verdict_says_which_strain_it_believes_and_why(design: Candidate) -> None:
+    for width, code in ((0.7, "strain.escapes"), (0.5, "strain.stays_flat")):
+        made = assess(design, FabricationSettings(material="card-co2", width_mm=250.0, connector_mm=width))
+        assert isinstance(made.as_cut, AsCut) and made.as_cut.survival.why.code == code
+        (told,) = [problem for problem in made.verdict.problems if problem.code == "as_cut.breaks"]
+        assert f"{0.3 / width:.2f} times" in told.text and "0.5" in told.text
+        assert told.fields["limit_percent"] == (25.0 if code == "strain.escapes" else 3.0)
 
 
 def test_that_a_material_of_which_no_connector_holds_will_not_work(design: Candidate) -> None:
