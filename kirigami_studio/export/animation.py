@@ -108,7 +108,7 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
 def _as_cut(
     design: PosedDesign, target: FloatArray | None, motion: CutMotion, phi: float, box: PictureFrame
 ) -> Image.Image:
-    """One frame of the sheet as cut: its panels, the connectors that stop it, and the caption in the lower left."""
+    """One frame of the sheet as cut: panels, connectors that stop it, and the caption."""
     pose = motion.pose(design, phi)
     image = draw_polygons(pose.panels, box, target, pose.cuts)
     large = image.resize((SUPERSAMPLING * box.pixels[0], SUPERSAMPLING * box.pixels[1]))

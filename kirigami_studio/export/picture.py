@@ -134,14 +134,14 @@ def png_of_bands(size: tuple[int, int], bands: Iterable[NDArray[np.uint8]], fact
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
-    """Draw the layout at the job's angle over the target, as cut where the job has such a motion."""
+    """Draw the layout at the job's angle over the target, as cut if there is such a motion."""
     panels, edges = drawn_panels(job, job.shown_phi)
     clouds = panels if job.target is None else [*panels, job.target]
     return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target, edges)
 
 
 def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[FloatArray] | None]:
-    """The panels at an angle (radians), and the lines that are drawn at their edges; None for all of them."""
+    """The panels at an angle (radians), and the lines at their edges; None for all."""
     if job.motion is None:
         return job.posed.parts(phi), None
     pose = job.motion.pose(job.posed, phi)

@@ -116,7 +116,7 @@ def _stroke_data(stroke: Stroke, height: float) -> str:
 
 
 def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) -> None:
-    """Draw the layout at the job's angle over the target, at the size that belongs to a flat sheet of ``width_mm``.
+    """Draw the layout over the target, at the size of a flat sheet of ``width_mm``.
 
     It is a picture and says so: all is filled, lines too, because laser programs cut and engrave strokes.
 

@@ -1,4 +1,4 @@
-"""The panels of a sheet as its cuts leave them: with the bows around connectors, shaped slit ends and trimmed edges.
+"""The panels of a sheet as its cuts leave them, with bows, shaped ends and trimmed edges.
 
 Cuts do not close around a panel: at every connector the material goes on into the next one.  There a panel ends at the
 *neck*, the shortest line from the end of the slit to the cut that it rests on.  Cuts and necks together divide the

@@ -93,7 +93,7 @@ def escapes(thickness_mm: float, width_mm: FloatArray) -> BoolArray:
 
 
 def used_up(material: Material, width_mm: FloatArray, in_plane: FloatArray, out_of_plane: FloatArray) -> FloatArray:
-    """Share (..., H) of the strain that connectors bear, by the figure believed; above 1 they break.
+    """Share (..., H) of the strain that connectors bear; above 1 they break.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where panels with bows run into each other: the detours of cuts around connectors meet before the panels' edges do.
+"""Contacts of panels with bows: detours of cuts meet before the panels' edges do.
 
 The four panels around a void move like a parallelogram linkage: neighbours turn against each other about the centre of
 the connector that joins them, opposite ones are shifted without a turn.  As a void closes its panels are tried pair by

@@ -1,4 +1,4 @@
-"""Names and notes of bundled machines and profiles, and of materials on other kinds of machines, for translators."""
+"""Names and notes of machines and profiles, and of materials on others, for translators."""
 
 from __future__ import annotations
 
