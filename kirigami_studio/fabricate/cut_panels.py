@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 
 from kirigami_studio.fabricate.cut_path import Layer
+from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from kirigami_studio.fabricate.cut_plan import CutPlan
 
 #: Necks reach over the cuts at both their ends by this (mm), so that rounding leaves no gap; no cut is as short as two.
 BEYOND_MM = 1e-3
@@ -94,6 +92,7 @@ class CutPanels:
         return CutPanels(*moved)
 
 
+@lru_cache(maxsize=16)
 def cut_panels(plan: CutPlan) -> CutPanels:
     """Divide a sheet into the panels that its cuts leave.
 

@@ -17,7 +17,6 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
-from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -170,11 +169,6 @@ class CutPlan:
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
         return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
-
-    @cached_property
-    def cut_panels(self) -> CutPanels:
-        """The panels as the cuts leave them."""
-        return cut_panels(self)
 
     @property
     def layers(self) -> tuple[Layer, ...]:

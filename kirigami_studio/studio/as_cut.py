@@ -19,7 +19,7 @@ from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
-from kirigami_studio.fabricate.cut_panels import CutPanels
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.making_room import long_enough
@@ -295,7 +295,7 @@ def _meetings(connectors: SheetConnectors, plan: CutPlan, deployment: Deployment
     there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
     number = np.full(table.hinge_count + 1, NO_CONNECTOR)  # the last one for corners without a hinge
     number[there] = np.arange(len(there))
-    panels = plan.cut_panels.moved(shift).numbered(len(plan.panels))
+    panels = cut_panels(plan).moved(shift).numbered(len(plan.panels))
     return meetings(panels, connectors, number[void_hinges(table)], plan.kerf_mm)
 
 
@@ -456,7 +456,7 @@ def simulate(
         lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
-    panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
+    panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
     as_cut = _simulated(plan.material, found, jam, phi, lap)
     return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
 

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from shapely.geometry import LineString, Polygon
 
-from kirigami_studio.fabricate.cut_panels import CutPanels
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -47,7 +47,7 @@ def test_that_panels_cover_the_sheet_and_their_edges_are_all_cuts(
 ) -> None:
     design = make_design(6, 7, seed=2, spread=0.5)
     plan = plan_cuts(design, WIDTH, connector_mm, material=find_material("film-uv"), options=CutOptions(style=style))
-    panels = plan.cut_panels
+    panels = cut_panels(plan)
     assert panels.outlines.panel.tolist() == list(range(56))
     areas = areas_of(panels)
     assert all(area.is_valid for area in areas)
@@ -62,7 +62,7 @@ def test_that_panels_cover_the_sheet_and_their_edges_are_all_cuts(
 
 def test_that_a_panel_goes_on_at_each_of_its_connectors_and_ends_there(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(5, 5, seed=1), WIDTH, 0.8, options=CutOptions(style=ConnectorStyle.CENTRED))
-    panels, necks = plan.cut_panels, 0
+    panels, necks = cut_panels(plan), 0
     for number, area in zip(panels.outlines.panel.tolist(), areas_of(panels), strict=True):
         own = [line for line, panel in zip(panels.cuts.split(panels.cuts.points), panels.cuts.panel, strict=True)
                if panel == number]  # fmt: skip
@@ -77,8 +77,8 @@ def test_that_a_panel_goes_on_at_each_of_its_connectors_and_ends_there(make_desi
 def test_that_removed_connectors_and_tabs_leave_whole_panels(make_design: MakeDesign) -> None:
     options = CutOptions(style=ConnectorStyle.CENTRED, removed=(3, 8), tabs=4)
     plan = plan_cuts(make_design(4, 4, seed=5), WIDTH, 0.8, options=options)
-    assert plan.cut_panels.outlines.panel.tolist() == list(range(25))
-    assert sum(area.area for area in areas_of(plan.cut_panels)) == pytest.approx(Polygon(plan.outline).area, rel=1e-4)
+    assert cut_panels(plan).outlines.panel.tolist() == list(range(25))
+    assert sum(area.area for area in areas_of(cut_panels(plan))) == pytest.approx(Polygon(plan.outline).area, rel=1e-4)
 
 
 @pytest.mark.parametrize("style", [ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED])
@@ -88,16 +88,16 @@ def test_that_trimmed_panels_end_at_the_outline(make_design: MakeDesign, style: 
     middles = 0.5 * (ends[:-1:2] + ends[1::2])
     kept = bitten(design, [(float(x), float(y)) for x, y in middles], 0.25)
     plan = plan_cuts(design, WIDTH, 0.6, options=CutOptions(style=style), kept=kept)
-    areas = areas_of(plan.cut_panels)
+    areas = areas_of(cut_panels(plan))
     assert sum(area.area for area in areas) == pytest.approx(sheet_of(plan).area, rel=1e-5)
     assert all(sheet_of(plan).buffer(1e-4).contains(area) for area in areas)
 
 
 def test_that_panels_move_to_another_frame_and_are_found_by_number(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(3, 3), WIDTH, 0.5)
-    panels = plan.cut_panels
+    panels = cut_panels(plan)
     way = panels.moved(np.array([3.0, -2.0])).cuts.points - panels.cuts.points
     np.testing.assert_allclose(way, np.broadcast_to([3.0, -2.0], way.shape))
     numbered = panels.numbered(20)
     assert [len(ring) > 0 for ring in numbered] == [number < 16 for number in range(20)]
-    assert replace(plan, origin={"a": "b"}).cut_panels.outlines.panel.tolist() == panels.outlines.panel.tolist()
+    assert cut_panels(replace(plan, origin={"a": "b"})).outlines.panel.tolist() == panels.outlines.panel.tolist()
