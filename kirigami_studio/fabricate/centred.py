@@ -439,7 +439,20 @@ class _Draft:
             able = {hinge for hinge in turning if self._can_tighten(hinge)}
             tight |= able or (set() if bows else turning)
             flatter |= set() if able else bows
-        return tight, flatter
+        return tight | self._curling_back(lines[-1]), flatter
+
+    def _curling_back(self, outline: shapely.Geometry) -> set[int]:
+        """Hinges whose edge cuts, after they came from the outline, turn back to it by less than a span."""
+        found = set()
+        for piece, features in zip(self._made, self._features, strict=True):
+            for feature in features if piece.opens else ():
+                if not (feature.turns and self._can_tighten(feature.hinge)):
+                    continue
+                near = float(shapely.distance(feature.line, outline))
+                began = float(shapely.distance(Point(feature.points[-1]), outline))
+                if near < min(float(self._centres.span_mm[feature.hinge]), began) - CLEAR_MM:
+                    found.add(feature.hinge)
+        return found
 
     def next_attempt(self, hinge: int) -> int:
         """The next way for the slit of a hinge to turn; past the last one it stays straight."""

@@ -150,7 +150,7 @@ def _necks(plan: CutPlan, lines: npt.NDArray[np.object_], owner: IntArray) -> li
 def _panels_of(parts: npt.NDArray[np.object_], plan: CutPlan) -> IntArray:
     """The panel that each part belongs to, -1 for none."""
     there = [number for number, panel in enumerate(plan.panels) if len(panel) > 2]
-    ideal = shapely.make_valid(shapely.polygons([shapely.linearrings(plan.panels[number]) for number in there]))
+    ideal = np.array([shapely.make_valid(shapely.Polygon(plan.panels[number])) for number in there], dtype=object)
     part, near = shapely.STRtree(ideal).query(parts, "intersects")
     shared = shapely.area(shapely.intersection(parts[part], ideal[near]))
     found, most = np.full(len(parts), -1), OWN_SHARE * shapely.area(parts)
@@ -191,7 +191,7 @@ def _runs(ring: FloatArray, cut: BoolArray) -> list[FloatArray]:
 
 def _inside(loose: npt.NDArray[np.object_], rings: Sequence[tuple[int, FloatArray]]) -> list[tuple[int, FloatArray]]:
     """Cuts by the panel that they end in; what is cut beyond the outline is in none."""
-    areas = shapely.polygons([shapely.linearrings(ring) for _, ring in rings])
+    areas = [shapely.Polygon(ring) for _, ring in rings]
     middles = shapely.line_interpolate_point(loose, 0.5, normalized=True)
     pairs = shapely.STRtree(areas).query(middles, "within").T.tolist()
     return [(rings[place][0], shapely.get_coordinates(loose[line])) for line, place in pairs]

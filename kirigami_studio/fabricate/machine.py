@@ -15,7 +15,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, find_material, library
+from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, library
 from kirigami_studio.fabricate.shelf import Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
@@ -328,9 +328,10 @@ def material_on(material: Material, machine: Machine) -> Material:
 
 def usual_material(machine: Machine, taken: Mapping[str, Material]) -> str:
     """Key of the material to begin with, of those that a machine takes."""
+    known = library().materials
 
     def order(key: str) -> tuple[bool, bool, bool]:
-        made_for = MachineKind.of(find_material(key).machine) is machine.kind
+        made_for = MachineKind.of(known[key].machine) is machine.kind
         return key != DEFAULT_PRESET, not made_for, taken[key].limits_note is not None
 
     return min(taken, key=order)

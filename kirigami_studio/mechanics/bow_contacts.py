@@ -193,7 +193,7 @@ class _Pairs:
 
 def _deepest(area: shapely.Geometry, other: shapely.Geometry) -> tuple[complex, complex] | None:
     """The corner of one shape that is deepest in an area, and the place of the area's edge nearest to it."""
-    corners = shapely.points(shapely.get_coordinates(other))
+    corners = np.asarray(shapely.points(shapely.get_coordinates(other)))
     inside = corners[shapely.contains_properly(area, corners)]
     if not len(inside):
         return None
@@ -214,7 +214,7 @@ def _points(plane: ComplexArray) -> FloatArray:
 def _polygons(panels: Sequence[FloatArray]) -> npt.NDArray[np.object_]:
     made = np.full(len(panels), shapely.Polygon(), dtype=object)
     there = [number for number, panel in enumerate(panels) if len(panel) > 2]
-    made[there] = shapely.make_valid(shapely.polygons([shapely.linearrings(panels[number]) for number in there]))
+    made[there] = shapely.make_valid([shapely.Polygon(panels[number]) for number in there])
     return made
 
 
@@ -231,9 +231,10 @@ def _across(rigid: npt.NDArray[np.object_], connectors: SheetConnectors, voids: 
             sign = float(connectors.sign[one]) * (1.0 if between == b else -1.0)
             rows.append((still, facing, one, other, sign))
     panels = np.array([row[:2] for row in rows], dtype=np.intp).reshape(-1, 2)
-    one, other = np.array([row[2:4] for row in rows], dtype=np.intp).reshape(-1, 2).T
-    sign = np.array([row[4] for row in rows], dtype=np.float64)
-    return _Pairs(panels, *rigid[panels].T, one, centres[one], centres[other] - centres[one], sign)
+    hinges = np.array([row[2:4] for row in rows], dtype=np.intp).reshape(-1, 2)
+    signs = np.array([row[4] for row in rows], dtype=np.float64)
+    centre, arm = centres[hinges[:, 0]], centres[hinges[:, 1]] - centres[hinges[:, 0]]
+    return _Pairs(panels, rigid[panels[:, 0]], rigid[panels[:, 1]], hinges[:, 0], centre, arm, signs)
 
 
 def _beside(rigid: npt.NDArray[np.object_], connectors: SheetConnectors, kerf_mm: float) -> _Pairs:

@@ -62,7 +62,7 @@ SIGNS_OF_A_JAM = frozenset(
 #: Worth that a connector which stretches by its whole width costs: where designs match alike, calm connectors decide.
 STRETCH = 0.05
 #: Match (IoU) from which a silhouette counts as that of its target.  For a disc it means an edge that is 5 % of the
-#: radius off all round: 2.5 mm on a shape 100 mm wide, which is about what an eye forgives.
+#: radius off all round: 2.5 mm on a shape 100 mm wide.
 MATCHES = 0.90
 #: Below this it is another shape: a plain square comes to 0.66 on a star and to 0.70 on a butterfly.
 MATCHES_ROUGHLY = 0.75

@@ -274,8 +274,14 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     with started(person, tmp_path / "log.txt") as program:
         person.looks_at("Kirigami Studio")
         person.do("windowsize", "--sync", person.sees("Kirigami Studio"), *SIZE)
-        time.sleep(1.0)  # the window lays itself out anew
-        person.clicks(scissors)  # the answer to the one question; actions are counted from here
+        kept = Path(person.environment["XDG_CONFIG_HOME"]) / "kirigami-studio" / "preferences.toml"
+
+        def answers() -> bool:
+            time.sleep(1.0)  # the window lays itself out anew
+            person.clicks(scissors)  # the answer to the one question; actions are counted from here
+            return kept.exists()
+
+        person.waits(answers, "the answer to the question")
         person.clicks(generate)
         actions.append("Generate")
         person.waits(lambda: bool(person.sees(r"Untitled\*")), "designs in the project", 3.0 * PATIENCE)

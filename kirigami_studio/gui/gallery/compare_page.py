@@ -128,16 +128,9 @@ def figures_of(one: ComparedDesign) -> dict[str, ComparedFigure]:
     if found is not None:
         about, strain = "" if one.simulated else "\N{ALMOST EQUAL TO} ", 100.0 * found.strain
         text, kind = about + tr("{strain:.0f} %", strain=strain), str(one.simulated)
-        rows["as_cut"] = rows["as_cut"]._replace(text=about + _outcome(found))
+        rows["as_cut"] = rows["as_cut"]._replace(text=about + found.word)
         rows["strain"] = rows["strain"]._replace(text=text, value=strain, kind=kind)
     return rows
-
-
-def _outcome(found: AsCut) -> str:
-    """Whether a sheet comes to its angle, in few words."""
-    if found.closes:
-        return tr("closes") if math.degrees(found.phi) < 0.5 else tr("opens")
-    return tr("jams {jam:.0f}°", jam=math.degrees(found.jam_phi))
 
 
 class ComparedView(LayoutView):

@@ -199,11 +199,12 @@ def test_that_sharp_corners_and_starts_cost_their_delays_in_every_pass(make_desi
     assert slow.times.total - quick.times.total == pytest.approx(3 * (0.5 * len(slow.paths) + 0.25 * corners))
 
 
+@pytest.mark.parametrize("material", ["film-uv", "pa-film-uv"])
 @pytest.mark.parametrize("shape", ["heart", "star", "hexagon"])
-def test_that_the_papers_parts_take_the_five_minutes_that_it_gives(shape: str) -> None:
+def test_that_the_papers_parts_take_the_five_minutes_that_it_gives(shape: str, material: str) -> None:
     """The paper gives about 5 min of laser cutting; the sheets are this program's, of its grid, 100 mm wide."""
     sheet = read_sheet(Path(__file__).parents[2] / "data" / "paper_parts" / f"{shape}.json")
-    plan = plan_sheet(deploy(sheet), FabricationSettings())
+    plan = plan_sheet(deploy(sheet), FabricationSettings(material=material, width_mm=100.0))
     assert plan.machine.key == "uv-laser" and plan.material.passes > 1
     assert plan.times.total == pytest.approx(PAPER_SECONDS, rel=0.3)
 
