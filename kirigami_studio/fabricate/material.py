@@ -265,7 +265,7 @@ class Material:
 
     @property
     def limits_note(self) -> Note | None:
-        """Word before a run that no single sheet of it works, and which construction does; else None."""
+        """Word before a run that one sheet of it does not work, or hardly, and what does."""
         if self.backing:
             return Note.of("plan.material_is_hinge_layer", material=self.name)
         if self.connectors_hold:
@@ -315,7 +315,7 @@ class Library:
 
 
 def with_entries_of_now(entries: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries of a file or of changes, those of older programs under the names that they have now."""
+    """Entries of a file or of changes, those of older programs under their present names."""
     now = dict(entries)
     if OLD_LIMIT in now:
         limit = now.pop(OLD_LIMIT)
