@@ -254,7 +254,8 @@ def panel_problems(plan: CutPlan, kerf_mm: float, edge: SmallPlace | None, neck:
 
 def _limits(plan: CutPlan) -> list[Problem]:
     """Warn about a material of which no single sheet works."""
-    note = plan.material.limits_note
+    material = plan.material
+    note = material.limits_note if material.backing or not material.connectors_hold else None
     return [] if note is None else [Problem(note.code, note.fields, Severity.WARNING)]
 
 

@@ -135,7 +135,7 @@ class Material:
     connectors_hold : bool
         False where no style, width and sheet size is known whose connectors survive opening.
     construction : Construction
-        Way of making sheets that works in it.
+        Way of making sheets that works best in it.
     backing : bool
         Whether it is meant as the hinge layer under tiles.
     sheet_mm : float
@@ -265,11 +265,13 @@ class Material:
 
     @property
     def limits_note(self) -> Note | None:
-        """Word before a run that no single sheet of it works, and which construction does; else None."""
+        """Word before a run that one sheet of it does not work, or hardly, and what does."""
         if self.backing:
             return Note.of("plan.material_is_hinge_layer", material=self.name)
         if self.connectors_hold:
-            return None
+            if self.construction is Construction.ONE_SHEET:
+                return None
+            return Note.of("material.near_its_limit", material=self.name, least_mm=self.min_ligament_mm)
         backed = self.construction is Construction.BACKED
         return Note.of("plan.material_needs_backing" if backed else "plan.material_does_not_hold", material=self.name)
 
@@ -313,7 +315,7 @@ class Library:
 
 
 def with_entries_of_now(entries: Mapping[str, Any]) -> dict[str, Any]:
-    """Entries of a file or of changes, those of older programs under the names that they have now."""
+    """Entries of a file or of changes, those of older programs under their present names."""
     now = dict(entries)
     if OLD_LIMIT in now:
         limit = now.pop(OLD_LIMIT)

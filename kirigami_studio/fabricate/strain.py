@@ -108,7 +108,7 @@ def used_up(material: Material, width_mm: FloatArray, in_plane: FloatArray, out_
 
 
 def survival(material: Material, width_mm: FloatArray, in_plane: FloatArray, out_of_plane: FloatArray) -> Survival:
-    """Judge the connector nearest to breaking, of at least one; parameters as of :func:`used_up`."""
+    """Judge the connector nearest to breaking; parameters are those of :func:`used_up`."""
     shares = used_up(material, width_mm, in_plane, out_of_plane)
     worst = np.unravel_index(int(np.argmax(shares)), shares.shape)
     width = float(width_mm[worst[-1]])

@@ -1,4 +1,4 @@
-"""Opening of a cut sheet from flat towards phi = 0: force, energy, stretch, strain, and jams."""
+"""Opening of a cut sheet from flat towards phi = 0: force, energy, stretch, strain, jams."""
 
 from __future__ import annotations
 

@@ -319,6 +319,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{material} is a hinge layer: alone it is too limp for panels. Glued under tiles of card or board it works "
         "(not built yet)."
     ),
+    "material.near_its_limit": mark(
+        "{material}: one sheet closes only with large panels, because connectors narrower than {least_mm:g} mm break. "
+        "Tiles of it glued on a hinge layer close in any design (not built yet)."
+    ),
     "strain.escapes": mark(
         "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
         "plane, across its thickness."

@@ -150,6 +150,15 @@ def test_that_a_material_whose_connectors_break_anyway_is_told(make_design: Make
         assert any(problem.code == "plan.material_does_not_hold" for problem in problems) != holds
 
 
+def test_that_a_material_near_its_limit_says_so_before_a_run_and_not_of_every_sheet(make_design: MakeDesign) -> None:
+    leather = find_material("leather-co2")
+    assert leather.limits_note is not None
+    codes = [
+        problem.code for problem in check_plan(plan_cuts(make_design(3, 3), 380.0, material=leather), phi=0.0).problems
+    ]
+    assert leather.limits_note.code not in codes
+
+
 def test_that_a_check_says_of_a_cloth_that_it_is_a_hinge_layer(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(3, 3), 200.0, material=find_material("cotton-co2"))
     assert "plan.material_is_hinge_layer" in [problem.code for problem in check_plan(plan, phi=0.0).problems]

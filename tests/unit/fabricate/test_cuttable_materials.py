@@ -27,7 +27,7 @@ from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.verdict import Assessment, Level, assess
 
 EASY = Path(__file__).parents[2] / "data" / "easy_sheets.json"
-ONE_SHEET = [key for key, material in presets().items() if material.limits_note is None]
+ONE_SHEET = [key for key, material in presets().items() if material.connectors_hold and not material.backing]
 CANNOT = [key for key, material in presets().items() if not material.connectors_hold]
 
 

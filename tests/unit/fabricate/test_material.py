@@ -63,6 +63,8 @@ def test_that_what_one_sheet_cannot_do_is_known_before_a_run() -> None:
         "plywood-co2": "plan.material_does_not_hold",
         "felt-3-co2": "plan.material_needs_backing",
         "foil-uv": "plan.material_needs_backing",
+        "felt-co2": "material.near_its_limit",
+        "leather-co2": "material.near_its_limit",
         "cotton-co2": "plan.material_is_hinge_layer",
         "ripstop-co2": "plan.material_is_hinge_layer",
         "tulle-co2": "plan.material_is_hinge_layer",
