@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio.api.design import Design
+from kirigami_studio.export.file_record import FileRecord
 from kirigami_studio.studio.checking import Checked, checked
 
 
@@ -25,6 +26,11 @@ class CheckedFile(Checked):
     """
 
     @property
+    def record(self) -> FileRecord | None:
+        """The file's own account of its making; None in files of other programs."""
+        return self.report.record
+
+    @property
     def problems(self) -> tuple[str, ...]:
         """In sentences, those of the verdict included."""
         found = [problem.text for problem in self.report.problems]
@@ -39,7 +45,7 @@ class CheckedFile(Checked):
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin or a cut file of this program: units, duplicates, gaps, ligaments.
+    """Read a DXF of any origin or a cut file of this program: units, gaps, ligaments, record.
 
     Parameters
     ----------

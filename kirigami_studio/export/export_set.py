@@ -111,7 +111,7 @@ def placed(
     judged: Judged | None,
     done: Callable[[Path], None],
 ) -> tuple[ExportJob, list[Verification]]:
-    """Write cut files aside, read all of them back, let them say what was judged of them, and put them in their places.
+    """Write cut files aside, read them back, add the verdict, and put them in their places.
 
     Parameters
     ----------

@@ -353,7 +353,7 @@ def _length(curves: FloatArray) -> float:
 
 
 def _weights(chords: int) -> FloatArray:
-    """Weights (chords + 1, 4) of the control points of a cubic Bezier curve at equal steps along it."""
+    """Weights (chords + 1, 4) of control points at equal steps along a cubic Bezier curve."""
     t = np.linspace(0.0, 1.0, chords + 1)
     weights: FloatArray = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
     return weights

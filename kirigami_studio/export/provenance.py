@@ -43,7 +43,7 @@ VERSION = 1
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """The record in a file of how it was made: all that its plan can be made of again, and what a check expects."""
+    """Record in a file of its making: enough to plan it again, and for a check to compare."""
     kerf = 0.0 if profile.slots else plan.kerf_mm
     paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
     return {
@@ -90,7 +90,7 @@ def _single_connectors(plan: CutPlan) -> dict[str, str]:
 
 
 def _copies(plan: CutPlan) -> dict[str, str]:
-    """How many sheets the file holds, where it is not one, how far they are apart, and how many were asked for."""
+    """Number of sheets in the file where it is not one, their gap, and the number asked for."""
     copies, asked = plan.copies, plan.options.copies
     facts = {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": exactly(copies.gap_mm)}
     return facts if asked == 1 else {**facts, "COPIES_ASKED": f"{asked}", "COPY_GAP_MM": exactly(copies.gap_mm)}
@@ -108,7 +108,7 @@ def _name(plan: CutPlan, profile: Profile) -> dict[str, str]:
 
 
 def _tabs(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """Tabs, and what a check of the file would otherwise take for faults: cuts that end on other cuts.
+    """Tabs, and the number of cuts that end on others: no faults, a check has to know.
 
     Files of closed contours have neither, and say only what was asked for.
     """

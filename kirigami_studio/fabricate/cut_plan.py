@@ -374,7 +374,7 @@ def _plain_cuts(
 
 
 def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
-    """Widths (H,), mm, where the outline is no rectangle: what it leaves of a connector is that one's width."""
+    """Widths (H,), mm, of connectors of which a trim or another start leaves only a part."""
     left = (finished > 0.0) & (finished < planned - WIDER_MM)
     widths: FloatArray = np.where(left, finished, planned)
     return widths
@@ -434,7 +434,7 @@ def _on_grid(points: FloatArray) -> FloatArray:
 
 
 def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
-    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
+    """Identify a sheet and its trim; ``kept`` as for :func:`plan_cuts`, empty for none."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:

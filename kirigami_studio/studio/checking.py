@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
-    """What was found in a cut file.
+    """Findings on a cut file.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Checked:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """What was checked of the file itself, what it says of its making, and what was said of its sheet then."""
+        """Lines on the file itself, on its making, and on the verdict of its export."""
         report, record = self.report, self.report.record
         found = []
         if report.pieces is not None and report.min_ligament_mm is not None:
@@ -103,7 +103,7 @@ class Checked:
 
 
 def checked(path: Path, document: Document | None = None) -> Checked:
-    """Read a cut file; compare it with the design of a project, and judge the sheet, where one is given.
+    """Read a cut file, compare it with its design, and judge the sheet.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def _is_cut_file(report: FileReport) -> bool:
 
 
 def _request(record: FileRecord | None, path: Path, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
-    """The design of a file, cut as its record says; a problem where the project does not have that design."""
+    """Design of a file, cut as its record says, and a problem where the project lacks it."""
     if record is None:
         return CutRequest.of(document, _enclosed(path) or document.fabrication), ()
     found = _design_of(document, record.design)
@@ -188,7 +188,7 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
 
 
 def _own_material(key: str, path: Path, saved: FabricationSettings) -> Material | None:
-    """The numbers of a material that is no preset: the project's, else those of the design in the file."""
+    """Numbers of a material that is no preset: the project's, else the file's."""
     if key in library().materials:
         return None
     stored = stored_material(saved)
@@ -207,7 +207,7 @@ def _enclosed(path: Path) -> FabricationSettings | None:
 
 
 def _design_of(document: Document, identity: str) -> int | None:
-    """Number of the design with an identity, the chosen one first; None where the project does not have it."""
+    """Number of the design with an identity, the chosen one first; None without one."""
     first = [] if document.chosen is None else [document.chosen]
     for number in [*first, *range(len(document.candidates))]:
         if _identity(document.candidates[number]) == identity:

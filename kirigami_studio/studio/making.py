@@ -235,7 +235,7 @@ def chosen_candidate(document: Document) -> Candidate:
 
 
 def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
-    """Choose the first design of a project, from the chosen one on, whose cuts the sheet survives.
+    """Choose the first design, from the chosen one on, whose cuts the sheet survives.
 
     Returns
     -------
@@ -505,7 +505,7 @@ def exporting_coupon(
 
 
 def jam_of(as_cut: AsCut | str | None) -> float | None:
-    """Where a simulated sheet jams (radians); None where nobody has looked, or where that cannot be told."""
+    """Angle (radians) at which a simulated sheet jams; None without a simulation."""
     return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
