@@ -21,7 +21,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.registry import export, exporters
+from kirigami_studio.export.registry import WRITERS, export
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -163,7 +163,7 @@ def refused(folder: Path, hinder: Callable[[Path], None]) -> None:
     writers = {
         **{f"document {k}": writer for k, writer in enumerate(documents())},
         **{f"settings {k}": writer for k, writer in enumerate(settings())},
-        **dict(zip(exporters(), exports(tuple(exporters())), strict=True)),
+        **dict(zip(WRITERS, exports(tuple(WRITERS)), strict=True)),
         **{f"learned {k}": writer for k, writer in enumerate(learned())},
     }
     for writer in writers.values():

@@ -10,8 +10,8 @@ from hypothesis.extra import numpy as arrays
 from uneven_sheets import random_rim, random_start
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lab.baselines.marching import void_angle
 from kirigami_studio.lattice.deployment import rotate, signed_area
-from kirigami_studio.lattice.marching import void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 

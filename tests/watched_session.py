@@ -173,7 +173,7 @@ class WatchedSession:
         self.step(f"show all {designs} designs at once", lambda: press("all_designs"), self.pictured)
         page = self.window.presenters.all_designs.page
         assert page is not None
-        table = page.table
+        table, stage = page.table, self.window.stage
         self.step(
             f"walk through the {designs}",
             lambda: self.keys(table, *[Qt.Key.Key_Right] * 12, Qt.Key.Key_Down),
@@ -186,15 +186,16 @@ class WatchedSession:
             self.step(f"mark design {number + 1} of the {designs}", lambda: self.keys(table, Qt.Key.Key_Space))
             if number < 3:
                 self.keys(table, Qt.Key.Key_Right)
-        self.step(f"compare four of the {designs}", lambda: self.keys(table, Qt.Key.Key_C), lambda: page.comparing)
-        self.step(f"scrub four of the {designs}", lambda: page.compare.bar.slider.setValue(900))
+        self.step(f"compare four of the {designs}", lambda: self.keys(table, Qt.Key.Key_C), lambda: stage.comparing)
+        self.step(f"scrub four of the {designs}", lambda: stage.compare.bar.slider.setValue(900))
+        self.step(f"leave the comparison of the {designs}", lambda: press("compare"), lambda: page.isVisible())
         self.step(
             f"leave the table of {designs}",
             lambda: press("all_designs"),
             lambda: not self.window.presenters.all_designs.shown,
         )
         page.card_size.setValue(1)  # as it was, for the next time
-        page.compare.bar.slider.setValue(0)
+        stage.compare.bar.slider.setValue(0)
         page.filters.least.setValue(0.0)
 
     def keys(self, widget: QWidget, *keys: Qt.Key) -> None:

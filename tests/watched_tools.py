@@ -192,7 +192,7 @@ class WatchedTools(WatchedSession):
 
     def beside(self) -> None:
         """Everything that opens beside the window."""
-        names = ("library", "materials", "guide", "shortcuts", "history", "tour")
+        names = ("library", "materials", "guide", "shortcuts", "history")
         for name in names:
             self.step(f"open: {name}", partial(self.press, name))
         self.window.dialogs.close()

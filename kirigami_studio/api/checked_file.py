@@ -45,7 +45,7 @@ class CheckedFile(Checked):
 
 
 def check(path: str | os.PathLike[str], design: Design | None = None) -> CheckedFile:
-    """Read a DXF of any origin or a cut file of this program: units, gaps, ligaments, record.
+    """Read a DXF of any origin or a cut file of this program: units, duplicates, ligaments.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import html
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -41,7 +41,7 @@ from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.export.registry import export, find_exporter
+from kirigami_studio.export.registry import export, find_writer
 from kirigami_studio.export.verification import Verification
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -450,7 +450,7 @@ class Design:
             An unknown extension, a place that cannot be written, or a sheet that cannot be cut.
         """
         goal = Path(path)
-        find_exporter(goal)
+        find_writer(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
             return self.plan_cuts(**cuts).export(goal)
         return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
@@ -642,8 +642,15 @@ class Cuts:
         """
         return _simulated(self)
 
-    def export(self, path: str | os.PathLike[str], *, record: bool = False) -> Exported:
-        """Write one file, by its extension; a GIF shows the sheet as cut.
+    def export(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        record: bool = False,
+        phi: float | None = None,
+        as_cut: bool | None = None,
+    ) -> Exported:
+        """Write one file, by its extension.
 
         Parameters
         ----------
@@ -651,6 +658,10 @@ class Cuts:
             ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.png`` or ``.gif``.
         record : bool
             Whether all settings are written as .json beside it.
+        phi : float, radians, optional
+            Angle that a picture shows; the target angle unless given.
+        as_cut : bool, optional
+            Whether pictures show the sheet on its connectors, as far as it comes; only a GIF does unless given.
 
         Raises
         ------
@@ -658,8 +669,8 @@ class Cuts:
             An unknown extension, or a place that cannot be written.
         """
         goal = Path(path)
-        moving = goal.suffix.lower() == ".gif"
-        return self._written(Output(goal, record=record), self.simulate().simulated.motion if moving else None)
+        cut = goal.suffix.lower() == ".gif" if as_cut is None else as_cut
+        return self._written(Output(goal, record=record), self.simulate().simulated.motion if cut else None, phi)
 
     def export_all(self, folder: str | os.PathLike[str]) -> Exported:
         """Write every kind of file and the record of all settings to a folder, cut files verified.
@@ -671,9 +682,8 @@ class Cuts:
         """
         return self._written(Output(Path(folder), "cut", record=True))
 
-    def _written(self, output: Output, motion: Callable[[float], CutMotion] | None = None) -> Exported:
-        shown = None if motion is None else motion(self.settings.width_mm)
-        found = written(self._request, self._planned, output, self._as_cut, shown)
+    def _written(self, output: Output, motion: CutMotion | None = None, phi: float | None = None) -> Exported:
+        found = written(self._request, self._planned, output, self._as_cut, motion, picture_phi=phi)
         return Exported(found.files, found.verifications, self)
 
     @property

@@ -203,7 +203,7 @@ def design(
     budget_seconds: float | None = None,
     material: str | None = None,
     machine: str | None = None,
-    width_mm: float = 100.0,
+    width_mm: float | None = None,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
     style: str | None = None,
@@ -234,7 +234,7 @@ def design(
     machine : str, optional
         One of :func:`machine_names`; without a material, one that it cuts is taken.
     width_mm, connector_mm, kerf_mm, style : optional
-        Size and cuts, as in :meth:`Design.plan_cuts`.
+        Size and cuts, as in :meth:`Design.plan_cuts`; the material's usual ones unless given.
     least_panel_mm : float
         Least panel edge and neck that fits keep.
     progress : bool or callable
@@ -301,12 +301,12 @@ def _grid(grid: object) -> tuple[int, int] | None:
     return rows, columns
 
 
-def _start(start: TargetLike, given: dict[str, float]) -> StartShape:
+def _start(start: TargetLike, given: dict[str, Any]) -> StartShape:
     shape = start_shape(start) if isinstance(start, str) else outline_start(load_target(start).outline)
     return replace(shape, **given)
 
 
-def _second(also: TargetLike | None, given: dict[str, float]) -> SecondTarget | None:
+def _second(also: TargetLike | None, given: dict[str, Any]) -> SecondTarget | None:
     if also is None:
         if given:
             raise UsageError("api.second_target_not_named")

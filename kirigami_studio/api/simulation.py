@@ -9,6 +9,7 @@ from kirigami_studio.api.pictures import AngleCurve, curves_picture
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
+from kirigami_studio.mechanics.loads import Loads, loads
 from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 
@@ -48,13 +49,23 @@ class Simulation:
         return self.closing.phi
 
     @property
+    def loads(self) -> Loads:
+        """Energy, torque and force by three figures: elastic, yielding, bent out of the plane."""
+        return loads(self.closing, self.as_cut.yields_at)
+
+    @property
+    def torque_nmm(self) -> FloatArray:
+        """Moment (S,), N mm, against the mean angle, elastic: the upper figure."""
+        return self.closing.path.force
+
+    @property
     def force_n(self) -> FloatArray:
-        """Force (S,), N, at the end of a lever of one panel's size."""
-        return self.closing.lever_force
+        """Force (S,), N, at the end of a lever as long as a panel, elastic: the upper figure."""
+        return self.loads.in_plane.force_n
 
     @property
     def energy_mj(self) -> FloatArray:
-        """Elastic energy (S,), mJ."""
+        """Energy (S,), mJ, elastic: the upper figure."""
         return self.closing.path.energy
 
     @property
@@ -69,18 +80,23 @@ class Simulation:
         return self.as_cut.closes
 
     @property
+    def breaks(self) -> bool:
+        """Whether a connector is expected to break on the way, by the figure that is believed."""
+        return self.as_cut.survival.breaks
+
+    @property
     def jam_phi(self) -> float | None:
         """Angle (radians) at which it jams; None for a sheet that closes."""
         return None if self.closes else self.as_cut.jam_phi
 
     @property
     def jam_deg(self) -> float:
-        """The same in degrees, in [0, 180]: 0 for a sheet that closes fully, 180 for one that stays flat."""
+        """The same in degrees, in [0, 180]: 0 where it closes fully, 180 where it stays flat."""
         return self.as_cut.jam_deg
 
     @property
     def strain(self) -> float:
-        """Largest strain of a connector on the way."""
+        """Strain of the connector that is nearest to breaking on the way."""
         return self.as_cut.strain
 
     @property
@@ -97,7 +113,7 @@ class Simulation:
         phi : float, radians, optional
             Where the sheet comes to unless given; not below that.
         """
-        motion = self.simulated.motion(self.width_mm)
+        motion = self.simulated.motion
         return motion.pose(self.posed, motion.reached if phi is None else max(phi, motion.reached)).panels
 
     def __repr__(self) -> str:
@@ -112,4 +128,8 @@ class Simulation:
 
     @property
     def _ends(self) -> str:
-        return "closes" if self.jam_phi is None else f"jams at {math.degrees(self.jam_phi):.0f}°"
+        ends = "closes" if self.jam_phi is None else f"jams at {math.degrees(self.jam_phi):.0f}°"
+        if not self.breaks:
+            return ends
+        strains = f"{100 * self.strain:.0f} % of {100 * self.as_cut.strain_limit:g} %"
+        return f"connectors break (strain {strains}), otherwise {ends}"

@@ -38,7 +38,7 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
@@ -57,6 +57,7 @@ from kirigami_studio.studio.verdict import Verdict, refused
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     fabrication = material_settings(arguments)
+    limits = material_for(fabrication).limits_note
     check_name(arguments.name, run_labels(0, 1)[0].code)
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
@@ -82,6 +83,8 @@ def design(arguments: argparse.Namespace) -> int:
     def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
         warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
         answer = summary(design.result) | {"files": files, "warnings": warnings}
+        if limits is not None:
+            answer["material_note"] = limits.text
         answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
         if batch:
             print_json({"source": name} | answer)
@@ -172,7 +175,7 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     line.clear()
     document = document_of(result, job.fabrication)
     untrimmed = why_untrimmed(result)
-    notes = () if untrimmed is None else (untrimmed,)
+    notes: tuple[Note, ...] = () if untrimmed is None else (untrimmed,)
     if job.files:
         document, refusal = with_cuttable_chosen(document)
         if refusal is not None and document.chosen and document.label is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.paper import page_notes
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import engraved_json, narrowed_json
-from kirigami_studio.export.registry import find_exporter
+from kirigami_studio.export.registry import find_writer
 from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -26,7 +27,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, new_settings, with_choices
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, new_settings, with_choices
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
 from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.cutting import check_connectors
@@ -44,16 +45,27 @@ from kirigami_studio.studio.making import (
 )
 from kirigami_studio.studio.verdict import Verdict, refused
 
+#: Angle of the flat sheet.
+FLAT_DEG = 180.0
+
 
 def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
-    """Fabrication settings of the width options; unknown materials are refused before any work."""
-    return new_settings(_given(arguments))
+    """Fabrication settings of the width options, else the material's; warn of its limits.
+
+    Unknown materials are refused here, before any work.
+    """
+    settings = new_settings(_given(arguments))
+    limits = material_for(settings).limits_note
+    if limits is not None:
+        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
+    return settings
 
 
 def export(arguments: argparse.Namespace) -> int:
     """Write cut or picture files of a project, verify the cut files, and report on them."""
     if not arguments.all:
-        find_exporter(arguments.out)
+        find_writer(arguments.out)
+    _check_picture(arguments)
     document = load(arguments.project)
     chosen_candidate(document)
     if arguments.name is not None and document.chosen is not None and document.label is not None:
@@ -72,7 +84,12 @@ def export(arguments: argparse.Namespace) -> int:
     plan, report = made.plan, made.report
     record = arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, record)
-    found = written(request, made, output, closed(request, made))
+    motion = None
+    if arguments.as_cut:
+        sheet = simulated(request.candidate, plan, settings.width_mm, request.target, request.deployment)
+        request, motion = replace(request, as_cut=sheet.as_cut), sheet.motion
+    angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
+    found = written(request, made, output, closed(request, made), motion, picture_phi=angle)
     verdict = found.verdict
     assert verdict is not None  # planned sheets are judged
     advice = _advice(request, verdict) if arguments.fixes and not verdict.ok else None
@@ -146,6 +163,16 @@ def export(arguments: argparse.Namespace) -> int:
         if warning not in said:
             say("  " + tr("note: {text}", text=warning))
     return 0 if found.ok else 1
+
+
+def _check_picture(arguments: argparse.Namespace) -> None:
+    """Refuse choices for pictures where none is written, and angles that no sheet has."""
+    suffix, angle = Path(arguments.out).suffix.lower(), arguments.at_deg
+    if angle is not None and angle > FLAT_DEG:
+        raise UsageError("picture.angle", angle=angle)
+    wanted = (".png",) if angle is not None else (".png", ".gif")
+    if (arguments.as_cut or angle is not None) and not arguments.all and suffix not in wanted:
+        raise UsageError("picture.none", kinds=" ".join(wanted), path=arguments.out)
 
 
 def _advice(request: CutRequest, verdict: Verdict) -> Advice:
@@ -257,8 +284,8 @@ def _cut_motion(document: Document, settings: FabricationSettings) -> CutMotion:
     """How the chosen design moves as cut, simulated on its planned cuts."""
     request = CutRequest.of(document, settings)
     check_connectors(request.candidate, settings.options)
-    width = settings.width_mm
-    return simulated(request.candidate, planned(request).plan, width, request.target, request.deployment).motion(width)
+    made, width = planned(request), settings.width_mm
+    return simulated(request.candidate, made.plan, width, request.target, request.deployment).motion
 
 
 def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> FabricationSettings:
@@ -273,7 +300,7 @@ def overridden(saved: FabricationSettings, arguments: argparse.Namespace) -> Fab
 
 
 def _given(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What the command line gives, by the names of settings."""
+    """Values of the command line by the names of settings."""
     given = {name: value for name, value in vars(arguments).items() if value is not None}
     given["hinge_mm"] = [_hinge_width(text) for text in given.get("hinge_mm", ())]
     given["removed"] = given.pop("remove", ())

@@ -1,4 +1,4 @@
-"""``targets``, ``licences``, ``parts``, ``variants``, ``materials``, ``machines``, ``coupon``."""
+"""Commands that list: targets, licences, parts, variants, materials, machines; the coupon."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _machine_row(machine: Machine, own: bool) -> str:
 
 
 def _changes(arguments: argparse.Namespace) -> dict[str, object]:
-    """What ``--set`` changes, by name.
+    """Changes of ``--set`` by name.
 
     Raises
     ------

@@ -13,7 +13,8 @@ from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.cli.inputs import PROJECTS, read_sheets
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.strain import StrainFigure, Survival, strain_note, survival
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -22,12 +23,21 @@ from kirigami_studio.mechanics.drive import Drive, clamped_ends
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
 from kirigami_studio.mechanics.estimate import estimate_stretch
 from kirigami_studio.mechanics.gripping import Gripping, find_grips, grips
+from kirigami_studio.mechanics.loads import Loads, loads
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
 from kirigami_studio.mechanics.sheet_network import SheetNetwork
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.as_cut import CLOSE_TO, Overlap, Source, believed_figure, overlap, planned_sheet
+from kirigami_studio.studio.as_cut import (
+    CLOSE_TO,
+    Overlap,
+    Source,
+    breaking_phi,
+    estimated_jam,
+    overlap,
+    planned_sheet,
+)
 from kirigami_studio.studio.cutting import plan_sheet
 
 FLAT_DEG = 180.0
@@ -61,6 +71,7 @@ class _Cut:
     target : Outline or None
     phi : float, radians
         At which the sheet is meant to show the target.
+    material : Material
     """
 
     design: Deployment
@@ -69,6 +80,7 @@ class _Cut:
     settings: FabricationSettings
     target: Outline | None
     phi: float
+    material: Material
 
 
 def _close_sheet(arguments: argparse.Namespace) -> int:
@@ -90,28 +102,35 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     jam, source = math.degrees(found.jam_phi(tolerated)), Source.SIMULATION
     if _ended_early(found, tolerated):
         beyond = estimate_stretch(cut.deployment, cut.sheet, width)
-        jam, source = math.degrees(beyond.jam_phi(tolerated)), Source.ESTIMATE
+        jam, source = math.degrees(estimated_jam(beyond, tolerated)), Source.ESTIMATE
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
         lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design)
-    force = found.path.force if gripped else found.lever_force
+    load = loads(found, cut.material.yield_strain)
+    breaks, judged = breaking_phi(cut.material, found), _survival(cut, found)
     if arguments.json:
-        answer = _steps(cut, found, gripped) | {"force_n": force, "tolerated_stretch_widths": tolerated}
+        answer = _steps(cut, found, gripped) | load.in_plane.to_json() | {"tolerated_stretch_widths": tolerated}
+        answer |= {name: getattr(load, name).to_json() for name in ("in_plane_yielding", "out_of_plane")}
+        answer |= {"lever_mm": None if gripped else cut.sheet.network.panel_size, "material": cut.material.key}
+        answer |= {"strain_believed": judged.figure.value, "strain_limit": judged.limit, "strain_why": judged.why.text}
+        answer |= {"breaks": breaks is not None, "breaks_deg": None if breaks is None else math.degrees(breaks)}
         answer |= {"jam_deg": jam, "jam_from": source.value}
         if gripping is not None:
             answer |= {"hold": gripping.held, "move": gripping.moved, "follows": gripping.follows}
         print_json(answer if lap is None else answer | _overlap_json(lap))
         return 0
-    _tell_steps(found, force)
-    _tell_jam(jam, source, tolerated)
+    _tell_steps(found, load)
+    _tell_loads(load, judged)
+    _tell_survival(cut.material, breaks, judged)
+    _tell_jam(jam, source, tolerated, breaks is not None)
     stable = ", ".join(f"{angle:.0f}" for angle in np.degrees(found.stable_phi))
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
     if gripping is not None:
         _tell_grips(gripping)
     if lap is not None:
         _tell_overlap(lap)
-    say(tr("Friction, plastic set and motion out of the plane are not modelled."))
+    say(tr("Friction is not modelled, and the path is that of connectors that are elastic in the plane."))
     return 0
 
 
@@ -133,7 +152,7 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     plan = plan_sheet(deployment, settings, kept)
     on_nodes = arguments.centres == "node"
     sheet = planned_sheet(deployment, plan, settings.width_mm, kept, on_nodes, arguments.young_gpa)
-    return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi)
+    return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi, plan.material)
 
 
 def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
@@ -154,13 +173,11 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
         "phi_deg": np.degrees(found.phi),
         "least_phi_deg": FLAT_DEG - opening.max(axis=1),
         "most_phi_deg": FLAT_DEG - opening.min(axis=1),
-        "energy_mj": found.path.energy,
         "displacement": found.path.drive.displacement,
         "displacement_unit": "mm" if gripped else "rad",
         "max_stretch_widths": found.stretch.max(axis=1),
         "max_strain": found.in_plane.max(axis=1),
         "max_strain_out_of_plane": found.out_of_plane.max(axis=1),
-        "strain_believed": believed_figure(cut.sheet).value,
         "least_eigenvalue_n_mm": found.path.least,
         "snap_deg": np.degrees(found.phi[found.path.snapped]),
         "stuck": len(found.phi) < found.asked,
@@ -175,8 +192,13 @@ def _ended_early(found: Closing, tolerated: float) -> bool:
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
 
 
-def _tell_steps(found: Closing, force: FloatArray) -> None:
+def _survival(cut: _Cut, found: Closing) -> Survival:
+    return survival(cut.material, cut.sheet.connectors.width_mm, found.in_plane, found.out_of_plane)
+
+
+def _tell_steps(found: Closing, load: Loads) -> None:
     """Some of the steps as a table."""
+    force = load.in_plane.force_n
     say(tr("   phi   energy mJ     force N  stretch  strain in plane, out of plane"))
     stretch, inner, outer = (100.0 * part.max(axis=1) for part in (found.stretch, found.in_plane, found.out_of_plane))
     for step in _shown(len(found.phi)):
@@ -187,11 +209,44 @@ def _tell_steps(found: Closing, force: FloatArray) -> None:
         )
 
 
-def _tell_jam(jam: float, source: Source, tolerated: float) -> None:
+def _tell_loads(load: Loads, judged: Survival) -> None:
+    """Energy and force by all figures, the one first that is believed."""
+    named = [
+        (tr("bent out of the plane"), load.out_of_plane),
+        (tr("in the plane, yielding"), load.in_plane_yielding),
+        (tr("in the plane, elastic"), load.in_plane),
+    ]
+    for name, one in named if judged.figure is StrainFigure.OUT_OF_PLANE else [*named[1:], named[0]]:
+        energy, force = one.energy_mj[-1], np.abs(one.force_n).max()
+        if one.torque_nmm is None:
+            say(tr("{name}: {energy:.4g} mJ at the end, at most {force:.4g} N.", name=name, energy=energy, force=force))
+        else:
+            say(
+                tr(
+                    "{name}: {energy:.4g} mJ at the end, at most {torque:.4g} N mm, or {force:.4g} N at a lever as "
+                    "long as a panel.",
+                    name=name,
+                    energy=energy,
+                    torque=np.abs(one.torque_nmm).max(),
+                    force=force,
+                )
+            )
+
+
+def _tell_survival(material: Material, breaks: float | None, judged: Survival) -> None:
+    """Whether connectors break, and where, by which figure."""
+    if breaks is not None:
+        say(tr("Its connectors break at {angle:.0f} degrees.", angle=math.degrees(breaks)))
+    say(strain_note(material, judged).text)
+
+
+def _tell_jam(jam: float, source: Source, tolerated: float, breaks: bool) -> None:
     if source is Source.ESTIMATE:
         say(tr("As far as it was driven no connector is stretched by more than {w:g} of its width.", w=tolerated))
         jams = tr("It jams at {jam:.0f} degrees (estimate).", jam=jam)
         say(jams if jam > 0.0 else tr("Beyond that it closes (estimate)."))
+    elif jam == 0.0 and breaks:
+        say(tr("It would close if they held: none is stretched by more than {w:g} of its width.", w=tolerated))
     elif jam == 0.0:
         say(tr("Closes: no connector is stretched by more than {w:g} of its width.", w=tolerated))
     else:

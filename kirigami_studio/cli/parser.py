@@ -198,6 +198,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("project", help="a .kiri project"),
         option("--out", required=True, help="file to write (.dxf .svg .pdf .lbrn2 .png .gif); with --all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
+        option("--as-cut", action="store_true",
+               help="pictures (.png .gif, and those of --all) show the sheet on the connectors of its planned cuts, as "
+                    "far as it comes (default: the ideal motion)"),
+        option("--at-deg", type=amount, default=None, metavar="DEGREES",
+               help="angle that pictures show: 180 is flat (default: the target angle)"),
         *setting_options(FabricationSettings, over=USUAL),
         *setting_options(CutOptions, over=USUAL.options),
         *SINGLE_CONNECTORS,
@@ -211,6 +216,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
         "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave --name 'For Ada'",
+        "kirigami-studio export heart.kiri --out half-open.png --as-cut --at-deg 90",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
     SubCommand("mechanics", "simulate how a cut sheet closes: force, energy, stretch, where it jams",
         "mechanics:mechanics", (

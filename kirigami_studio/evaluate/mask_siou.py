@@ -83,7 +83,7 @@ def mask_siou(a: npt.ArrayLike, b: npt.ArrayLike, *, crop: bool = False) -> tupl
     first, second = FittedMask.from_array(a, 1), FittedMask.from_array(b, 2)
     # One order for both calls: the search then takes the same path whichever mask is named first.
     swapped = first.key > second.key
-    value, laid = _best_pose(second, first, crop) if swapped else _best_pose(first, second, crop)
+    value, laid = best_pose(second, first, crop) if swapped else best_pose(first, second, crop)
     if swapped:
         laid = laid.inverse()
     return value, second.to_source.compose(laid).compose(first.to_source.inverse())
@@ -108,7 +108,7 @@ def released_siou(design: npt.ArrayLike, target: npt.ArrayLike) -> float:
     fixed, moving = FittedMask.from_array(design, 1), FittedMask.from_array(target, 2)
 
     def cropped(pose: Similarity) -> float:
-        return _posed_iou(moving, fixed, pose, crop=True)
+        return posed_iou(moving, fixed, pose, crop=True)
 
     start = max(_poses(moving, fixed), key=cropped)
     return max(cropped(start), cropped(_climbed(fixed, start, cropped, RELEASED_REACH)))
@@ -120,12 +120,12 @@ def _poses(moving: FittedMask, fixed: FittedMask) -> list[Similarity]:
     return poses if moving.solid and fixed.solid else [*poses, *_pixel_poses(moving, fixed)]
 
 
-def _best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float, Similarity]:
+def best_pose(moving: FittedMask, fixed: FittedMask, crop: bool) -> tuple[float, Similarity]:
     """The best of all alignments, measured both ways."""
     poses = _poses(moving, fixed)
 
     def both_ways(pose: Similarity) -> float:
-        return 0.5 * (_posed_iou(moving, fixed, pose, crop) + _posed_iou(fixed, moving, pose.inverse(), crop))
+        return 0.5 * (posed_iou(moving, fixed, pose, crop) + posed_iou(fixed, moving, pose.inverse(), crop))
 
     values = [both_ways(pose) for pose in poses]
     best = int(np.argmax(values))
@@ -214,7 +214,7 @@ def _soft_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity) -> float:
     return common / (moving.area * pose.scale**2 + fixed.area - common)
 
 
-def _posed_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bool) -> float:
+def posed_iou(moving: FittedMask, fixed: FittedMask, pose: Similarity, crop: bool) -> float:
     """IoU of the moving mask in its pose, in the pixels of the fixed one, with room for all that sticks out."""
     height, width = moving.coverage.shape
     corners = pose.apply([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])

@@ -7,7 +7,6 @@ says so in a caption.  The file's comment names the motion.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from PIL import Image, ImageDraw, ImageFont
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import INK, SUPERSAMPLING, Colour, PictureFrame, draw_polygons
+from kirigami_studio.export.picture import INK, SUPERSAMPLING, PictureFrame, draw_polygons
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -31,23 +30,11 @@ HOLD_MS = 900
 LONGEST_SIDE = 480
 #: Colours of the shared palette; the picture has few and their blends.
 PALETTE_COLOURS = 64
-#: Smallest radius (pixels) of a connector's dot, and the colour of those that are stretched to this share of what they
-#: tolerate: at the angle where the sheet jams, those that stop it.
+#: Smallest radius (pixels) and colour of the dots at connectors that are stretched to this share of what they tolerate:
+#: at the angle where the sheet jams, those that stop it.
 DOT, OVERSTRETCHED, NEARLY = 1.2, (213, 0, 50), 0.95
 #: Height (pixels) of the caption's letters and its distance from the picture's corner, for a longest side of 480.
 LETTERS, INSET = 15, 7
-
-
-@dataclass(frozen=True, slots=True)
-class GifExporter:
-    """Deployment as GIF."""
-
-    extension: str = ".gif"
-    name: str = "GIF animation of the deployment"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the motion from phi = pi to the job's angle, or as far as the sheet as cut comes."""
-        write_animation(job, path)
 
 
 def frame_angles(phi: float, frames: int) -> FloatArray:
@@ -109,9 +96,11 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     else:
         pictures = [_as_cut(design, job.target, motion, angle, box) for angle in angles]
     # Open and closed states together show every colour.
-    sample = Image.new("RGB", (box.pixels[0], 2 * box.pixels[1] + (0 if motion is None else LETTERS)), OVERSTRETCHED)
+    width, height = box.pixels
+    sample = Image.new("RGB", (width, 2 * height + (0 if motion is None else 2 * LETTERS)), OVERSTRETCHED)
+    sample.paste(INK, (0, 2 * height + LETTERS, *sample.size))
     sample.paste(pictures[frames // 2], (0, 0))
-    sample.paste(pictures[-1], (0, box.pixels[1]))
+    sample.paste(pictures[-1], (0, height))
     shared = sample.quantize(colors=PALETTE_COLOURS)
     return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]
 
@@ -119,17 +108,17 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
 def _as_cut(
     design: PosedDesign, target: FloatArray | None, motion: CutMotion, phi: float, box: PictureFrame
 ) -> Image.Image:
-    """One frame of the sheet as cut: its panels, its connectors, and the caption in the lower left corner."""
+    """One frame of the sheet as cut: its panels, the connectors that stop it, and the caption in the lower left."""
     pose = motion.pose(design, phi)
-    image = draw_polygons(pose.panels, box, target)
+    image = draw_polygons(pose.panels, box, target, pose.cuts)
     large = image.resize((SUPERSAMPLING * box.pixels[0], SUPERSAMPLING * box.pixels[1]))
     draw = ImageDraw.Draw(large)
     widths = motion.closing.sheet.connectors.width_mm / design.mm_per_world(motion.width_mm)
     radii = SUPERSAMPLING * np.maximum(0.5 * widths * box.scale, DOT)
-    spots = box.pixel(pose.connectors.mean(axis=1), SUPERSAMPLING)
-    for (x, y), radius, stretch in zip(spots, radii.tolist(), pose.stretch.tolist(), strict=True):
-        colour: Colour = OVERSTRETCHED if stretch > NEARLY * TOLERATED_STRETCH else INK
-        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
+    far = np.flatnonzero(pose.stretch > NEARLY * TOLERATED_STRETCH)
+    spots = box.pixel(pose.connectors[far].mean(axis=1), SUPERSAMPLING)
+    for (x, y), radius in zip(spots, radii[far].tolist(), strict=True):
+        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=OVERSTRETCHED)
     image = large.resize(box.pixels, Image.Resampling.BOX)
     share = max(box.pixels) / LONGEST_SIDE
     font = ImageFont.load_default(size=max(LETTERS * share, 8.0))

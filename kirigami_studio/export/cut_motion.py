@@ -9,9 +9,10 @@ import numpy as np
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.fabricate.cut_panels import CutPanels, PanelLines
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion
+from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion, moved_nodes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,15 +21,27 @@ class CutPose:
 
     Attributes
     ----------
+    phi : float, radians
     panels : list of (Q, 2) float
-        Row by row; of panels with fewer corners than others the last one is repeated.
+        As the cuts leave them, row by row; those that are not there are left out.
+    numbers : (K,) int
+        Their numbers in the sheet.
+    cuts : list of (L, 2) float
+        Their edges that were cut; across connectors there are none.
+    nodes : (N, 2) float
+        Nodes of the lattice: halfway between the corners of the panels there, of the ideal motion where trimming left
+        no panel.
     connectors : (H, 2, 2) float
         Where either panel of a connector has it; both places are the same where it is not stretched.
     stretch : (H,) float
         Distance of the two in widths of the connector.
     """
 
+    phi: float
     panels: list[FloatArray]
+    numbers: IntArray
+    cuts: list[FloatArray]
+    nodes: FloatArray
     connectors: FloatArray
     stretch: FloatArray
 
@@ -47,6 +60,8 @@ class CutMotion:
         Angle at which it jams; 0 for a sheet that closes.
     reached : float, radians
         The angle nearest to its target angle that it comes to.
+    panels : CutPanels
+        In the frame of the closing's network.
     made : Deployment or None
         The sheet that is cut where that is not quite the design.
     """
@@ -55,6 +70,7 @@ class CutMotion:
     width_mm: float
     jam_phi: float
     reached: float
+    panels: CutPanels
     made: Deployment | None = None
 
     @property
@@ -75,8 +91,9 @@ class CutMotion:
         design : PosedDesign
             The sheet that is cut, over its target.
         phi : float, radians
-            Not below ``reached``.
+            Where the sheet does not come to it, it is shown where it jams.
         """
+        phi = max(phi, self.reached) if self.jams else phi
         deployment, network = design.deployment, self.closing.sheet.network
         motion = carried_on(self.closing, deployment, self.width_mm, phi)
         ideal = ideal_motion(deployment, network, self.width_mm, phi)
@@ -98,5 +115,17 @@ class CutMotion:
         arms = as_plane(network.ligaments.points - network.centroids[joined]) * np.exp(1j * theta)
         ends = as_points(arms + here[joined])
         gap = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        panels = list(placed(network.moved_outlines(motion)))
-        return CutPose(panels, placed(ends), gap / self.closing.sheet.connectors.width_mm)
+        place = np.arange(network.panel_count)
+        if network.numbers is not None:
+            place = np.full(int(network.numbers.max()) + 1, -1)
+            place[network.numbers] = np.arange(network.panel_count)
+
+        def lines(part: PanelLines) -> list[FloatArray]:
+            owner = place[part.owner]
+            arms = as_plane(part.points - network.centroids[owner]) * np.exp(1j * motion[owner, 2])
+            return part.split(placed(as_points(arms + here[owner])))
+
+        found, _, _ = moved_nodes(deployment, network, self.width_mm, motion)
+        nodes = np.where(np.isnan(found), design.nodes(phi), placed(found))
+        outlines, stretch = self.panels.outlines, gap / self.closing.sheet.connectors.width_mm
+        return CutPose(phi, lines(outlines), outlines.panel, lines(self.panels.cuts), nodes, placed(ends), stretch)

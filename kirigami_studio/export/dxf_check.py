@@ -1,4 +1,4 @@
-"""Judge any cut file: units, layers, duplicates, gaps in the outline, pieces and the narrowest ligament.
+"""Judge any cut file: units, layers, duplicates, gaps, pieces, narrowest ligament.
 
 :func:`check_file` reads a DXF of any origin, a cut SVG of this program, or a folder of layer files.  A file written
 here says how it was made, how many tabs its outline has and how many cuts end on other cuts, and is held to that; in a
@@ -179,7 +179,7 @@ def _record(content: DxfContent, problems: list[Problem]) -> FileRecord | None:
 
 
 def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) -> tuple[DxfContent, int]:
-    """The first of the copies that a file says it holds, and their number; they have to be alike and apart."""
+    """The first of the copies that a file names, and their number; they are alike and apart."""
     said, gap = content.facts.get("COPIES", "1"), _number(content, "COPY_GAP_MM")
     copies = int(said) if said.isdecimal() and len(said) <= 3 else 0
     if copies == 1:
@@ -276,7 +276,7 @@ def _without_marks(content: DxfContent) -> DxfContent:
 
 
 def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
-    """The cuts alone of a file that says in how many lines it engraves a name; those have to be there, and clear.
+    """The cuts alone of a file that engraves a name in so many lines.
 
     Of files for single layers one holds all of the name, and the others nothing of it.
     """
@@ -428,7 +428,7 @@ def _number(content: DxfContent, key: str) -> float:
 
 
 def placement_problems(paths: Sequence[FilePath], outline: Polygon | None) -> list[Problem]:
-    """List cuts outside the outline, slits that cross it, coordinates below the origin, and cuts after the outline."""
+    """List cuts outside the outline, across it, below the origin, and after it."""
     problems: list[Problem] = []
     low = np.concatenate([path.points for path in paths]).min(axis=0)
     if low.min() < -TOUCH_MM:
@@ -483,7 +483,7 @@ def _physics(
 
 
 def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
-    """Closed cuts inside the outline, beside relief holes and slots: what they enclose falls out."""
+    """Closed cuts inside the outline, beside relief holes and slots: their inside falls out."""
     closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
               and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.

@@ -111,7 +111,7 @@ def placed(
     judged: Judged | None,
     done: Callable[[Path], None],
 ) -> tuple[ExportJob, list[Verification]]:
-    """Write cut files aside, read them back, add the verdict, and put them in their places.
+    """Write cut files aside, read all back, add their verdict, and put them in place.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ def _refuse_other_sets(home: Path, name: str) -> None:
 
 
 def _recorded(path: Path) -> dict[str, str]:
-    """SHA-256 of the files that a record names, by their paths in its folder; none where it is no record of ours."""
+    """SHA-256 of the files that a record names, by their paths; none without a record."""
     try:
         if path.stat().st_size > LARGEST_RECORD:
             return {}
@@ -255,7 +255,7 @@ def _recorded(path: Path) -> dict[str, str]:
 
 
 def _remove(home: Path, before: Mapping[str, str], written: Sequence[Path]) -> tuple[Path, ...]:
-    """Remove what an earlier set recorded, this one did not write, and nobody changed; returns files and folders."""
+    """Remove files of an earlier set that nobody changed; return files and folders."""
     removed = []
     for name, digest in before.items():
         path = home / name

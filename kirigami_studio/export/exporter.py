@@ -1,11 +1,9 @@
-"""The request and the interface of every exporter."""
+"""The request for every kind of file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -50,7 +48,9 @@ class ExportJob:
     markers : bool
         A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
     motion : CutMotion or None
-        What an animation shows: the sheet as cut; None for its ideal motion.
+        What pictures and animations show: the sheet as cut; None for its ideal motion.
+    picture_phi : float or None, radians
+        Angle that pictures show; the target angle unless given.
     artwork : Artwork or None
         What is printed on the sheet; only a whole set of files has it.
     record : bytes
@@ -73,6 +73,7 @@ class ExportJob:
     trim: Trim | None = None
     markers: bool = False
     motion: CutMotion | None = None
+    picture_phi: float | None = None
     artwork: Artwork | None = None
     record: bytes = b""
     simulated_jam: float | None = None
@@ -99,6 +100,11 @@ class ExportJob:
         return replace(self.plan, origin=origin, verdict=self.verdict or self.plan.verdict)
 
     @property
+    def shown_phi(self) -> float:
+        """Angle (radians) that pictures show."""
+        return self.phi if self.picture_phi is None else self.picture_phi
+
+    @property
     def posed(self) -> PosedDesign:
         """The moving sheet over its target; ask once for a whole animation.
 
@@ -107,18 +113,3 @@ class ExportJob:
         design = PosedDesign(self.deployment, self.transform, self.phi, self.trim)
         made = self.motion.made if self.motion is not None else None if self.plan is None else self.plan.made
         return design if made is None else design.laid_over(made)
-
-
-class Exporter(Protocol):
-    """Writes one kind of file."""
-
-    @property
-    def extension(self) -> str:
-        """Lower case, with the dot."""
-
-    @property
-    def name(self) -> str:
-        """Name of the format in a file dialog."""
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write and verify; raises ExportError and leaves an older file alone when that fails."""

@@ -96,7 +96,7 @@ class FileRecord:
 
 
 def record_of(facts: Mapping[str, str]) -> FileRecord | None:
-    """The record among a file's facts; None in files of others and of earlier versions.
+    """The record among a file's facts; None for files of others and of earlier versions.
 
     Raises
     ------

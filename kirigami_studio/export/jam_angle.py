@@ -80,7 +80,7 @@ def jam_angle_of_file(found: FoundVoids, plan: CutPlan, deployment: Deployment) 
 
 
 def neck_middles(places: Junctions, plan: CutPlan) -> FloatArray:
-    """Middles (H, 2), mm, of the necks before straight slits, square to the cuts they end on."""
+    """Middles (H, 2), mm, of the necks before the tips of straight slits."""
     gap = np.maximum(plan.hinges.finished_mm, 0.0) + plan.kerf_mm
     height = gap - np.where(places.on_edge, 0.5 * plan.kerf_mm, 0.0)
     tips = places.place + (height / places.sine)[:, None] * places.along

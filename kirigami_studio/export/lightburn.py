@@ -1,4 +1,4 @@
-"""Cut plan -> LightBurn project (.lbrn2): named layers with speed, power and passes, in the order of cutting.
+"""Cut plan -> LightBurn project (.lbrn2): named layers, speed, power, passes, order.
 
 A name is engraved first, by lines with a setting of their own: in one pass at a share of the material's power, since
 materials know only what cuts them.  Connectors are marked on the tool layer T1 where that is asked for: LightBurn
@@ -20,7 +20,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes
@@ -55,26 +54,6 @@ _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _VERTEX = re.compile(rf"V{_NUMBER} {_NUMBER}(?:c0x{_NUMBER}(?:c0y{_NUMBER})?)?(?:c1x{_NUMBER}(?:c1y{_NUMBER})?)?")
 _FACT = re.compile(r"([A-Z][A-Z0-9_]{1,60}) (.{1,255})")
 _PRIMITIVE = re.compile(r"([LB])(\d+) (\d+)")
-
-
-@dataclass(frozen=True, slots=True)
-class LightBurnExporter:
-    """Cut plan as LightBurn project."""
-
-    extension: str = ".lbrn2"
-    name: str = "LightBurn project"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan; the layers are LightBurn's own, whatever the profile.
-
-        Raises
-        ------
-        ExportError
-            The profile asks for closed slots, which such a project does not hold; or as :func:`write_lightburn`.
-        """
-        if find_profile(job.profile).slots:
-            raise ExportError("lightburn.open_cuts_only")
-        write_lightburn(job.required_plan, path, job.markers)
 
 
 def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> None:
@@ -155,7 +134,7 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
 
 
 def power_notes(material: Material) -> tuple[Note, ...]:
-    """What to do about the power in LightBurn where the material does not know it."""
+    """Advice about the power in LightBurn where the material does not know it."""
     return () if material.power_percent else (Note.of("lightburn.no_power", material=material.name),)
 
 
@@ -353,7 +332,7 @@ def _length(curves: FloatArray) -> float:
 
 
 def _weights(chords: int) -> FloatArray:
-    """Weights (chords + 1, 4) of control points at equal steps along a cubic Bezier curve."""
+    """Weights (chords + 1, 4) of control points of a cubic Bezier curve at equal steps."""
     t = np.linspace(0.0, 1.0, chords + 1)
     weights: FloatArray = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
     return weights

@@ -20,7 +20,6 @@ from shapely.geometry import LineString
 
 from kirigami_studio import __version__
 from kirigami_studio.export import picture
-from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, Paper, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.pdf_library import Canvas, mm
 from kirigami_studio.export.pdf_pages import (
@@ -50,18 +49,6 @@ ROUNDING_MM = 1e-6
 Line = tuple[FloatArray, bool, Colour]
 _STREAM = re.compile(rb"stream\r?\n(.*?)endstream", re.DOTALL)
 _TEXT = re.compile(rb"BT.*?ET", re.DOTALL)
-
-
-@dataclass(frozen=True, slots=True)
-class PdfExporter:
-    """Cut plan as PDF."""
-
-    extension: str = ".pdf"
-    name: str = "PDF at 1:1"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan on the job's paper."""
-        write_pdf(job.required_plan, path, job.paper)
 
 
 def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:

@@ -45,18 +45,6 @@ LONGEST_SIDE = 900
 SAME_DPI = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class PngExporter:
-    """Preview as PNG."""
-
-    extension: str = ".png"
-    name: str = "PNG picture of the deployed layout"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the layout at the job's angle."""
-        write_png(job, path)
-
-
 def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> None:
     """Write the layout at the target angle over the target.
 
@@ -146,14 +134,30 @@ def png_of_bands(size: tuple[int, int], bands: Iterable[NDArray[np.uint8]], fact
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
-    """Draw the layout at the target angle over the target."""
-    panels = job.posed.parts(job.phi)
+    """Draw the layout at the job's angle over the target, as cut where the job has such a motion."""
+    panels, edges = drawn_panels(job, job.shown_phi)
     clouds = panels if job.target is None else [*panels, job.target]
-    return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target)
+    return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target, edges)
 
 
-def draw_polygons(polygons: Sequence[FloatArray], frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
-    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top."""
+def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[FloatArray] | None]:
+    """The panels at an angle (radians), and the lines that are drawn at their edges; None for all of them."""
+    if job.motion is None:
+        return job.posed.parts(phi), None
+    pose = job.motion.pose(job.posed, phi)
+    return pose.panels, pose.cuts
+
+
+def draw_polygons(
+    polygons: Sequence[FloatArray],
+    frame: PictureFrame,
+    target: FloatArray | None = None,
+    edges: Sequence[FloatArray] | None = None,
+) -> Image.Image:
+    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top.
+
+    ``edges`` are lines (L, 2) that are drawn over the panels instead of their outlines.
+    """
     factor = SUPERSAMPLING
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, PAPER)
@@ -163,7 +167,10 @@ def draw_polygons(polygons: Sequence[FloatArray], frame: PictureFrame, target: F
     for polygon in polygons:
         corners = frame.pixel(polygon, factor)
         draw.polygon(corners, fill=PANEL)
-        draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
+        if edges is None:
+            draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
+    for edge in () if edges is None else edges:
+        draw.line(frame.pixel(edge, factor), fill=PANEL_EDGE, width=factor, joint="curve")
     if target is not None:
         loop = frame.pixel(target, factor)
         draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")

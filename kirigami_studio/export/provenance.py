@@ -1,4 +1,4 @@
-"""How a file was made: a few facts that every exported file repeats, and the full record as JSON beside a cut file.
+"""Origin of a file: facts that every exported file repeats, and the full record as JSON.
 
 The record (sidecar) holds enough to make the same bytes again.
 """
@@ -43,7 +43,7 @@ VERSION = 1
 
 
 def facts_of(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """Record in a file of its making: enough to plan it again, and for a check to compare."""
+    """The record in a file of its making: all that its plan is made of again."""
     kerf = 0.0 if profile.slots else plan.kerf_mm
     paths = "beam centre lines, kerf already allowed for: apply no kerf offset"
     return {
@@ -90,7 +90,7 @@ def _single_connectors(plan: CutPlan) -> dict[str, str]:
 
 
 def _copies(plan: CutPlan) -> dict[str, str]:
-    """Number of sheets in the file where it is not one, their gap, and the number asked for."""
+    """Number of sheets in the file, where not one, their distance, and the number asked for."""
     copies, asked = plan.copies, plan.options.copies
     facts = {} if len(copies) == 1 else {"COPIES": f"{len(copies)}", "COPY_GAP_MM": exactly(copies.gap_mm)}
     return facts if asked == 1 else {**facts, "COPIES_ASKED": f"{asked}", "COPY_GAP_MM": exactly(copies.gap_mm)}
@@ -108,7 +108,7 @@ def _name(plan: CutPlan, profile: Profile) -> dict[str, str]:
 
 
 def _tabs(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """Tabs, and the number of cuts that end on others: no faults, a check has to know.
+    """Tabs, and cuts that end on others on purpose, which a check would take for faults.
 
     Files of closed contours have neither, and say only what was asked for.
     """
@@ -127,7 +127,7 @@ def origin_facts(origin: Mapping[str, str]) -> dict[str, str]:
 
 
 def _one_line(text: str) -> str:
-    """The text as every kind of file can hold it; names of files may have characters that XML or UTF-8 cannot."""
+    """The text as every kind of file holds it, without characters that XML or UTF-8 lack."""
     return printable(" ".join(text.split()), REPLACEMENT)
 
 
@@ -228,7 +228,7 @@ def _expected(plan: CutPlan, profile: Profile) -> dict[str, Any]:
 
 
 def narrowed_json(plan: CutPlan) -> list[dict[str, float]]:
-    """Number, place, planned and asked width, mm, of every connector that is narrower than asked for."""
+    """Number, place, planned and asked width, mm, of connectors narrower than asked for."""
     hinges = plan.hinges
     return [
         {

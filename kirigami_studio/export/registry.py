@@ -1,67 +1,88 @@
-"""Which exporter writes which extension."""
+"""Writers of files by extension."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
-from kirigami_studio.export.animation import GifExporter
+from kirigami_studio.export.animation import write_animation
 from kirigami_studio.export.dxf import write_dxf
-from kirigami_studio.export.exporter import Exporter, ExportJob
+from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.layer_files import layer_folder, write_layer_files
-from kirigami_studio.export.lightburn import LightBurnExporter
-from kirigami_studio.export.pdf import PdfExporter
-from kirigami_studio.export.picture import PngExporter
+from kirigami_studio.export.lightburn import write_lightburn
+from kirigami_studio.export.pdf import write_pdf
+from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.profile import find_profile
-from kirigami_studio.export.svg import SvgExporter
+from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.foundation.errors import ExportError
 
-
-@dataclass(frozen=True, slots=True)
-class DxfExporter:
-    """Cut plan as DXF."""
-
-    extension: str = ".dxf"
-    name: str = "DXF cut file"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan in its DXF version and profile: one file, or a folder of them."""
-        profile = find_profile(job.profile)
-        if profile.file_per_layer:
-            write_layer_files(job.required_plan, path, job.dxf_version, profile, job.record)
-        else:
-            write_dxf(job.required_plan, path, job.dxf_version, profile, job.record)
+#: Writes a job's file and reads it back; raises ExportError and leaves an older file alone when that fails.
+Writer = Callable[[ExportJob, Path], object]
 
 
-def exporters() -> Mapping[str, Exporter]:
-    """Return all exporters by extension (lower case, with the dot)."""
-    known: tuple[Exporter, ...] = (
-        DxfExporter(), SvgExporter(), PdfExporter(), PngExporter(), GifExporter(), LightBurnExporter(),
-    )  # fmt: skip
-    return {exporter.extension: exporter for exporter in known}
+def _dxf(job: ExportJob, path: Path) -> None:
+    """Write the job's cut plan in its DXF version and profile: one file, or a folder of them."""
+    profile = find_profile(job.profile)
+    if profile.file_per_layer:
+        write_layer_files(job.required_plan, path, job.dxf_version, profile, job.record)
+    else:
+        write_dxf(job.required_plan, path, job.dxf_version, profile, job.record)
 
 
-def find_exporter(path: str | Path) -> Exporter:
-    """Return the exporter for a file name.
+def _svg(job: ExportJob, path: Path) -> None:
+    write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
+
+
+def _pdf(job: ExportJob, path: Path) -> None:
+    write_pdf(job.required_plan, path, job.paper)
+
+
+def _lightburn(job: ExportJob, path: Path) -> None:
+    """Write the job's cut plan in LightBurn's own layers, whatever the profile.
+
+    Raises
+    ------
+    ExportError
+        The profile asks for closed slots, which such a project does not hold.
+    """
+    if find_profile(job.profile).slots:
+        raise ExportError("lightburn.open_cuts_only")
+    write_lightburn(job.required_plan, path, job.markers)
+
+
+#: Writers by extension (lower case, with the dot); of GIF from phi = pi to the job's angle, or as far as it comes.
+WRITERS: Mapping[str, Writer] = MappingProxyType(
+    {
+        ".dxf": _dxf,
+        ".svg": _svg,
+        ".pdf": _pdf,
+        ".png": write_png,
+        ".gif": write_animation,
+        ".lbrn2": _lightburn,
+    }
+)
+
+
+def find_writer(path: str | Path) -> Writer:
+    """Return the writer for a file name.
 
     Raises
     ------
     ExportError
         Unknown or missing extension; the sentence lists the known ones.
     """
-    known = exporters()
     extension = Path(path).suffix.lower()
-    if extension not in known:
-        names = ", ".join(known)
+    if extension not in WRITERS:
+        names = ", ".join(WRITERS)
         if not extension:
             raise ExportError("export.no_extension", path=path, known=names)
         raise ExportError("export.unknown_kind", extension=extension, path=path, known=names)
-    return known[extension]
+    return WRITERS[extension]
 
 
 def export(job: ExportJob, path: str | Path) -> Path:
-    """Write one file of the kind that its extension names, and return its path (of a folder for files per layer).
+    """Write one file of the kind of its extension; return its path, or its folder.
 
     Raises
     ------
@@ -69,7 +90,7 @@ def export(job: ExportJob, path: str | Path) -> Path:
         Unknown extension, missing plan, unwritable place, or a file that did not pass its own re-reading.
     """
     goal = Path(path)
-    find_exporter(goal).write(job, goal)
+    find_writer(goal)(job, goal)
     return written_path(goal, job.profile)
 
 

@@ -156,7 +156,7 @@ class Work:
 
 
 def work_of(strokes: Sequence[Stroke], plan: CutPlan) -> Work:
-    """What cutting the strokes of a plan's file takes."""
+    """Time and lengths of the strokes of a plan's file."""
     # Strokes know no layer of a plan; lengths and times do not depend on it.
     paths = [CutPath(stroke.points, Layer.SLITS, stroke.closed, bulges=stroke.bulges) for stroke in strokes]
     length, travel = sum(path.length for path in paths), float(travel_lengths(paths).sum())

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+import shapely
 
 from kirigami_studio import __version__
 from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import hexadecimal
+from kirigami_studio.export.picture import drawn_panels, hexadecimal
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
@@ -29,20 +29,14 @@ SEPARATOR = "; "
 #: Line width (mm) of cut lines; laser drivers take anything thinner than 0.1 mm as a line to cut.
 CUT_LINE_MM = 0.05
 LAYOUT_MARGIN_MM = 5.0
+#: Widths (mm) of the lines of a picture, and size and place of its note.
+EDGE_MM, TARGET_MM, NOTE_MM, NOTE_UP_MM = 0.15, 0.5, 3.5, 1.2
+#: The note is no larger than that so many letters as high would be as wide as the picture.
+NOTE_LETTERS = 30.0
+#: What a picture says of itself, so that nobody cuts it.
+NO_CUT_FILE = "not a cut file"
 #: What the AutoCAD colours of the profiles look like on white.
 ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
-
-
-@dataclass(frozen=True, slots=True)
-class SvgExporter:
-    """Cut plan as SVG."""
-
-    extension: str = ".svg"
-    name: str = "SVG cut file"
-
-    def write(self, job: ExportJob, path: Path) -> None:
-        """Write the job's cut plan."""
-        write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:
@@ -93,7 +87,7 @@ def _cut_drawing(
 
 
 def _counted_at(root: ElementTree.Element, width: float, height: float, dpi: float) -> dict[str, str]:
-    """Let a drawing of a frame (mm) count so many units to the inch; what its groups need so that they stay in mm."""
+    """Let a frame (mm) count so many units to the inch; return the scale of groups in mm."""
     if dpi == MM_DPI:
         return {}
     scale = dpi / MM_DPI
@@ -122,41 +116,60 @@ def _stroke_data(stroke: Stroke, height: float) -> str:
 
 
 def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) -> None:
-    """Draw the deployed layout over the target, at the size it has when the compact sheet is ``width_mm`` wide.
+    """Draw the layout at the job's angle over the target, at the size that belongs to a flat sheet of ``width_mm``.
+
+    It is a picture and says so: all is filled, lines too, because laser programs cut and engrave strokes.
 
     Raises
     ------
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    design = job.posed
-    tables = design.deployment.topology
-    compact_width = float(np.ptp(design.deployment.compact[:, 0]))
-    scale = width_mm / compact_width / design.pose.scale
-    nodes = design.nodes(job.phi) * scale
-    panels = [panel * scale for panel in design.parts(job.phi)]
-    target = None if job.target is None else np.asarray(job.target, dtype=np.float64) * scale
-    everything = nodes if target is None else np.concatenate([nodes, target])
+    design, phi = job.posed, job.shown_phi
+    tables, scale = design.deployment.topology, design.mm_per_world(width_mm)
+    drawn, edges = drawn_panels(job, phi)
+    panels = [panel * scale for panel in drawn]
+    lines = [edge * scale for edge in edges] if edges is not None else [np.concatenate([p, p[:1]]) for p in panels]
+    # As cut the voids are other ones; the page shows through.
+    voids = [] if job.motion is not None else list(design.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2) * scale)
+    target = [] if job.target is None else [np.asarray(job.target, dtype=np.float64) * scale]
+    everything = np.concatenate([*panels, *voids, *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
-    root = root_element(width, height, f"Kirigami layout at {np.degrees(job.phi):g} degrees")
-    _describe(root, {PROGRAM: __version__, "PURPOSE": "picture, not for cutting", **origin_facts(job.provenance)})
-    groups: list[tuple[str, dict[str, str], list[FloatArray]]] = [
-        ("TARGET_AREA", {"fill": hexadecimal(picture.TARGET_FILL)}, [] if target is None else [target]),
-        ("VOIDS", {"fill": hexadecimal(picture.VOID)}, list(nodes[tables.void_nodes].reshape(-1, 4, 2))),
-        ("PANELS", {"fill": hexadecimal(picture.PANEL), "stroke": hexadecimal(picture.PANEL_EDGE),
-                    "stroke-width": "0.15", "stroke-linejoin": "round"},
-         panels),
-        ("TARGET", {"fill": "none", "stroke": hexadecimal(picture.TARGET_EDGE), "stroke-width": "0.5"},
-         [] if target is None else [target]),
-    ]  # fmt: skip
+    root = root_element(width, height, f"Picture of a kirigami layout at {np.degrees(phi):g} degrees, {NO_CUT_FILE}")
+    root.set("id", "PICTURE")
+    _describe(root, {PROGRAM: __version__, "PURPOSE": f"picture, {NO_CUT_FILE}", **origin_facts(job.provenance)})
+    rims = [np.concatenate([loop, loop[:1]]) for loop in target]
+    groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
+        ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target]),
+        ("VOIDS", picture.VOID, [[void] for void in voids]),
+        ("PANELS", picture.PANEL, [[panel] for panel in panels]),
+        ("EDGES", picture.PANEL_EDGE, [_band(line, EDGE_MM) for line in lines]),
+        ("TARGET", picture.TARGET_EDGE, [_band(rim, TARGET_MM) for rim in rims]),
+    ]
     count = 0
-    for name, attributes, polygons in groups:
-        group = ElementTree.SubElement(root, "g", {"id": name, **attributes})
-        for polygon in polygons:
-            ElementTree.SubElement(group, "path", {"d": path_data(polygon - low, height, closed=True)})
+    for name, colour, shapes in groups:
+        look = {"fill": hexadecimal(colour), "fill-rule": "evenodd", "stroke": "none"}
+        group = ElementTree.SubElement(root, "g", {"id": name})
+        for rings in shapes:
+            data = " ".join(path_data(ring - low, height, closed=True) for ring in rings)
+            ElementTree.SubElement(group, "path", {"d": data, **look})
             count += 1
+    place = {"x": decimals(0.5 * width), "y": decimals(height - NOTE_UP_MM), "text-anchor": "middle"}
+    said = f"Picture, {NO_CUT_FILE}" + ("" if job.motion is None else f". {job.motion.caption}")
+    look = {
+        "font-family": "sans-serif",
+        "font-size": decimals(min(NOTE_MM, width / NOTE_LETTERS)),
+        "fill": hexadecimal(picture.INK),
+    }
+    ElementTree.SubElement(root, "text", {**place, **look}).text = said
     _write(root, Path(path), count, (width, height))
+
+
+def _band(line: FloatArray, width_mm: float) -> list[FloatArray]:
+    """A line (L, 2) of some width as the rings around it."""
+    area = shapely.buffer(shapely.LineString(line), 0.5 * width_mm, quad_segs=2, join_style="mitre")
+    return [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(area)]
 
 
 def root_element(width: float, height: float, title: str, margin: float = 0.0) -> ElementTree.Element:

@@ -496,7 +496,7 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
 
 
 def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
-    """Find connectors and voids in the strokes of a file, in the plan's frame; see :func:`file_physics`."""
+    """Find connectors and voids in the strokes of a file; see :func:`file_physics`."""
     outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
     return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
 

@@ -1,8 +1,8 @@
 """The physical check of a plan: is the sheet one piece, are all widths as asked, do the connectors survive bending?
 
 :func:`check_plan` cuts the sheet in the computer (``finished_sheet``) and returns a :class:`PlanReport` of problems,
-each with a place.  The strain of the connectors is an estimate: a strip as thick as the smaller of width and thickness
-that bends evenly over its flexure length.
+each with a place.  The strain of the connectors is an estimate: a strip that bends evenly over its flexure length,
+across its thickness where it escapes out of the plane, across its width where it does not (``strain``).
 """
 
 from __future__ import annotations
@@ -28,12 +28,15 @@ from kirigami_studio.fabricate.joints import joined_pairs
 from kirigami_studio.fabricate.machine import kinds_for
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import SmallPlace, smallest_edge, smallest_neck, trimmed_neck_below
+from kirigami_studio.fabricate.strain import Survival, escapes, survival, used_up
 from kirigami_studio.foundation.arrays import FloatArray
 
 #: Overlaps shorter than this (mm) are rounding.
 OVERLAP_TOLERANCE_MM = 1e-6
 #: Tolerance (mm) for finished widths; coordinates are rounded to a tenth of it.
 WIDTH_TOLERANCE_MM = 1e-3
+#: Connectors that are gone count as this wide and long (mm), where something is divided by it.
+LEAST_MM = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +98,8 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         *panel_problems(plan, kerf, edge, neck),
         *bed_problems(plan),
         *machine_problems(plan),
-        *([] if phi is None or plan.material.connectors_hold else [_breaking(plan)]),
-        *([] if bent is None else strain_problems(plan, bent, plan.material.strain_limit)),
+        *([] if phi is None else _limits(plan)),
+        *([] if bent is None else strain_problems(plan, bent)),
     ]
     return PlanReport(
         problems=tuple(problems),
@@ -249,8 +252,10 @@ def panel_problems(plan: CutPlan, kerf_mm: float, edge: SmallPlace | None, neck:
     return problems
 
 
-def _breaking(plan: CutPlan) -> Problem:
-    return Problem.warning("plan.material_does_not_hold", material=plan.material.name)
+def _limits(plan: CutPlan) -> list[Problem]:
+    """Warn about a material of which no single sheet works."""
+    note = plan.material.limits_note
+    return [] if note is None else [Problem(note.code, note.fields, Severity.WARNING)]
 
 
 def bed_problems(plan: CutPlan) -> list[Problem]:
@@ -274,7 +279,7 @@ def bed_problems(plan: CutPlan) -> list[Problem]:
 
 
 def machine_problems(plan: CutPlan) -> list[Problem]:
-    """Warn about a material that the chosen machine is not known to cut, or that is too thick for it."""
+    """Warn about a material that is too thick for the chosen machine, or unknown to it."""
     machine, material = plan.machine, plan.material
     if plan.chosen_machine is None or machine.takes(material):
         return []
@@ -300,29 +305,32 @@ class Flexing:
     turn : float, radians
         By which every connector turns.
     strain : float
-        Estimate for the connector that is strained most.
+        Estimate for the connector that is nearest to breaking.
     where : (x, y), mm
         That connector.
-    flexure_mm, softer_mm : float
-        Length over which it bends, and the smaller of its width and its thickness.
+    flexure_mm : float
+        Length over which it bends.
+    survival : Survival
     """
 
     turn: float
     strain: float
     where: tuple[float, float]
     flexure_mm: float
-    softer_mm: float
+    survival: Survival
 
 
 def flexing(plan: CutPlan, phi: float) -> Flexing | None:
     """Estimate what opening the sheet to an angle (radians) does to its connectors; None for a sheet without any."""
     if np.all(plan.hinges.removed):
         return None
-    strains = hinge_strains(plan, phi)
-    worst = int(np.argmax(strains))
+    there = np.flatnonzero(~plan.hinges.removed)
+    figures = [figure[there] for figure in _both_figures(plan, phi)]
+    widths = np.maximum(plan.hinges.finished_mm[there], LEAST_MM)
+    worst = there[int(np.argmax(used_up(plan.material, widths, *figures)))]
+    found = survival(plan.material, widths, *figures)
     x, y = plan.hinges.position[worst]
-    softer = min(float(plan.hinges.finished_mm[worst]), plan.material.thickness_mm)
-    return Flexing(hinge_turn(phi), float(strains[worst]), (float(x), float(y)), float(_lengths(plan)[worst]), softer)
+    return Flexing(hinge_turn(phi), found.strain, (float(x), float(y)), float(_lengths(plan)[worst]), found)
 
 
 def hinge_turn(phi: float) -> float:
@@ -332,17 +340,22 @@ def hinge_turn(phi: float) -> float:
 
 def hinge_strains(plan: CutPlan, phi: float) -> FloatArray:
     """Estimated strain of every connector (H,) at an angle (radians); 0 for removed ones."""
-    hinges = plan.hinges
-    softer = np.minimum(hinges.finished_mm, plan.material.thickness_mm)
-    strain: FloatArray = np.where(
-        hinges.removed, 0.0, hinge_turn(phi) * np.maximum(softer, 0.0) / (2.0 * _lengths(plan))
-    )
+    bent = escapes(plan.material.thickness_mm, plan.hinges.finished_mm)
+    strain: FloatArray = np.where(bent, *_both_figures(plan, phi)[::-1])
     return strain
 
 
-def strain_problems(plan: CutPlan, found: Flexing, strain_limit: float) -> list[Problem]:
-    """Warn when the estimate is above the material's breaking strain (0.05 for 5 %)."""
-    if found.strain <= strain_limit:
+def _both_figures(plan: CutPlan, phi: float) -> tuple[FloatArray, FloatArray]:
+    """Strains (H,) in the plane and out of it, of evenly bent strips; 0 for removed connectors."""
+    widths = np.where(plan.hinges.removed, 0.0, np.maximum(plan.hinges.finished_mm, 0.0))
+    curvature = hinge_turn(phi) / (2.0 * _lengths(plan))
+    return curvature * widths, curvature * np.minimum(widths, plan.material.thickness_mm)
+
+
+def strain_problems(plan: CutPlan, found: Flexing) -> list[Problem]:
+    """Warn when the material does not survive the estimate."""
+    judged = found.survival
+    if not judged.breaks:
         return []
     # What to try first: another style, or room for the ends that this style could not be made at.
     styled = plan.options.style in (ConnectorStyle.ARC, ConnectorStyle.DOUBLE)
@@ -353,13 +366,13 @@ def strain_problems(plan: CutPlan, found: Flexing, strain_limit: float) -> list[
             turn_deg=math.degrees(found.turn),
             strain_percent=100.0 * found.strain,
             material=plan.material.name,
-            limit_percent=100.0 * strain_limit,
+            limit_percent=100.0 * judged.limit,
             flexure_mm=found.flexure_mm,
-            softer_mm=found.softer_mm,
+            why=judged.why.text,
         )
     ]
 
 
 def _lengths(plan: CutPlan) -> FloatArray:
-    lengths: FloatArray = np.maximum(plan.hinges.flexure_mm, 1e-9)
+    lengths: FloatArray = np.maximum(plan.hinges.flexure_mm, LEAST_MM)
     return lengths

@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
+from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
@@ -169,6 +170,11 @@ class CutPlan:
     def copies(self) -> Copies:
         """Where the sheets lie that a file of this plan holds; the plan itself is that of the first."""
         return lay_out(self.bounds_mm, self.machine.reach_mm, self.options, self.kerf_mm)
+
+    @cached_property
+    def cut_panels(self) -> CutPanels:
+        """The panels as the cuts leave them."""
+        return cut_panels(self)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -374,7 +380,7 @@ def _plain_cuts(
 
 
 def _left_by_outline(planned: FloatArray, finished: FloatArray) -> FloatArray:
-    """Widths (H,), mm, of connectors of which a trim or another start leaves only a part."""
+    """Widths (H,), mm, where the outline is no rectangle and leaves less of a connector."""
     left = (finished > 0.0) & (finished < planned - WIDER_MM)
     widths: FloatArray = np.where(left, finished, planned)
     return widths

@@ -1,4 +1,4 @@
-"""How a slit ends before its hinge: the frame of the hinge, and the shapes of the connector styles drawn in it.
+"""Ends of slits before their hinges, as shapes of the connector styles.
 
 Every shape is a path of its own that the slit ends on, at one of its points, so that nothing is cut twice and the kerf
 closes the joint.  The place of the shape that is nearest to the through cut leaves exactly the finished width:

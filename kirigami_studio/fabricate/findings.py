@@ -58,12 +58,12 @@ class Problem(Note):
 
     @classmethod
     def error(cls, code: str, where: tuple[float, float] | None = None, /, **fields: object) -> Problem:
-        """What spoils the sheet."""
+        """Findings that spoil the sheet."""
         return Problem(code, _with_place(fields, where), Severity.ERROR, where)
 
     @classmethod
     def warning(cls, code: str, where: tuple[float, float] | None = None, /, **fields: object) -> Problem:
-        """What may spoil the sheet."""
+        """Findings that may spoil the sheet."""
         return Problem(code, _with_place(fields, where), Severity.WARNING, where)
 
 

@@ -1,4 +1,4 @@
-"""What is left of a sheet after cutting: pieces, ligaments and places cut twice, for any set of cut lines."""
+"""The sheet after cutting: pieces, ligaments and places cut twice, for any set of cut lines."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Ligament:
 
 @dataclass(frozen=True, slots=True)
 class RepeatedCut:
-    """What is cut more than once.
+    """Places that are cut more than once.
 
     Attributes
     ----------

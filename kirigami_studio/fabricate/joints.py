@@ -42,7 +42,7 @@ def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineSt
 
 
 def joint_count(plan: CutPlan) -> int:
-    """How many ends of a plan's cuts lie on another cut, the outline left out; all of them are meant."""
+    """Number of ends of a plan's cuts that lie on another cut, the outline left out."""
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     return len(ending_on_others([measured_line(path.points, path.bulges, path.closed) for path in inner]))
 

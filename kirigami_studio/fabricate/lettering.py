@@ -1,4 +1,4 @@
-"""Text as single strokes, the way a beam or a pen writes it: open lines instead of outlines of letters.
+"""Text as single strokes for a beam or a pen: open lines instead of outlines of letters.
 
 The letters are those of the Hershey Simplex font (``resources/lettering``, where its makers are named), with the marks
 of accented ones drawn on top.  A letter or a mark that has no strokes is left out, and told.
@@ -65,7 +65,7 @@ class Engraving:
 
 @dataclass(frozen=True, slots=True)
 class _Font:
-    """Strokes of letters and marks, in heights of a capital; marks are centred at x = 0 and count y from their foot."""
+    """Strokes of letters and marks, in heights of a capital; marks are centred on their foot."""
 
     advance: Mapping[str, float]
     letters: Mapping[str, tuple[FloatArray, ...]]

@@ -1,4 +1,4 @@
-"""Machines: what a cutter reaches, how it moves, which materials it cuts, which files its program wants.
+"""Machines: reach and speeds of cutters, their materials, and the files of their programs.
 
 A material's figures hold for one kind of machine.  ``resources/figures`` has those of bundled materials on other kinds,
 a file for each kind with a table for each material: :func:`material_on` puts them together.  Bundled machines stand in
@@ -15,7 +15,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, find_material, library
+from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, library
 from kirigami_studio.fabricate.shelf import Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
@@ -235,7 +235,7 @@ class Machine:
         return min(wanted, self.largest_speed_mm_s) if self.largest_speed_mm_s > 0.0 else wanted
 
     def takes(self, material: Material) -> bool:
-        """Whether it is known to cut a material: its figures are for this kind, and it is thin enough."""
+        """Whether it is known to cut a material: one with figures for its kind, thin enough."""
         known = self.kind in kinds_for(material)
         return known and not (0.0 < self.thickest_mm < material.thickness_mm)
 
@@ -281,7 +281,7 @@ def find_machine(name: str) -> Machine:
 
 
 def changed_machine(source: str, key: str, changes: Mapping[str, object]) -> Machine:
-    """A copy of a machine under a new key (or the same) with some entries changed; not saved yet.
+    """A copy of a machine under a new key (or the same), changed and not saved yet.
 
     Raises
     ------
@@ -296,7 +296,7 @@ def changed_machine(source: str, key: str, changes: Mapping[str, object]) -> Mac
 
 
 def machine_of(material: Material) -> Machine:
-    """The machine that a material's figures are for: the usual one of its kind, with what an older file says of it."""
+    """The usual machine of the kind that a material is for, with the numbers of an older file."""
     kind = MachineKind.of(material.machine)
     usual = SHELF.bundled()[USUAL[kind]] if kind in USUAL else Machine("", material.machine, kind)
     older = {name: getattr(material, name) for name in OLDER_ENTRIES}
@@ -327,17 +327,18 @@ def material_on(material: Material, machine: Machine) -> Material:
 
 
 def usual_material(machine: Machine, taken: Mapping[str, Material]) -> str:
-    """Key of the material to begin with, of those that a machine takes: for its kind, with connectors that hold."""
+    """Key of the material to begin with, of those that a machine takes."""
+    known = library().materials
 
     def order(key: str) -> tuple[bool, bool, bool]:
-        made_for = MachineKind.of(find_material(key).machine) is machine.kind
-        return key != DEFAULT_PRESET, not made_for, not taken[key].connectors_hold
+        made_for = MachineKind.of(known[key].machine) is machine.kind
+        return key != DEFAULT_PRESET, not made_for, taken[key].limits_note is not None
 
     return min(taken, key=order)
 
 
 def cuttable(machine: Machine) -> dict[str, Material]:
-    """The materials that a machine is known to cut, by key, with their figures on it, in the order of their names."""
+    """The materials that a machine cuts, by key, with their figures on it, sorted by name."""
     found = {key: material_on(material, machine) for key, material in library().materials.items()}
     taken = {key: material for key, material in found.items() if machine.takes(material)}
     return dict(sorted(taken.items(), key=lambda item: item[1].name.casefold()))

@@ -22,7 +22,6 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
-from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
@@ -33,7 +32,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.foundation.threads import one_blas_thread
-from kirigami_studio.lattice.compact import barycentric_stencil
+from kirigami_studio.lattice.compact import barycentric_matrix, barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy, even_part_of_outline
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -361,25 +360,13 @@ def _node_slopes(design: Deployment) -> FloatArray:
     node, ends, void = barycentric_stencil(*design.sheet.grid)
     x = design.field.ratio.ravel()[void]
     nodes, count = design.compact, node.size
-    position = np.full(len(nodes), -1)
-    position[node] = np.arange(count)
-    row, column = np.repeat(np.arange(count), 2), position[ends].ravel()
-    weight = np.stack([x, np.ones(count)], axis=1).ravel() / np.repeat(1.0 + x, 2)
-    free = column >= 0
-    diagonal = np.arange(count)
-    matrix = csc_matrix(
-        (
-            np.concatenate([np.ones(count), -weight[free]]),
-            (np.concatenate([diagonal, row[free]]), np.concatenate([diagonal, column[free]])),
-        ),
-        shape=(count, count),
-    )
-    factor = splu(matrix)
+    weights = np.stack([x, np.ones(count)], axis=1) / (1.0 + x)[:, None]
+    factor = splu(barycentric_matrix(len(nodes), node, ends, weights)[0])
     along = (x / (1.0 + x) ** 2)[:, None] * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
     slopes = np.zeros((2, len(nodes), design.field.ratio.size))
     for axis in (0, 1):
         right = np.zeros((count, slopes.shape[2]))
-        right[diagonal, void] = along[:, axis]
+        right[np.arange(count), void] = along[:, axis]
         for first in range(0, right.shape[1], AT_ONCE):
             slopes[axis, node, first : first + AT_ONCE] = factor.solve(right[:, first : first + AT_ONCE])
     return slopes

@@ -9,17 +9,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
+from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.shelf import Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
-from kirigami_studio.foundation.plain_text import plain_line, plain_lines
+from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line, plain_lines
 from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.foundation.words import mark
 
-#: The preset that a new project starts with: the film of the paper's specimens.
+#: The preset that a new project starts with.
 DEFAULT_PRESET = "film-uv"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
@@ -27,7 +30,18 @@ BY_HAND = "by hand"
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Full power, percent.
 LARGEST_POWER = 100.0
+#: Entry of files from before tension and bending were told apart: the strain at which connectors were taken to break.
+OLD_LIMIT = "strain_limit"
 _FLAG = Setting(code="material.wrong_type", error=FabricationError).metadata
+_WORD = Setting(code="material.no_such_word", error=FabricationError).metadata
+
+
+class Construction(StrEnum):
+    """Way of making a sheet; the values stand in files."""
+
+    ONE_SHEET = "one-sheet"  #: bridges of the sheet itself turn
+    PINNED = "pinned"  #: two layers of rigid panels turn on pins
+    BACKED = "backed"  #: tiles are glued on a hinge layer
 
 
 def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
@@ -69,6 +83,11 @@ def _machine_number(zero: bool = False) -> Mapping[str, Setting]:
     return _number("", "", "", 0.0, 1.0, 1.0, zero=zero)
 
 
+def _strain(label: str, about: str, zero: bool = False) -> Mapping[str, Setting]:
+    """Describe a strain, which the editor shows in percent."""
+    return _number(label, about, "%", 0.0 if zero else 0.01, 1000.0, 0.5, decimals=2, scale=100.0, zero=zero)
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
     """One sheet material on one kind of machine.
@@ -97,8 +116,12 @@ class Material:
     calibrated : bool
         False until the numbers were measured on a coupon.
     note : str
-    strain_limit : float
-        Strain at which the material breaks (0.05 = 5 %); files without it get that of a brittle sheet.
+    yield_strain : float
+        Strain (0.05 = 5 %) above which it stays bent; 0 for what springs back until it breaks, and where nobody knows.
+    break_strain : float
+        Elongation at which it tears when pulled; files without it get that of a brittle sheet.
+    bend_strain : float
+        Strain of the outer fibre at which a bend breaks; larger than ``break_strain`` in what delaminates or folds.
     passes : int
         How many times the job is cut; 1 in files without it.
     min_slit_mm : float
@@ -111,6 +134,16 @@ class Material:
         A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it.
     connectors_hold : bool
         False where no style, width and sheet size is known whose connectors survive opening.
+    construction : Construction
+        Way of making sheets that works in it.
+    backing : bool
+        Whether it is meant as the hinge layer under tiles.
+    sheet_mm : float
+        Usual width of the flat sheet.
+    style : ConnectorStyle
+        Style that works at that width.
+    sources : mapping of str to str
+        Where the figures of entries are from, or that they are an estimate; no part of comparisons.
     measured_on, measured_by : str
         Day (ISO 8601) and author of the calibration, both may be empty.
     travel_mm_s, acceleration_mm_s2, on_delay_s, off_delay_s, bed_width_mm, bed_height_mm : float or None
@@ -147,18 +180,16 @@ class Material:
     )
     calibrated: bool = field(metadata=_FLAG)
     note: str = field(metadata=_text(mark("Note"), mark("Anything worth knowing.")))
-    strain_limit: float = field(
+    yield_strain: float = field(
+        default=0.0,
+        metadata=_strain(mark("Yield strain"), mark("Strain above which it stays bent; 0: none."), zero=True),
+    )
+    break_strain: float = field(
+        default=0.05, metadata=_strain(mark("Breaking strain"), mark("Strain at which it tears when pulled."))
+    )
+    bend_strain: float = field(
         default=0.05,
-        metadata=_number(
-            mark("Breaking strain"),
-            mark("Strain at which the material breaks."),
-            "%",
-            0.01,
-            500.0,
-            0.5,
-            decimals=2,
-            scale=100.0,
-        ),
+        metadata=_strain(mark("Bending strain"), mark("Strain of the outer fibre at which a bend breaks.")),
     )
     passes: int = field(
         default=1,
@@ -202,6 +233,14 @@ class Material:
         ),
     )
     connectors_hold: bool = field(default=True, metadata=_FLAG)
+    construction: Construction = field(default=Construction.ONE_SHEET, metadata=_WORD)
+    backing: bool = field(default=False, metadata=_FLAG)
+    sheet_mm: float = field(
+        default=100.0,
+        metadata=_number(mark("Usual width"), mark("Usual width of the flat sheet."), "mm", 5.0, 3000.0, 10.0, 1),
+    )
+    style: ConnectorStyle = field(default=ConnectorStyle.CENTRED, metadata=_WORD)
+    sources: Mapping[str, str] = field(default_factory=FrozenMapping, compare=False)
     measured_on: str = field(default="", metadata=_text())
     measured_by: str = field(default="", metadata=_text())
     travel_mm_s: float | None = field(default=None, metadata=_machine_number())
@@ -216,6 +255,7 @@ class Material:
         for name in ("name", "machine", "measured_on", "measured_by"):  # the key names a file, which its writer checks
             object.__setattr__(self, name, plain_line(getattr(self, name)))
         object.__setattr__(self, "note", plain_lines(self.note))
+        self._check_sources()
         if self.passes < 1:
             raise FabricationError("material.no_passes", key=self.key, passes=self.passes)
         if self.power_percent > LARGEST_POWER:
@@ -224,9 +264,27 @@ class Material:
             self._check_day()
 
     @property
+    def limits_note(self) -> Note | None:
+        """Word before a run that no single sheet of it works, and which construction does; else None."""
+        if self.backing:
+            return Note.of("plan.material_is_hinge_layer", material=self.name)
+        if self.connectors_hold:
+            return None
+        backed = self.construction is Construction.BACKED
+        return Note.of("plan.material_needs_backing" if backed else "plan.material_does_not_hold", material=self.name)
+
+    @property
     def by_hand(self) -> bool:
         """Whether it is cut with scissors or a knife."""
         return self.machine == BY_HAND
+
+    def _check_sources(self) -> None:
+        found = self.sources
+        if not isinstance(found, Mapping) or not all(isinstance(text, str) for text in found.values()):
+            values = {"key": self.key, "name": "sources", "kind": "a table of texts", "value": found}
+            raise FabricationError("material.wrong_type", **values)
+        clean = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in found.items()}
+        object.__setattr__(self, "sources", FrozenMapping(clean))
 
     def _check_day(self) -> None:
         try:
@@ -254,6 +312,15 @@ class Library:
     faults: tuple[Note, ...]
 
 
+def with_entries_of_now(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """Entries of a file or of changes, those of older programs under the names that they have now."""
+    now = dict(entries)
+    if OLD_LIMIT in now:
+        limit = now.pop(OLD_LIMIT)
+        now = {"break_strain": limit, "bend_strain": limit} | now
+    return now
+
+
 #: The bundled presets and the user's own materials.
 SHELF: Shelf[Material] = Shelf(
     Material,
@@ -276,7 +343,8 @@ SHELF: Shelf[Material] = Shelf(
             "folder_bundled": "material.folder_is_bundled",
         }
     ),
-    frozenset({"key", "calibrated", "connectors_hold"}),
+    frozenset({"key", "calibrated", "connectors_hold", "construction", "backing", "style", "sources"}),
+    with_entries_of_now,
 )
 
 

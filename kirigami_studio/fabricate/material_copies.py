@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from kirigami_studio.fabricate.machine import Machine, material_on
-from kirigami_studio.fabricate.material import SHELF, Material, find_material
+from kirigami_studio.fabricate.material import SHELF, Construction, Material, find_material, with_entries_of_now
 from kirigami_studio.foundation.errors import FabricationError
 
 
@@ -57,12 +57,14 @@ def changed_copy(source: str, key: str, changes: Mapping[str, object], machine: 
     """
     original = find_material(source)
     original = original if machine is None else material_on(original, machine)
-    values = SHELF.typed(changes)
+    values = SHELF.typed(with_entries_of_now(changes))
     if key != original.key and "name" not in values:
         values["name"] = f"{original.name} ({key})"
     clean: dict[str, Any] = {"calibrated": False, "measured_on": "", "measured_by": ""}
     if any(not isinstance(value, str) for value in values.values()):
-        clean["connectors_hold"] = True  # what was known of the original is not known of other numbers
+        # What was known of the original is not known of other numbers.
+        clean |= {"connectors_hold": True, "construction": Construction.ONE_SHEET}
+        clean["sources"] = {name: text for name, text in original.sources.items() if name not in values}
     return replace(original, key=SHELF.check_key(key), **(clean | values))
 
 

@@ -1,4 +1,4 @@
-"""The order of cutting: layer after layer, the outline last, so that the sheet stays held while it is cut.
+"""The order of cutting: layer after layer, the outline last.
 
 Within a layer the paths go in the order that the user chose.  Edge cuts always run from the mouth inwards, so that the
 beam starts away from the connector; every other open path may be turned, and a closed one may begin at any of its
@@ -149,7 +149,7 @@ def _shortest(group: _Group) -> CuttingOrder:
 
 
 def _by_rows(group: _Group) -> CuttingOrder:
-    """Row after row from the bottom, to and fro; edge cuts and parts of the outline once round the sheet."""
+    """Row after row from the bottom, to and fro; the edge once round the sheet."""
     if group.layer in (Layer.EDGE_SLITS, Layer.OUTLINE):
         entries = np.array([way.entries[0] for way in group.ways])
         turn = np.argsort(np.angle(entries - group.centre), kind="stable")

@@ -1,14 +1,14 @@
-"""Values in typed TOML files: bundled ones in a folder of ``resources``, and the user's own in a folder beside them.
+"""Values in typed TOML files, bundled ones and the user's own.
 
-Materials and machines are kept this way.  The stem of a file is the key; an own value with the key of a bundled one
-wins over it.
+Bundled ones lie in a folder of ``resources``, own ones in a folder of the user's settings.  Materials and machines are
+kept this way.  The stem of a file is the key; an own value with the key of a bundled one wins over it.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
 from pathlib import Path
@@ -84,6 +84,8 @@ class Shelf(Generic[Item]):
         Codes of the problems, by what they are about.
     judged : frozenset of str
         Fields that nobody changes by name.
+    now : callable
+        Makes entries of today's files of those that older files have.
     """
 
     kind: type[Item]
@@ -92,6 +94,7 @@ class Shelf(Generic[Item]):
     first: str
     codes: Mapping[str, str]
     judged: frozenset[str] = frozenset({"key"})
+    now: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda entries: entries
 
     def bundled(self) -> dict[str, Item]:
         """Return the bundled values by key, the first one first, the rest in alphabetical order."""
@@ -122,7 +125,7 @@ class Shelf(Generic[Item]):
         return Contents(items, frozenset(own), tuple(faults))
 
     def find(self, name: str) -> Item:
-        """Return the value with this key or full name (capitals do not matter); a key wins over a name.
+        """Return the value with this key, or else with this full name, in any case.
 
         Raises
         ------
@@ -150,14 +153,20 @@ class Shelf(Generic[Item]):
             entries = read_toml(path)
         except (OSError, ValueError) as error:
             raise FabricationError(self.codes["unreadable"], path=path, reason=str(error)) from error
-        expected = {one.name: one.default is MISSING for one in fields(self.kind) if one.name != "key"}
+        entries = dict(self.now(entries))
+        expected = {
+            one.name: one.default is MISSING and one.default_factory is MISSING
+            for one in fields(self.kind)
+            if one.name != "key"
+        }
         if missing := {name for name, needed in expected.items() if needed} - entries.keys():
             names = ", ".join(sorted(missing))
             raise FabricationError(self.codes["missing"], path=path, names=names, count=len(missing))
         if unknown := entries.keys() - expected.keys():
             names = ", ".join(sorted(unknown))
             raise FabricationError(self.codes["not_known"], path=path, names=names, count=len(unknown))
-        return self.kind(key=plain_line(path.stem), **entries)
+        make: Callable[..., Item] = self.kind
+        return make(key=plain_line(path.stem), **entries)
 
     def check_key(self, key: str) -> str:
         """Return a key that can be a file's name, or refuse it.
@@ -172,7 +181,7 @@ class Shelf(Generic[Item]):
         return key
 
     def save(self, item: Item) -> Path:
-        """Save an own value under its key; one of the same key is replaced, a bundled one stays and is hidden.
+        """Save an own value under its key, in the place of an own one and before a bundled one.
 
         Raises
         ------

@@ -116,7 +116,7 @@ class Edges:
 
     @property
     def sharp_corners(self) -> IntArray:
-        """Places of the edges that begin with a turn sharper than ``SWIFT_TURN``; the start of a path is none."""
+        """Places of edges after a turn sharper than ``SWIFT_TURN``, those that begin a path left out."""
         return np.flatnonzero((self.turn > SWIFT_TURN) & np.isfinite(self.turn))
 
     def runs(self, flowing_turn: float) -> tuple[IntArray, FloatArray]:
@@ -133,7 +133,7 @@ class Edges:
 
 
 def cut_times(paths: Sequence[CutPath], material: Material, machine: Machine | None = None) -> CutTimes:
-    """Estimate the time of a job, and the range around it; without a machine, on that which the material is for."""
+    """Estimate the time of a job, and its range; without a machine, on that of the material."""
     machine = machine_of(material) if machine is None else machine
     edges, moves = Edges.of(paths), travel_lengths(paths)
     cut, travel = _moving_seconds(edges, moves, material, machine, FLOWING_TURN, 1.0)

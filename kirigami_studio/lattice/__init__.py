@@ -6,10 +6,11 @@ void (i, j)
     Parallelogram hole, ``i`` counted from the top, ``j`` from the left; corners counter-clockwise
     p0 left, p1 bottom, p2 right, p3 top.  *Even* when ``i + j`` is even, else *odd*.
 parity rule
-    Eq. 1 of the paper: the angle at p0 is phi in even voids and pi - phi in odd ones (``marching.void_angle``).
+    Eq. 1 of the paper: the angle at p0 is phi in even voids and pi - phi in odd ones (``void_angle`` of
+    ``lab.baselines.marching``).
 local rule
     Eq. 2 of the paper: the side from p0 to p1 is ratio times the side from p0 to p3, turned by the void's angle; so is
-    the side from p3 to p2 (``marching.march``, void by void; ``compact`` solves all voids at once).
+    the side from p3 to p2 (there ``march``, void by void; ``compact`` solves all voids at once).
 panel (I, J)
     Rigid tile; an m x n array of voids has (m+1) x (n+1) panels.
 hinge node

@@ -8,7 +8,7 @@ therefore a convex combination of the two ends of the slit it lies on,
 
 which is the paper's local rule (Eq. 2) with the angles of the parity rule (Eq. 1) at phi = pi.  The nodes on the
 sheet's edge are given: an M-matrix with two entries a row, non-singular for every x > 0.  It replaces the paper's
-marching, see ``marching`` for that reference.
+marching, see ``lab.baselines.marching`` for that reference.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.ratio_field import frozen
 from kirigami_studio.lattice.sheet import Sheet, rim_nodes, rim_table
 from kirigami_studio.lattice.topology import topology
@@ -67,29 +67,37 @@ def solve_compact(sheet: Sheet) -> FloatArray:
     return frozen(nodes)
 
 
+def barycentric_matrix(
+    nodes: int, node: IntArray, ends: IntArray, weights: FloatArray
+) -> tuple[csc_matrix, IntArray, BoolArray]:
+    """The matrix I - S (F, F) of the free nodes, which rest between ``ends`` (F, 2).
+
+    Also, of all ends (2 F,), the rows that they are in, and which of them are free themselves.
+    """
+    position = np.full(nodes, -1)
+    position[node] = np.arange(node.size)
+    row, column = np.repeat(np.arange(node.size), 2), position[ends].ravel()
+    free = column >= 0
+    diagonal = np.arange(node.size)
+    matrix = csc_matrix(
+        (
+            np.concatenate([np.ones(node.size), -weights.ravel()[free]]),
+            (np.concatenate([diagonal, row[free]]), np.concatenate([diagonal, column[free]])),
+        ),
+        shape=(node.size, node.size),
+    )
+    return matrix, row, free
+
+
 def _solve(given: FloatArray, node: IntArray, ends: IntArray, weights: FloatArray) -> FloatArray:
     """Solve (I - S) P = B for the free nodes, from those ``given`` (N, 2).
 
     Sparse LU keeps the cost near (m n)^1.5 up to 64 x 64.
     """
-    count = node.size
-    position = np.full(len(given), -1)
-    position[node] = np.arange(count)
-    row = np.repeat(np.arange(count), 2)
-    column = position[ends].ravel()
-    weight = weights.ravel()
-    free = column >= 0
-    known = weight[:, None] * given[ends.ravel()]
-    right = np.zeros((count, 2))
+    matrix, row, free = barycentric_matrix(len(given), node, ends, weights)
+    known = weights.ravel()[:, None] * given[ends.ravel()]
+    right = np.zeros((node.size, 2))
     np.add.at(right, row[~free], known[~free])
-    diagonal = np.arange(count)
-    matrix = csc_matrix(
-        (
-            np.concatenate([np.ones(count), -weight[free]]),
-            (np.concatenate([diagonal, row[free]]), np.concatenate([diagonal, column[free]])),
-        ),
-        shape=(count, count),
-    )
     # An M-matrix is stable without pivoting: keep the symmetric fill-reducing order.
     lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     solution: FloatArray = lu.solve(right)

@@ -1,4 +1,4 @@
-"""What a cut sheet does as it opens from flat towards phi = 0: force, energy, stretch, strain, and where it jams."""
+"""Opening of a cut sheet from flat towards phi = 0: force, energy, stretch, strain, and jams."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.mechanics.drive import Drive, mean_turn
@@ -22,10 +22,15 @@ from kirigami_studio.mechanics.sheet_network import SheetNetwork
 CLOSED = math.radians(2.0)
 #: Steps of a closing unless given.
 STEPS = 31
+#: The last part of a closing (radians), which takes smaller steps.
+NARROWING = math.radians(12.0)
 #: A panel that has lost more than this share of its area was trimmed.
 TRIMMED = 1e-6
 #: Gaps narrower than twice this share of a panel are closed in the silhouette of a sheet that has lost panels.
 BRIDGED = 0.03
+#: Cracks are closed by at least this share of a panel, unless they are narrower than this share of the grid on which
+#: the parts are united.
+CRACK, ROUNDED = 1e-4, 1e-3
 #: Stretch (in connector widths) that a connector is taken to bear: what a neck of ductile film yields by.
 TOLERATED_STRETCH = 0.45
 
@@ -61,15 +66,6 @@ class Closing:
         """Stretch in widths of the connectors: (S, H)."""
         widths: FloatArray = self.stretch_mm / self.sheet.connectors.width_mm
         return widths
-
-    @property
-    def lever_force(self) -> FloatArray:
-        """What a lever of one panel's size needs at its end (S,), N, where the mean angle is driven.
-
-        Against an angle the slope of the energy is a moment.
-        """
-        force: FloatArray = self.path.force / self.sheet.network.panel_size
-        return force
 
     @property
     def stable_phi(self) -> FloatArray:
@@ -158,8 +154,14 @@ def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[
 
 
 def even_closing(sheet: SheetNetwork, end: float = CLOSED, steps: int = STEPS) -> Drive:
-    """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way."""
-    return mean_turn(sheet.network, sheet.connectors.sign, np.linspace(0.0, math.pi - end, steps))
+    """Drive the mean turn of the connectors from the flat sheet to an angle (radians): the sheet finds its own way.
+
+    Where panels run into each other, a fifth of the steps are for the last :data:`NARROWING`.
+    """
+    last = steps // 5 if len(sheet.network.stops) and end + 2.0 * NARROWING < math.pi else 0
+    turns = np.linspace(0.0, math.pi - end - (NARROWING if last else 0.0), steps - last)
+    more = np.linspace(turns[-1], math.pi - end, last + 1)[1:]
+    return mean_turn(sheet.network, sheet.connectors.sign, np.concatenate([turns, more]))
 
 
 def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float, phi: float) -> FloatArray:
@@ -216,26 +218,53 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     are left out, because they may reach beyond it.
     """
     tables = deployment.topology
-    flat, _ = _flat_nodes(deployment, width_mm)
-    numbers = np.arange(network.panel_count) if network.numbers is None else network.numbers
-    table = tables.panel_nodes.reshape(-1, 4)[numbers]
-    corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
-    corners += (network.centroids + motion[:, :2])[:, None]
-    sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
-    nodes = np.stack(sums, axis=1) / np.maximum(np.bincount(table.ravel(), minlength=tables.node_count), 1)[:, None]
+    nodes, corners, table = moved_nodes(deployment, network, width_mm, motion)
     panels = shapely.polygons(network.moved_outlines(motion))
     lost = shapely.area(shapely.polygons(corners)) - shapely.area(panels)
     whole = np.zeros((tables.rows + 1, tables.columns + 1), dtype=np.bool_)
-    whole.flat[numbers] = lost <= TRIMMED * shapely.area(panels)
+    whole.flat[_numbers(network)] = lost <= TRIMMED * shapely.area(panels)
     closed_in = whole[:-1, :-1] & whole[:-1, 1:] & whole[1:, :-1] & whole[1:, 1:]
     voids = shapely.polygons(nodes[tables.void_nodes[closed_in]])
     parts = shapely.make_valid(np.concatenate([panels, voids]))
-    # Along notches panels hang together by hinges alone, without voids between them.
-    bridge = 0.0 if network.numbers is None else BRIDGED * network.panel_size
-    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=1e-6 * width_mm)
+    # Beside stretched connectors there are cracks between panels and voids; along notches panels hang together by
+    # hinges alone, without voids between them.
+    grid, crack = 1e-6 * width_mm, float(np.linalg.norm(corners - nodes[table], axis=-1).max())
+    bridge = max(crack, CRACK * network.panel_size) if crack > ROUNDED * grid else 0.0
+    bridge = bridge if network.numbers is None else max(bridge, BRIDGED * network.panel_size)
+    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=grid)
     united = shapely.buffer(united, -bridge) if bridge else united
     largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
+
+
+def moved_nodes(
+    deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Where the nodes of a sheet are after a motion (P, 3).
+
+    Returns
+    -------
+    nodes : (N, 2) float, mm
+        Halfway between the corners that panels have there; not a number where there is no panel left.
+    corners : (P, 4, 2) float, mm
+        Of the panels, before they were trimmed.
+    table : (P, 4) int
+        The nodes that they belong to.
+    """
+    tables = deployment.topology
+    flat, _ = _flat_nodes(deployment, width_mm)
+    table = tables.panel_nodes.reshape(-1, 4)[_numbers(network)]
+    corners = _turned(flat[table] - network.centroids[:, None], np.repeat(motion[:, 2, None], 4, axis=1))
+    corners += (network.centroids + motion[:, :2])[:, None]
+    sums = [np.bincount(table.ravel(), corners[..., axis].ravel(), tables.node_count) for axis in (0, 1)]
+    shared = np.bincount(table.ravel(), minlength=tables.node_count)[:, None]
+    nodes = np.divide(np.stack(sums, axis=1), shared, out=np.full((tables.node_count, 2), np.nan), where=shared > 0)
+    return nodes, corners, table
+
+
+def _numbers(network: PanelNetwork) -> IntArray:
+    """Numbers (P,) of the network's panels in their sheet."""
+    return np.arange(network.panel_count) if network.numbers is None else network.numbers
 
 
 def _flat_nodes(deployment: Deployment, width_mm: float) -> tuple[FloatArray, float]:

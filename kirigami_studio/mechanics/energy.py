@@ -11,7 +11,14 @@ form, which is singular where both points coincide).  A void angle a below a_c a
 
     E = (k_c / 4) a_c^2 (1 / (x + 1) - 1 / (x - 1) - 2),    x = (a - a_c) / a_c,
 
-which grows without bound as the void closes.  Points of the plane are complex numbers here: a turn is a product, and
+which grows without bound as the void closes.  A point that is stopped by an edge adds
+
+    E = -k g^3 / (6 s) for -s < g < 0,    E = k (g^2 / 2 + s g / 2 + s^2 / 6) for g < -s,
+    g = n . (R(-theta_A) (x_B - x_A) - r_A)
+
+with the edge's normal n and place r_A on panel A, and the point's place x_B: g is its distance from the edge, negative
+behind it, where the stiffness grows to k within the depth s.  (Were it there at once, Newton's method would not get
+over the kink.)  Points of the plane are complex numbers here: a turn is a product, and
 all derivatives of e are short.
 """
 
@@ -60,14 +67,15 @@ class NetworkEnergy:
         self._slender = np.flatnonzero(joints.slender)
         self._axis = np.where(joints.slender, np.angle(span), joints.axis)
         self.rest: ComplexArray = span * np.exp(-1j * self._axis)
-        self.freedoms: IntArray = (3 * joints.panels[:, :, None] + np.arange(3)).reshape(len(joints), SIX)
+        self.freedoms = _freedoms(joints.panels)
+        self._stopped = _freedoms(network.stops.panels)
 
     @cached_property
     def _pattern(self) -> tuple[csc_array, IntArray]:
-        """A matrix with the Hessian's entries, and to which of them every entry of the ligaments' blocks adds."""
-        size = 3 * self.network.panel_count
-        row = np.repeat(self.freedoms, SIX, axis=1).ravel()
-        column = np.tile(self.freedoms, (1, SIX)).ravel()
+        """A matrix with the Hessian's entries, and to which of them every entry of the blocks adds."""
+        size, freedoms = 3 * self.network.panel_count, np.concatenate([self.freedoms, self._stopped])
+        row = np.repeat(freedoms, SIX, axis=1).ravel()
+        column = np.tile(freedoms, (1, SIX)).ravel()
         filled = csc_array((np.ones(row.size), (row, column)), shape=(size, size))
         filled.sort_indices()
         keys = np.repeat(np.arange(size), np.diff(filled.indptr)) * size + filled.indices
@@ -82,7 +90,8 @@ class NetworkEnergy:
         elastic = 0.5 * float(
             np.sum(joints.stretching * stretch**2 + joints.shearing * shear**2 + joints.turning * turn**2)
         )
-        return elastic + float(np.sum(self._contact(motion)[0]))
+        stopped = float(np.sum(self._stopping(self._distances(motion)[0])[0]))
+        return elastic + stopped + float(np.sum(self._contact(motion)[0]))
 
     def gradient(self, motion: FloatArray) -> FloatArray:
         """Derivative (3 P,) of the energy by the motion: N for u_x and u_y, N mm for theta."""
@@ -101,7 +110,8 @@ class NetworkEnergy:
         for one, other, sign in ((2, 2, 1.0), (5, 5, 1.0), (2, 5, -1.0), (5, 2, -1.0)):
             blocks[:, one, other] += sign * turning
         pattern, place = self._pattern
-        values = np.bincount(place, weights=blocks.ravel(), minlength=pattern.nnz)
+        entries = np.concatenate([blocks.ravel(), self._stiffening(motion).ravel()])
+        values = np.bincount(place, weights=entries, minlength=pattern.nnz)
         hessian = csc_array((values, pattern.indices, pattern.indptr), shape=pattern.shape)
         return self._assembled(force, by_freedom, motion), hessian
 
@@ -210,6 +220,47 @@ class NetworkEnergy:
             curvature[near] = scale * 2.0 * ((y + 1.0) ** -3 - (y - 1.0) ** -3)
         return energy, slope, curvature
 
+    def _distances(self, motion: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """g of every stop (T,), mm, its slopes (T, 6) and its second derivatives (T, 6, 6) by the freedoms of A and B.
+
+        Infinite for panels that are not near each other.
+        """
+        stops = self.network.stops
+        edge, point = stops.panels.T
+        centres, u = _plane(self.network.centroids), motion[:, 0] + 1j * motion[:, 1]
+        turn = np.exp(1j * motion[:, 2])
+        normal = np.conj(_plane(stops.normal))
+        back = np.conj(turn[edge]) * normal
+        arm = back * turn[point] * (_plane(stops.point) - centres[point])
+        seen = back * (centres[point] + u[point] - centres[edge] - u[edge]) + arm
+        gap = (seen - normal * (_plane(stops.foot) - centres[edge])).real
+        slopes = np.stack([-back, -1j * back, -1j * seen, back, 1j * back, 1j * arm], axis=-1).real
+        bends = np.zeros((len(stops), SIX, SIX))
+        for moved, sign in ((0, -1.0), (3, 1.0)):
+            bends[:, moved, 2] = bends[:, 2, moved] = (-1j * sign * back).real
+            bends[:, moved + 1, 2] = bends[:, 2, moved + 1] = (sign * back).real
+        bends[:, 2, 2], bends[:, 5, 5] = -seen.real, -arm.real
+        bends[:, 2, 5] = bends[:, 5, 2] = arm.real
+        turned = self.network.turns(motion)[stops.ligament] * np.sign(stops.turned)
+        return np.where(turned > np.abs(stops.turned), gap, np.inf), slopes, bends
+
+    def _stopping(self, gap: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Energy of every stop (T,), its slope and its curvature by g."""
+        stiffness, soft = self.network.stops.stiffness, self.network.stops.soft
+        depth = np.maximum(-gap, 0.0)
+        rising = depth < soft
+        energy = np.where(rising, depth**3 / (6.0 * soft), 0.5 * depth**2 - 0.5 * soft * depth + soft**2 / 6.0)
+        slope = -np.where(rising, 0.5 * depth**2 / soft, depth - 0.5 * soft)
+        return stiffness * energy, stiffness * slope, stiffness * np.minimum(depth / soft, 1.0)
+
+    def _stiffening(self, motion: FloatArray) -> FloatArray:
+        """Blocks (T, 6, 6) that stops add to the Hessian."""
+        gap, slopes, bends = self._distances(motion)
+        _, push, stiffness = self._stopping(gap)
+        square = slopes[:, :, None] * slopes[:, None]
+        blocks: FloatArray = stiffness[:, None, None] * square + push[:, None, None] * bends
+        return blocks
+
     def _assembled(self, force: FloatArray, by_freedom: FloatArray, motion: FloatArray) -> FloatArray:
         joints, contacts = self.network.ligaments, self.network.contacts
         parts = np.einsum("li,lia->la", force, by_freedom)
@@ -219,7 +270,16 @@ class NetworkEnergy:
         parts[:, 5] += moment
         size = 3 * self.network.panel_count
         total = np.bincount(self.freedoms.ravel(), weights=parts.ravel(), minlength=size)
+        gap, slopes, _ = self._distances(motion)
+        pushed = self._stopping(gap)[1][:, None] * slopes
+        total += np.bincount(self._stopped.ravel(), weights=pushed.ravel(), minlength=size)
         return np.asarray(total, dtype=np.float64)
+
+
+def _freedoms(panels: IntArray) -> IntArray:
+    """Degrees of freedom (K, 6) of pairs of panels (K, 2)."""
+    found: IntArray = (3 * panels[:, :, None] + np.arange(3)).reshape(len(panels), SIX)
+    return found
 
 
 def _plane(points: FloatArray) -> ComplexArray:

@@ -47,7 +47,7 @@ class StretchEstimate:
     flat_room: float
 
     def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
-        """Angle (0 to pi) at which a connector is stretched by more than it tolerates or panels touch; 0 if neither."""
+        """Angle at which a connector is stretched too far or panels touch; 0 if neither."""
         phi = np.concatenate([[math.pi], self.phi])
         worst = np.concatenate([[0.0], self.stretch.max(axis=1)])
         if self.phi[-1] > CLOSED:

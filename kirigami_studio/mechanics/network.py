@@ -2,13 +2,14 @@
 
 Every panel has three degrees of freedom, a displacement u and a turn theta about its centroid c, so that a point that
 lies at r from the centroid at rest is at ``x = c + u + R(theta) r``.  A ligament joins a point of panel A to a point of
-panel B.  A contact is a void angle that a ligament's turn changes; it resists below a few degrees.
+panel B.  A contact is a void angle that a ligament's turn changes; it resists below a few degrees.  A *stop* is a
+place where a point of one panel runs into an edge of another.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -87,6 +88,48 @@ class Contacts:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Stops:
+    """Points of panels that edges of other panels stop.
+
+    Attributes
+    ----------
+    panels : (T, 2) int
+        The panel with the edge, and the one with the point.
+    point : (T, 2) float, mm
+        The point at rest.
+    foot, normal : (T, 2) float, mm and unit vectors
+        A place on the edge at rest, and the direction out of its panel there.
+    ligament : (T,) int
+        The ligament whose turn tells whether the panels are near each other.
+    turned : (T,) float, radians
+        They are where theta_B - theta_A of the ligament has this sign and is larger than this.
+    stiffness : (T,) float, N/mm
+        Slope of the force against the depth of the point behind the edge.
+    soft : (T,) float, mm
+        Depth to which that slope grows from nothing.
+    """
+
+    panels: IntArray
+    point: FloatArray
+    foot: FloatArray
+    normal: FloatArray
+    ligament: IntArray
+    turned: FloatArray
+    stiffness: FloatArray
+    soft: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.panels)
+
+    @classmethod
+    def none(cls) -> Stops:
+        """No stops at all."""
+        numbers, places, values = np.zeros(0, dtype=np.intp), np.zeros((0, 2)), np.zeros(0)
+        pairs = np.zeros((0, 2), dtype=np.intp)
+        return cls(pairs, places, places.copy(), places.copy(), numbers, values, values.copy(), values.copy())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PanelNetwork:
     """Panels, ligaments and contacts, all in mm and N.
 
@@ -99,6 +142,7 @@ class PanelNetwork:
         Corners of the panels at rest, for pictures and silhouettes; may be empty, (P, 0, 2).
     numbers : (P,) int or None
         Which panels of a sheet they are, row by row, where trimming took others; None for all.
+    stops : Stops
 
     Raises
     ------
@@ -112,9 +156,10 @@ class PanelNetwork:
     contacts: Contacts
     outlines: FloatArray
     numbers: IntArray | None = None
+    stops: Stops = field(default_factory=Stops.none)
 
     def __post_init__(self) -> None:
-        count, joints = len(self.centroids), self.ligaments
+        count, joints, stops = len(self.centroids), self.ligaments, self.stops
         if count < 2 or not len(joints):
             raise MechanicsError("network.too_small", panels=count, ligaments=len(joints))
         length = len(joints.panels)
@@ -132,6 +177,14 @@ class PanelNetwork:
             "contact signs": (self.contacts.sign, (len(self.contacts),)),
             "contact angles": (self.contacts.rest, (len(self.contacts),)),
             "contact stiffness": (self.contacts.stiffness, (len(self.contacts),)),
+            "panels of stops": (stops.panels, (len(stops), 2)),
+            "points of stops": (stops.point, (len(stops), 2)),
+            "edges of stops": (stops.foot, (len(stops), 2)),
+            "normals of stops": (stops.normal, (len(stops), 2)),
+            "ligaments of stops": (stops.ligament, (len(stops),)),
+            "turns of stops": (stops.turned, (len(stops),)),
+            "stiffness of stops": (stops.stiffness, (len(stops),)),
+            "softness of stops": (stops.soft, (len(stops),)),
         }
         for name, (values, shape) in shapes.items():
             check_values(name, values, shape)
@@ -152,7 +205,10 @@ class PanelNetwork:
     def _check_joints(self) -> None:
         """Refuse ligaments that join nothing, or too little."""
         count, joints = len(self.centroids), self.ligaments
-        for table, last in ((joints.panels, count - 1), (self.contacts.ligament, len(joints) - 1)):
+        for table, last in (
+            (joints.panels, count - 1), (self.contacts.ligament, len(joints) - 1),
+            (self.stops.panels, count - 1), (self.stops.ligament, len(joints) - 1),
+        ):  # fmt: skip
             if table.size and not 0 <= table.min() <= table.max() <= last:
                 worst = int(table.max() if table.max() > last else table.min())
                 raise MechanicsError("network.number_out_of_range", number=worst, last=last)

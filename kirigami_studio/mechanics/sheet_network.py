@@ -10,13 +10,21 @@ import numpy as np
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import MechanicsError
+from kirigami_studio.mechanics.bow_contacts import DEEP, MARGIN, Meetings
 from kirigami_studio.mechanics.connectors import (
     ElasticSheet,
     SheetConnectors,
     plane_stiffness,
     turning_stiffness,
 )
-from kirigami_studio.mechanics.network import CONTACT_BELOW, CONTACT_STIFFNESS, Contacts, Ligaments, PanelNetwork
+from kirigami_studio.mechanics.network import (
+    CONTACT_BELOW,
+    CONTACT_STIFFNESS,
+    Contacts,
+    Ligaments,
+    PanelNetwork,
+    Stops,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +71,9 @@ class SheetNetwork:
         return bent * self.connectors.width_mm + pulled, bent * softer + pulled
 
 
-def sheet_network(panels: FloatArray, connectors: SheetConnectors, sheet: ElasticSheet) -> SheetNetwork:
+def sheet_network(
+    panels: FloatArray, connectors: SheetConnectors, sheet: ElasticSheet, meetings: Meetings | None = None
+) -> SheetNetwork:
     """Join the panels of a flat sheet.
 
     Parameters
@@ -73,6 +83,8 @@ def sheet_network(panels: FloatArray, connectors: SheetConnectors, sheet: Elasti
         are not numbers (NaN).
     connectors : SheetConnectors
     sheet : ElasticSheet
+    meetings : Meetings, optional
+        Where panels with bows run into each other.
 
     Raises
     ------
@@ -108,7 +120,24 @@ def sheet_network(panels: FloatArray, connectors: SheetConnectors, sheet: Elasti
         rest=np.concatenate([math.pi - connectors.touch, np.full(count, CONTACT_BELOW)]),
         stiffness=np.tile(CONTACT_STIFFNESS * turning, 2),
     )
-    return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy(), kept), connectors, sheet)
+    stops = Stops.none() if meetings is None else _stops(meetings, connectors, sheet, kept)
+    return SheetNetwork(PanelNetwork(centroids, ligaments, contacts, panels.copy(), kept, stops), connectors, sheet)
+
+
+def _stops(meetings: Meetings, connectors: SheetConnectors, sheet: ElasticSheet, kept: IntArray | None) -> Stops:
+    """Stops of a sheet; an edge resists as the sheet itself does, by E h."""
+    at = meetings.connector
+    panels = meetings.panels if kept is None else np.searchsorted(kept, meetings.panels)
+    return Stops(
+        panels=panels,
+        point=meetings.point,
+        foot=meetings.foot,
+        normal=meetings.normal,
+        ligament=at,
+        turned=connectors.sign[at] * (math.pi - meetings.angle - MARGIN),
+        stiffness=np.full(len(at), sheet.young_mpa * sheet.thickness_mm),
+        soft=np.full(len(at), DEEP * float(connectors.width_mm.mean())),
+    )
 
 
 def _without_lost(panels: FloatArray, numbers: IntArray) -> tuple[IntArray, IntArray | None]:

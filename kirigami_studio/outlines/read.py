@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NoReturn
@@ -17,6 +18,8 @@ from kirigami_studio.outlines.source_file import decoding, read_bytes
 #: Keys under which an object may hold its vertices, the first present one counts.
 VERTEX_KEYS = ("outline", "points")
 UNITS = ("mm", "px")
+#: Extensions of pictures, which are traced at a threshold.
+PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
 
 
 def read_target(source: str | Path) -> Outline:
@@ -135,64 +138,29 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _image(path: Path) -> Outline:
-    from kirigami_studio.outlines.read_image import read_image
+def _late(module: str, function: str) -> Callable[[Path], Any]:
+    """A reader that is imported when it is first called: ezdxf and scikit-image take a while."""
 
-    return read_image(path)
+    def read(path: Path) -> Any:
+        return getattr(import_module(f"kirigami_studio.outlines.{module}"), function)(path)
 
-
-def _svg(path: Path) -> Outline:
-    from kirigami_studio.outlines.read_svg import read_svg
-
-    return read_svg(path)
+    return read
 
 
-def _dxf(path: Path) -> Outline:
-    from kirigami_studio.outlines.read_dxf import read_dxf
-
-    return read_dxf(path)
-
-
-#: Reader by lower-case extension.  Readers are imported when first needed: ezdxf and scikit-image take a while.
+#: Reader by lower-case extension.
 READERS: Mapping[str, Callable[[Path], Outline]] = MappingProxyType(
     {
-        ".png": _image,
-        ".jpg": _image,
-        ".jpeg": _image,
-        ".bmp": _image,
-        ".svg": _svg,
-        ".dxf": _dxf,
+        **dict.fromkeys(PICTURES, _late("read_image", "read_image")),
+        ".svg": _late("read_svg", "read_svg"),
+        ".dxf": _late("read_dxf", "read_dxf"),
         ".json": read_json,
     }
 )
-
-
-def _svg_parts(path: Path) -> SourceParts:
-    from kirigami_studio.outlines.read_svg import svg_parts
-
-    return svg_parts(path)
-
-
-def _dxf_parts(path: Path) -> SourceParts:
-    from kirigami_studio.outlines.read_dxf import dxf_parts
-
-    return dxf_parts(path)
-
-
-def _image_parts(path: Path) -> SourceParts:
-    from kirigami_studio.outlines.read_image import image_parts
-
-    return image_parts(path)
-
-
 #: Readers of files that can hold several parts.
 PART_READERS: Mapping[str, Callable[[Path], SourceParts]] = MappingProxyType(
     {
-        ".svg": _svg_parts,
-        ".dxf": _dxf_parts,
-        ".png": _image_parts,
-        ".jpg": _image_parts,
-        ".jpeg": _image_parts,
-        ".bmp": _image_parts,
+        ".svg": _late("read_svg", "svg_parts"),
+        ".dxf": _late("read_dxf", "dxf_parts"),
+        **dict.fromkeys(PICTURES, _late("read_image", "image_parts")),
     }
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, fields, replace
+from dataclasses import MISSING, asdict, fields, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
 from kirigami_studio.fabricate.machine import OLDER_ENTRIES
-from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.material import OLD_LIMIT, Material, with_entries_of_now
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ProjectError
@@ -260,7 +260,10 @@ def _nodes(record: Record) -> Nodes:
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
     lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
-    own = None if settings.own is None else {name: one for name, one in asdict(settings.own).items() if one is not None}
+    own = None
+    if settings.own is not None:
+        own = {name: one for name, one in asdict(settings.own).items() if one is not None}
+        own["sources"] = dict(settings.own.sources)
     return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
 
 
@@ -280,7 +283,13 @@ def _fabrication(record: Record) -> FabricationSettings:
 def _own_material(record: Record) -> Material:
     """The numbers of a material; those of its machine stand in older files."""
     older = {name: record.number(name) for name in OLDER_ENTRIES if record.holds(name)}
-    return Material(**_plain_fields(record, Material), **older)
+    limits = {OLD_LIMIT: record.number(OLD_LIMIT)} if record.holds(OLD_LIMIT) else {}
+    newer: dict[str, Any] = {name: record.text(name) for name in ("construction", "style") if record.holds(name)}
+    if record.holds("sources"):
+        newer["sources"] = record.texts("sources")
+    # The note is longer than a name; a material makes plain text of it itself.
+    note = {"note": record.verbatim("note")}
+    return Material(**with_entries_of_now(limits) | _plain_fields(record, Material) | older | newer | note)
 
 
 def _hinge(entry: object) -> int:
@@ -301,9 +310,9 @@ def _hinge_width(entry: object) -> tuple[int, float]:
 def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
-    plain = {entry.name: read[str(entry.type)](entry.name) for entry in fields(kind) if entry.type in read}
-    # Longer than a name; a material makes plain text of it itself.
-    return plain | {"note": record.verbatim("note")} if kind is Material else plain
+    entries = [entry for entry in fields(kind) if entry.type in read]
+    wanted = [entry for entry in entries if entry.default is MISSING or record.holds(entry.name)]
+    return {entry.name: read[str(entry.type)](entry.name) for entry in wanted}
 
 
 def _candidate_json(

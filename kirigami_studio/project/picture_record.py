@@ -13,11 +13,10 @@ from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.plain_text import plain_line
+from kirigami_studio.outlines.read import PICTURES
 from kirigami_studio.project.json_record import Record, read_json
 
 RECORD = "picture.json"
-#: Kinds of pictures that a project can store, by the extension of their member.
-EXTENSIONS = (".png", ".jpg", ".jpeg", ".bmp")
 #: Larger pictures are not stored.
 LARGEST_PICTURE = 16 * 2**20
 
@@ -55,8 +54,8 @@ class TracedPicture:
     size: tuple[int, int]
 
     def __post_init__(self) -> None:
-        if "\0" in self.name or Path(self.name).name != self.name or Path(self.name).suffix.lower() not in EXTENSIONS:
-            raise ProjectError("picture.not_a_picture_name", name=self.name, extensions=", ".join(EXTENSIONS))
+        if "\0" in self.name or Path(self.name).name != self.name or Path(self.name).suffix.lower() not in PICTURES:
+            raise ProjectError("picture.not_a_picture_name", name=self.name, extensions=", ".join(PICTURES))
         if len(self.content) > LARGEST_PICTURE:
             megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
             raise ProjectError("picture.too_large", name=self.name, megabytes=megabytes, limit=limit)

@@ -42,6 +42,8 @@ class MotionPreference(StrEnum):
     STILL = "still"
 
 
+#: Entries of earlier versions that mean nothing now.
+RETIRED = ("tour_seen",)
 _NAME = Setting(code="preferences.not_a_name", error=ProjectError).metadata
 _NAME_OR_NONE = Setting(may_be_empty=True, code="preferences.not_a_name", error=ProjectError).metadata
 _CHOICE = Setting(code="preferences.unknown_choice", error=ProjectError).metadata
@@ -61,8 +63,6 @@ class Preferences:
     theme : Theme
     language : str
         Code of the window's language, or "system" for the desktop's.
-    tour_seen : bool
-        Whether the guided tour was taken before.
     material : str
         Key of the material that was chosen last.
     machine : str
@@ -81,7 +81,6 @@ class Preferences:
     dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)
     theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
     language: str = field(default="system", metadata=_NAME)
-    tour_seen: bool = field(default=False, metadata=_FLAG)
     material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
     machine: str = field(default="", metadata=_NAME_OR_NONE)
     paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
@@ -149,6 +148,8 @@ def load(path: Path) -> Preferences:
         return Preferences()
     except (OSError, ValueError) as error:
         raise ProjectError("preferences.not_readable", path=path, reason=str(error)) from error
+    for name in RETIRED:
+        entries.pop(name, None)
     if unknown := entries.keys() - asdict(Preferences()).keys():
         raise ProjectError("preferences.unknown_entries", path=path, names=", ".join(sorted(unknown)))
     return Preferences(**entries)

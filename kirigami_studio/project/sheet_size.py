@@ -76,7 +76,7 @@ def set_opened_size(document: Document, longer_mm: float) -> Edit:
 
 
 def target_as_cut(document: Document) -> tuple[Outline | None, tuple[Outline, ...]]:
-    """The target and the objects that it was drawn of, as large as the sheet will show them once it is cut."""
+    """The target and its objects, as large as the sheet shows them once it is cut."""
     target, size = document.target, size_of(document)
     if target is None or size is None or size.agrees:
         return target, document.drawing
@@ -86,7 +86,7 @@ def target_as_cut(document: Document) -> tuple[Outline | None, tuple[Outline, ..
 def _resized(
     target: Outline, drawing: tuple[Outline, ...], size: tuple[float, float]
 ) -> tuple[Outline, tuple[Outline, ...]]:
-    """A target of another width and height, mm, in its place, with the objects that it was drawn of around it."""
+    """A target of another width and height, mm, with the objects it was drawn of around it."""
     placed = Placed.on_board(target)
     factor = size[0] / placed.size[0]
     objects = (Placed.on_board(each).enlarged(factor, placed.centre) for each in drawing)

@@ -293,7 +293,7 @@ def stored_material(settings: FabricationSettings) -> Material | None:
 
 
 def material_for(settings: FabricationSettings) -> Material:
-    """Return the material that the settings name, from the library or as the project has it, as their machine cuts it.
+    """Return the material of the settings as their machine cuts it, from library or project.
 
     Raises
     ------
@@ -308,12 +308,12 @@ def material_for(settings: FabricationSettings) -> Material:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine that the settings name; None where they name none, or one that is not there."""
+    """Return the machine of the settings; None where they name none, or an unknown one."""
     return machines().items.get(settings.machine) if settings.machine else None
 
 
 def machine_for(settings: FabricationSettings) -> Machine:
-    """Return the machine that cuts: the one that is named, else the one that the material is for.
+    """Return the machine of the settings, or else the one that their material is for.
 
     Raises
     ------
@@ -324,7 +324,7 @@ def machine_for(settings: FabricationSettings) -> Machine:
 
 
 def machine_changes(settings: FabricationSettings, machine: Machine) -> FabricationChange:
-    """The changes that come with a machine: its profile, and where it does not cut the material, one that it cuts."""
+    """The changes that come with a machine: its profile and, if need be, another material."""
     changes: FabricationChange = {"machine": machine.key, "profile": machine.profile}
     if machine.kind is not machine_for(settings).kind:
         changes |= {"connector_mm": None, "kerf_mm": None}  # those of the material on the other machine
@@ -334,8 +334,24 @@ def machine_changes(settings: FabricationSettings, machine: Machine) -> Fabricat
     return changes
 
 
+def material_changes(settings: FabricationSettings, key: str) -> FabricationChange:
+    """Changes that come with a material: connector and kerf; a usual size becomes its own."""
+    changes: FabricationChange = {"material": key, "connector_mm": None, "kerf_mm": None}
+    try:
+        before, after = material_for(settings), material_for(replace(settings, material=key))
+    except FabricationError:
+        return changes
+    if settings.opened_mm == before.sheet_mm:
+        changes["opened_mm"] = after.sheet_mm
+    elif settings.opened_mm is None and settings.width_mm == before.sheet_mm:
+        changes["width_mm"] = after.sheet_mm
+    return changes
+
+
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: the material that is given, else one that the given machine cuts.
+    """Settings without a project: with the given material, or one that the machine cuts.
+
+    The width is the material's usual one unless given.
 
     Raises
     ------
@@ -348,7 +364,9 @@ def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     if given.get("machine") is not None and given.get("material") is None:
         changes = machine_changes(usual, find_machine(given["machine"]))
         usual = replace(usual, material=changes.get("material", usual.material))
-    return with_choices(usual, given)
+    material = material_for(with_choices(usual, given))
+    own_style = replace(usual.options, style=material.style)
+    return with_choices(replace(usual, width_mm=material.sheet_mm, options=own_style), given)
 
 
 def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> FabricationSettings:

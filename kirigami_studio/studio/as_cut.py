@@ -17,8 +17,9 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
-from kirigami_studio.fabricate.centres import bending_lengths
+from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
+from kirigami_studio.fabricate.cut_panels import CutPanels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.making_room import long_enough
@@ -26,11 +27,14 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
+from kirigami_studio.fabricate.strain import StrainFigure, Survival, survival, used_up
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
+from kirigami_studio.mechanics.bow_contacts import NONE as NO_CONNECTOR
+from kirigami_studio.mechanics.bow_contacts import Meetings, meetings
 from kirigami_studio.mechanics.closing import (
     CLOSED,
     TOLERATED_STRETCH,
@@ -40,8 +44,14 @@ from kirigami_studio.mechanics.closing import (
     ideal_motion,
     silhouette,
 )
-from kirigami_studio.mechanics.connectors import ElasticSheet, cut_connectors, flexure_length, junctions
-from kirigami_studio.mechanics.estimate import estimate_stretch
+from kirigami_studio.mechanics.connectors import (
+    ElasticSheet,
+    SheetConnectors,
+    cut_connectors,
+    flexure_length,
+    junctions,
+)
+from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for
@@ -70,13 +80,6 @@ class Source(Enum):
     SIMULATION = "simulation"  #: closed step by step on the connectors of its planned cuts
 
 
-class StrainFigure(Enum):
-    """Which of the two figures of a connector's strain is believed."""
-
-    IN_PLANE = "in_plane"  #: bent across the width, as card is
-    OUT_OF_PLANE = "out_of_plane"  #: buckled and bent across the thickness, as film is
-
-
 @dataclass(frozen=True, slots=True)
 class AsCut:
     """What is expected of a cut sheet.
@@ -91,12 +94,15 @@ class AsCut:
     stretch : float
         Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not.
     strain : float
-        Largest strain on the way to where the sheet comes to, of the figure that is believed.
+        Strain, of the figure that is believed, of the connector nearest to breaking on the way to where the sheet
+        comes to.
     figure : StrainFigure
     iou, ideal_iou : float or None
         Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
         and without a target.
     source : Source
+    strain_limit, thinness, yields_at : float
+        Of that connector, see :class:`Survival`.
 
     Raises
     ------
@@ -113,9 +119,17 @@ class AsCut:
     iou: float | None = None
     ideal_iou: float | None = None
     source: Source = Source.SIMULATION
+    strain_limit: float = math.inf
+    thinness: float = 0.0
+    yields_at: float = 0.0
 
     def __post_init__(self) -> None:
         check_phi(self.jam_phi)
+
+    @property
+    def survival(self) -> Survival:
+        """Whether its connectors survive, and by which figure."""
+        return Survival(self.strain, self.figure, self.thinness, self.strain_limit, self.yields_at)
 
     @property
     def closes(self) -> bool:
@@ -150,12 +164,12 @@ class AsCut:
         return tr("closes") if self.phi < CLOSE_TO else tr("opens to {phi:.0f}°", phi=math.degrees(self.phi))
 
     def to_json(self) -> dict[str, object]:
-        """For the command line: the jam, the match as cut (null where it is not known) and the largest strain."""
+        """For the command line: jam, match as cut (null where it is not known), largest strain."""
         return {**jam_json(self), "iou": self.iou, "max_strain": self.strain}
 
 
 def jam_json(found: AsCut | None) -> dict[str, object]:
-    """Where a sheet jams and how that is known, for every JSON that tells it; nulls where nothing is known."""
+    """Where a sheet jams and how that is known, for every JSON; nulls where nothing is known."""
     if found is None:
         return {"jam_deg": None, "jam_from": None}
     return {"jam_deg": found.jam_deg, "jam_from": found.source.value}
@@ -171,6 +185,10 @@ class SimulatedSheet:
     closing : Closing
     node : (H,) int
         Node of the lattice at which each connector is.
+    width_mm : float
+        Width of the flat sheet.
+    panels : CutPanels
+        As the cuts leave them, in the frame of the closing's network.
     made : Deployment or None
         The sheet that is cut where that is not quite the design.
     """
@@ -178,6 +196,8 @@ class SimulatedSheet:
     as_cut: AsCut
     closing: Closing
     node: IntArray
+    width_mm: float
+    panels: CutPanels
     made: Deployment | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
@@ -191,9 +211,11 @@ class SimulatedSheet:
         found: FloatArray = (1.0 - share) * stretch[before] + share * stretch[after]
         return found
 
-    def motion(self, width_mm: float) -> CutMotion:
-        """What an animation shows of it; ``width_mm`` is that of the flat sheet."""
-        return CutMotion(self.closing, width_mm, self.as_cut.jam_phi, self.as_cut.reached, self.made)
+    @property
+    def motion(self) -> CutMotion:
+        """What pictures and animations show of it."""
+        found = self.as_cut
+        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -243,12 +265,11 @@ def planned_sheet(
         # A straight slit's connector bends over a span; arcs and bars make it longer.
         longer = np.where(hinges.removed, 0.0, hinges.flexure_mm - hinges.requested_mm - plan.kerf_mm)
     polygons = panels_in_mm(deployment, () if kept is None else kept, width_mm, np.zeros(2))
+    shift = _shift_of(plan, polygons)
     centres = None
     if on_nodes:
         centres = found.place
     elif plan.centres is not None:
-        # The plan has its own origin.
-        shift = next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
         centres = plan.centres + shift
     connectors = cut_connectors(
         found,
@@ -257,9 +278,25 @@ def planned_sheet(
         centres,
         np.where(longer > LONGER_MM, longer, 0.0),
     )
+    bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
     young = plan.material.young_gpa if young_gpa is None else young_gpa
     elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
-    return sheet_network(polygons_as_rows(polygons), connectors, elastic)
+    return sheet_network(polygons_as_rows(polygons), connectors, elastic, bows)
+
+
+def _shift_of(plan: CutPlan, polygons: Sequence[FloatArray]) -> FloatArray:
+    """From the frame of a plan to that of the flat sheet's panels (2,), mm: the plan has an origin of its own."""
+    return next(one[0] - other[0] for one, other in zip(polygons, plan.panels, strict=True) if len(one))
+
+
+def _meetings(connectors: SheetConnectors, plan: CutPlan, deployment: Deployment, shift: FloatArray) -> Meetings:
+    """Where panels with the bows of a plan run into each other."""
+    table = cut_table(*deployment.sheet.grid)
+    there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
+    number = np.full(table.hinge_count + 1, NO_CONNECTOR)  # the last one for corners without a hinge
+    number[there] = np.arange(len(there))
+    panels = plan.cut_panels.moved(shift).numbered(len(plan.panels))
+    return meetings(panels, connectors, number[void_hinges(table)], plan.kerf_mm)
 
 
 def _longer_by_bows(flexure_mm: FloatArray, width_mm: FloatArray, kerf_mm: float) -> FloatArray:
@@ -322,24 +359,45 @@ def estimate(
     chosen = material_for(settings) if material is None else material
     sheet = _unplanned_sheet(deployment, settings, chosen)
     found = estimate_stretch(deployment, sheet, settings.width_mm)
-    jam = found.jam_phi()
-    jam = 0.0 if jam <= ESTIMATE_CLOSES else jam
+    jam = estimated_jam(found)
     largest = float(found.stretch[: max(1, int(np.sum(found.phi >= phi)))].max())
     blame = Outcome.STRETCHED if float(found.stretch.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     outcome = Outcome.CLOSES if jam <= phi + CLOSE_TO else blame
-    figure = believed_figure(sheet)
-    turn = np.full(len(sheet.connectors), math.pi - (phi if outcome is Outcome.CLOSES else max(jam, phi)))
-    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
-    strain = in_plane if figure is StrainFigure.IN_PLANE else out_of_plane
-    return AsCut(jam, phi, outcome, largest, float(strain.max(initial=0.0)), figure, source=Source.ESTIMATE)
+    figures = _both_figures(sheet, phi if outcome is Outcome.CLOSES else max(jam, phi))
+    judged = survival(chosen, sheet.connectors.width_mm, *figures)
+    return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
-def least_strain(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> float:
-    """Strain of the least strained connector at an angle (radians), without planning the cuts: none can bear less."""
+def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
+    """Angle (radians) at which a sheet is estimated to jam; 0 where its contacts give."""
+    jam = found.jam_phi(tolerated)
+    return 0.0 if jam <= ESTIMATE_CLOSES else jam
+
+
+def all_break(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> bool:
+    """Whether all connectors break at an angle (radians), without planning the cuts."""
     sheet = _unplanned_sheet(deployment, settings, material)
+    return bool(np.all(used_up(material, sheet.connectors.width_mm, *_both_figures(sheet, phi)) > 1.0))
+
+
+def _both_figures(sheet: SheetNetwork, phi: float) -> tuple[FloatArray, FloatArray]:
+    """Strains (H,), in the plane and out of it, of connectors bent to an angle (radians), not pulled."""
     turn = np.full(len(sheet.connectors), math.pi - phi)
-    in_plane, out_of_plane = sheet.strains(turn, np.zeros(len(turn)))
-    return float((in_plane if believed_figure(sheet) is StrainFigure.IN_PLANE else out_of_plane).min())
+    return sheet.strains(turn, np.zeros(len(turn)))
+
+
+def _made(
+    jam: float,
+    phi: float,
+    outcome: Outcome,
+    stretch: float,
+    judged: Survival,
+    source: Source,
+    lap: Overlap | None = None,
+) -> AsCut:
+    iou, ideal = (None, None) if lap is None else (lap.iou_as_cut, lap.iou_ideal)
+    known = judged.strain, judged.figure, iou, ideal, source, judged.limit, judged.thinness, judged.yields_at
+    return AsCut(jam, phi, outcome, stretch, *known)
 
 
 def estimates(candidates: Iterable[Candidate], settings: FabricationSettings) -> dict[Candidate, AsCut]:
@@ -398,7 +456,9 @@ def simulate(
         lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
-    return SimulatedSheet(_simulated(sheet, found, jam, phi, lap), found, node, plan.made)
+    panels = plan.cut_panels.moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
+    as_cut = _simulated(plan.material, found, jam, phi, lap)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
 
 
 def simulated(
@@ -419,35 +479,34 @@ def simulated(
     return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept))
 
 
-def _simulated(sheet: SheetNetwork, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
-    figure = believed_figure(sheet)
-    strain = found.in_plane if figure is StrainFigure.IN_PLANE else found.out_of_plane
+def _simulated(material: Material, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
     closes = jam <= phi + CLOSE_TO
     reached = phi if closes else jam
     worst = found.stretch.max(axis=1)
     largest = float(worst[_until(found, phi)].max())
     blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
-    return AsCut(
-        jam,
-        phi,
-        Outcome.CLOSES if closes else blame,
-        largest,
-        float(strain[_until(found, reached)].max()),
-        figure,
-        None if lap is None else lap.iou_as_cut,
-        None if lap is None else lap.iou_ideal,
-    )
+    until = _until(found, reached)
+    judged = survival(material, found.sheet.connectors.width_mm, found.in_plane[until], found.out_of_plane[until])
+    return _made(jam, phi, Outcome.CLOSES if closes else blame, largest, judged, Source.SIMULATION, lap)
+
+
+def breaking_phi(material: Material, found: Closing) -> float | None:
+    """Angle (radians) of a closing at which its first connector breaks; None where all survive."""
+    widths = found.sheet.connectors.width_mm
+    shares = used_up(material, widths, found.in_plane, found.out_of_plane).max(axis=1)
+    over = np.flatnonzero(shares > 1.0)
+    if not over.size:
+        return None
+    last = int(over[0])
+    if last == 0:
+        return float(found.phi[0])
+    share = (1.0 - shares[last - 1]) / (shares[last] - shares[last - 1])
+    return float(found.phi[last - 1] + share * (found.phi[last] - found.phi[last - 1]))
 
 
 def _until(found: Closing, phi: float) -> slice:
     """The steps of a closing up to an angle (radians)."""
     return slice(max(1, int(np.sum(found.phi >= phi - CLOSE_TO))))
-
-
-def believed_figure(sheet: SheetNetwork) -> StrainFigure:
-    """A sheet thinner than its narrowest connector is wide buckles out of the plane; a thicker one cannot."""
-    thin = sheet.sheet.thickness_mm < float(sheet.connectors.width_mm.min())
-    return StrainFigure.OUT_OF_PLANE if thin else StrainFigure.IN_PLANE
 
 
 def overlap(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -207,9 +208,9 @@ def _enclosed(path: Path) -> FabricationSettings | None:
 
 
 def _design_of(document: Document, identity: str) -> int | None:
-    """Number of the design with an identity, the chosen one first; None without one."""
-    first = [] if document.chosen is None else [document.chosen]
-    for number in [*first, *range(len(document.candidates))]:
+    """Number of the design with an identity, the chosen one first; None where the project does not have it."""
+    first = range(0) if document.chosen is None else range(document.chosen, document.chosen + 1)
+    for number in chain(first, range(len(document.candidates))):
         if _identity(document.candidates[number]) == identity:
             return number
     return None

@@ -236,7 +236,7 @@ def run_design(
 
 
 def why_untrimmed(result: Result) -> Note | None:
-    """Reason why a run that was to trim trimmed no design; None where there is none."""
+    """Why no design of a run was trimmed as asked for; None where one is."""
     if not result.request.trim or any(one.trim is not None for one in result.candidates):
         return None
     return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})

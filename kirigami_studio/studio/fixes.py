@@ -20,6 +20,7 @@ from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -31,7 +32,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
 from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
-from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, StrainFigure, estimate, least_strain
+from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
 
@@ -92,7 +93,7 @@ class Fix:
 
     @property
     def line(self) -> str:
-        """What to do, and what is then to be expected."""
+        """The change, and the verdict that it leads to."""
         return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
 
     def edit(self, document: Document) -> Edit:
@@ -149,7 +150,7 @@ class Advice:
         return tuple(fix.line for fix in self.fixes)
 
     def lines_for(self, verdict: Verdict) -> tuple[str, ...]:
-        """A verdict with what was tried: each fix below the worst problem that it solves, others at the end."""
+        """A verdict with fixes: each below the worst problem that it solves, others at the end."""
         told: list[str] = [verdict.words]
         left = list(self.fixes)
         for problem in verdict.problems:
@@ -317,7 +318,7 @@ class _Search:
         settings, phi = change.settings, change.candidate.final_phi
         try:
             material = material_for(settings)
-            if least_strain(motion, settings, phi, material) > material.strain_limit:
+            if all_break(motion, settings, phi, material):
                 return True
             found = estimate(motion, settings, phi, material)
         except KirigamiError:
@@ -436,10 +437,10 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 
 
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
-    """Every other material with its own numbers and centred connectors; of a chosen machine, what that cuts."""
+    """All other materials with centred connectors; of a chosen machine, those that it cuts."""
     machine = named_machine(settings)
     for key, material in (library().materials if machine is None else cuttable(machine)).items():
-        if key != settings.material and material.connectors_hold:
+        if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)

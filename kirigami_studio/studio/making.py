@@ -84,6 +84,23 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
+class TimedDesign:
+    """Time of cutting a design.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    settings : FabricationSettings
+        How it is cut.
+    seconds : float
+    """
+
+    candidate: Candidate
+    settings: FabricationSettings
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class Output:
     """What is to be written.
 
@@ -235,7 +252,7 @@ def chosen_candidate(document: Document) -> Candidate:
 
 
 def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | None]:
-    """Choose the first design, from the chosen one on, whose cuts the sheet survives.
+    """Choose the first design of a project, from the chosen one on, that survives its cuts.
 
     Returns
     -------
@@ -365,6 +382,7 @@ def written(
     as_cut: AsCut | str | None,
     motion: CutMotion | None = None,
     on_written: Callable[[Path], None] | None = None,
+    picture_phi: float | None = None,
 ) -> ExportedFiles:
     """Write the files of a planned sheet, read them back and judge it; nothing appears that was not verified.
 
@@ -376,9 +394,11 @@ def written(
     as_cut : AsCut, str or None
         As :func:`closed` tells; None where nobody has looked, for the verdict.
     motion : CutMotion, optional
-        What an animation shows.
+        What pictures and animations show instead of the ideal motion.
     on_written : callable, optional
         Gets each path of a whole set once it is there, and may raise to stop.
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
 
     Raises
     ------
@@ -390,7 +410,8 @@ def written(
     from kirigami_studio.export.registry import export
     from kirigami_studio.export.verification import FORMATS
 
-    job, path = replace(export_job(request, made), motion=motion, simulated_jam=jam_of(as_cut)), output.path
+    job = replace(export_job(request, made), motion=motion, picture_phi=picture_phi, simulated_jam=jam_of(as_cut))
+    path = output.path
 
     def told(verifications: Sequence[Verification]) -> Mapping[str, object]:
         return judged(request, made, as_cut, verifications).to_json()
@@ -424,11 +445,11 @@ def exporting(
     """
     importing.import_exporters()
     importing.import_as_cut()
-    from kirigami_studio.export.registry import export, find_exporter
+    from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
     if output.name is None:
-        find_exporter(path)  # an unknown kind is refused before anything is planned
+        find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(export_job(request, None), path), None)
             return
@@ -505,7 +526,7 @@ def exporting_coupon(
 
 
 def jam_of(as_cut: AsCut | str | None) -> float | None:
-    """Angle (radians) at which a simulated sheet jams; None without a simulation."""
+    """Where a simulated sheet jams (radians); None where that is unknown."""
     return None if as_cut is None or isinstance(as_cut, str) else as_cut.jam_phi
 
 
@@ -514,7 +535,7 @@ def jam_of(as_cut: AsCut | str | None) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """What is expected of some designs as cut, and the material that they were estimated in.
+    """Estimates of some designs as cut, and their material.
 
     Designs that cannot be cut at all are left out.
     """
@@ -563,7 +584,7 @@ def animating(
             raise
         except KirigamiError as error:
             why = str(error)
-    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion(request.settings.width_mm)
+    shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
     written = export(replace(export_job(request, None), motion=shown), path)
     yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
@@ -615,6 +636,18 @@ def gripping(
     end = max(sheet.as_cut.reached, CLOSED)
     steps = grip_steps(sheet.made or deployment, sheet.closing.sheet, width_mm, end)
     yield from in_turns(steps, cancel)
+
+
+def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDesign]:
+    """Yield the cutting times of designs, but for those whose cuts cannot be planned."""
+    importing.import_as_cut()
+    for request in requests:
+        try:
+            made = planned(request, cancel)
+        except FabricationError:
+            continue  # which planning explains once it is chosen
+        times = made.plan.times if made.work is None else made.work.times
+        yield TimedDesign(request.candidate, request.settings, times.total)
 
 
 def estimating(

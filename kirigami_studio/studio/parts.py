@@ -15,10 +15,10 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.outlines.merging import Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
-from kirigami_studio.studio.targets import PICTURES, TargetRead, design_of, reading_target
+from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0

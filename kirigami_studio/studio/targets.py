@@ -23,7 +23,7 @@ from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from kirigami_studio.outlines.read_image import Traced
     from kirigami_studio.outlines.symmetry import TargetSymmetry
 
-#: Extensions of targets that are traced at a threshold.
-PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
 #: Problems of drawings whose lines may be meant as they are painted.
 OPEN_LINES = ("lines.open_at", "lines.not_closed")
 #: Longer side of the picture as it is kept for drawing, pixels.
@@ -344,8 +342,8 @@ class TargetReading:
     start_refusal: str = ""
 
 
-def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
-    """Measure how symmetric a request's target is, and choose a grid for it."""
+def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Cancel) -> Iterator[TargetReading]:
+    """Measure how symmetric a request's target is; take the ``chosen`` grid, or choose one."""
     from kirigami_studio.outlines.symmetry import symmetry_of
     from kirigami_studio.pipeline.auto_grid import known_for
 
@@ -355,8 +353,16 @@ def reading_shape(request: Request, cancel: Cancel) -> Iterator[TargetReading]:
     except KirigamiError as error:
         yield TargetReading(found, None, str(error))
     else:
-        grid = choice.grid if request.grid is None else request.grid
-        yield TargetReading(found, choice.grid, choice.reason, start_refusal(request.start, grid, request.rim))
+        expected, reason = choice.grid, choice.reason
+        if chosen is not None:
+            rows, columns = expected = chosen
+            reason = tr(
+                "The designs have {rows} x {columns} voids: the grid that was chosen for this target.",
+                rows=rows,
+                columns=columns,
+            )
+        grid = expected if request.grid is None else request.grid
+        yield TargetReading(found, expected, reason, start_refusal(request.start, grid, request.rim))
 
 
 def _symmetry_sentence(found: TargetSymmetry) -> str:

@@ -1,4 +1,4 @@
-"""The verdict on a design: does it match, does it fit the material, does it close as cut, are its files right.
+"""The verdict on a design: does it match, fit the material, close as cut; are its files right.
 
 One value for a design and the settings that it is cut with, made of what reading its files back found, of the check of
 its cut plan, of how the sheet does as cut, and of what the material bears.  Window, report, record, command line and
@@ -8,7 +8,7 @@ Python show this one value.  What is only estimated says so, and gives way to th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
@@ -18,6 +18,7 @@ from kirigami_studio.fabricate.checks import PlanReport, check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
 from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.strain import StrainFigure, strain_note
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import mark, number, tr
@@ -31,7 +32,6 @@ from kirigami_studio.studio.as_cut import (
     AsCut,
     Outcome,
     Source,
-    StrainFigure,
     jam_json,
     simulate,
 )
@@ -42,8 +42,10 @@ if TYPE_CHECKING:
 
 #: What the check of a plan finds about strain; the verdict has one sentence for it, without advice that nobody tried.
 STRAINED = frozenset({"plan.strain_choose_style", "plan.strain_larger_sheet"})
+#: Fields that both have.
+STRAIN_FIELDS = ("strain_percent", "limit_percent", "material", "why")
 #: Warnings of that check that mean that the sheet does not survive.
-FATAL = frozenset({"plan.material_does_not_hold"})
+FATAL = frozenset({"plan.material_does_not_hold", "plan.material_needs_backing"})
 #: Findings about panels smaller than the material needs.
 TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
 #: Notes of a plan that mean that a person does not get what was asked for.
@@ -60,9 +62,9 @@ SIGNS_OF_A_JAM = frozenset(
 #: Worth that a connector which stretches by its whole width costs: where designs match alike, calm connectors decide.
 STRETCH = 0.05
 #: Match (IoU) from which a silhouette counts as that of its target.  For a disc it means an edge that is 5 % of the
-#: radius off all round: 2.5 mm on a shape 100 mm wide, which is about what an eye forgives.
+#: radius off all round: 2.5 mm on a shape 100 mm wide.
 MATCHES = 0.90
-#: Below this it is another shape: the best square on a disc, or a rectangle on a heart, come to 0.75 to 0.84.
+#: Below this it is another shape: a plain square comes to 0.66 on a star and to 0.70 on a butterfly.
 MATCHES_ROUGHLY = 0.75
 #: A jam that costs no more match (IoU) than this is no more than nearly a jam: being forced shut costs film as much.
 LITTLE_LOST = 0.02
@@ -106,7 +108,7 @@ class Question(Enum):
     FILES = "files"  #: do its files read back as planned
 
 
-class State(Enum):
+class AnswerState(Enum):
     """How a question is answered; the values are the names in JSON."""
 
     GOOD = "good"
@@ -117,22 +119,22 @@ class State(Enum):
 
 #: What each answer is called; how a sheet closes has its own words.
 _ANSWERS = {
-    (Question.MATCHES, State.GOOD): mark("matches"),
-    (Question.MATCHES, State.CARE): mark("matches roughly"),
-    (Question.MATCHES, State.BAD): mark("does not match"),
-    (Question.MATCHES, State.OPEN): mark("match not known"),
-    (Question.FITS, State.GOOD): mark("fits the material"),
-    (Question.FITS, State.CARE): mark("hardly fits the material"),
-    (Question.FITS, State.BAD): mark("does not fit the material"),
-    (Question.FITS, State.OPEN): mark("material not checked"),
-    (Question.CLOSES, State.GOOD): mark("closes"),
-    (Question.CLOSES, State.CARE): mark("closing not known"),
-    (Question.CLOSES, State.BAD): mark("overlaps itself"),
-    (Question.CLOSES, State.OPEN): mark("not closed yet"),
-    (Question.FILES, State.GOOD): mark("files are right"),
-    (Question.FILES, State.CARE): mark("files need a look"),
-    (Question.FILES, State.BAD): mark("files are wrong"),
-    (Question.FILES, State.OPEN): mark("no files read yet"),
+    (Question.MATCHES, AnswerState.GOOD): mark("matches"),
+    (Question.MATCHES, AnswerState.CARE): mark("matches roughly"),
+    (Question.MATCHES, AnswerState.BAD): mark("does not match"),
+    (Question.MATCHES, AnswerState.OPEN): mark("match not known"),
+    (Question.FITS, AnswerState.GOOD): mark("fits the material"),
+    (Question.FITS, AnswerState.CARE): mark("hardly fits the material"),
+    (Question.FITS, AnswerState.BAD): mark("does not fit the material"),
+    (Question.FITS, AnswerState.OPEN): mark("material not checked"),
+    (Question.CLOSES, AnswerState.GOOD): mark("closes"),
+    (Question.CLOSES, AnswerState.CARE): mark("closing not known"),
+    (Question.CLOSES, AnswerState.BAD): mark("overlaps itself"),
+    (Question.CLOSES, AnswerState.OPEN): mark("not closed yet"),
+    (Question.FILES, AnswerState.GOOD): mark("files are right"),
+    (Question.FILES, AnswerState.CARE): mark("files need a look"),
+    (Question.FILES, AnswerState.BAD): mark("files are wrong"),
+    (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
 _MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
@@ -162,17 +164,17 @@ def question_of(finding: Note) -> Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class VerdictAnswer:
     """The answer to a question, in a word."""
 
     question: Question
-    state: State
+    state: AnswerState
     word: str
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is to be expected of a design that is cut, and why.
+    """Expectations of a design that is cut, and the reasons.
 
     A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
 
@@ -217,32 +219,32 @@ class Verdict:
 
     @property
     def words(self) -> str:
-        """The level, and that it is an estimate where it is one; nobody expects what was not looked for."""
+        """The level, marked where it is an estimate."""
         if not self.is_estimate:
             return self.level.words
         return tr("{level} (estimate)", level=self.level.words) if self.is_checked else tr("Not checked yet")
 
     @property
     def is_checked(self) -> bool:
-        """Whether there is a verdict at all: a sheet without a problem that nobody has closed has none."""
+        """Whether there is a verdict: a sheet without a problem that nobody has closed has none."""
         return self.as_cut is not None or bool(self.problems) or not self.is_estimate
 
     @property
-    def answers(self) -> tuple[Answer, ...]:
+    def answers(self) -> tuple[VerdictAnswer, ...]:
         """To each question one, in their order."""
         return tuple(self.answer(question) for question in Question)
 
-    def answer(self, question: Question) -> Answer:
+    def answer(self, question: Question) -> VerdictAnswer:
         """The answer to a question: by the worst problem that is about it."""
         found = [problem for problem in self.problems if question_of(problem) is question]
-        state = _STATES[_level_of(found)] if found or self._knows(question) else State.OPEN
+        state = _STATES[_level_of(found)] if found or self._knows(question) else AnswerState.OPEN
         if question is Question.MATCHES and self.match is not None:
-            own = State.GOOD if self.match >= MATCHES else State.CARE
-            state = State.BAD if self.match < MATCHES_ROUGHLY else max(state, own, key=list(State).index)
+            own = AnswerState.GOOD if self.match >= MATCHES else AnswerState.CARE
+            state = AnswerState.BAD if self.match < MATCHES_ROUGHLY else max(state, own, key=list(AnswerState).index)
         word = tr(_ANSWERS[question, state])
         if question is Question.CLOSES and self.as_cut is not None and "rank.not_feasible" not in _codes(found):
             word = self.as_cut.word
-        return Answer(question, state, word)
+        return VerdictAnswer(question, state, word)
 
     def _knows(self, question: Question) -> bool:
         """Whether somebody has looked for the answer."""
@@ -255,7 +257,7 @@ class Verdict:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The list that is shown everywhere: its level, then every problem, the answers, and every note."""
+        """The list that is shown everywhere: level, problems, answers, notes."""
         problems, notes = ([note.text for note in part] for part in (self.problems, self.notes))
         return (self.words, *problems, self.summary, *notes)
 
@@ -298,7 +300,7 @@ class Verdict:
         }
 
 
-_STATES = {Level.READY: State.GOOD, Level.CARE: State.CARE, Level.FAILS: State.BAD}
+_STATES = {Level.READY: AnswerState.GOOD, Level.CARE: AnswerState.CARE, Level.FAILS: AnswerState.BAD}
 
 
 def _codes(found: Iterable[Note]) -> set[str]:
@@ -338,7 +340,7 @@ def assess(
     planned: tuple[CutPlan, PlanReport] | None = None,
     verifications: Sequence[Verification] = (),
 ) -> Assessment:
-    """Plan the cuts of a design, check them, close the sheet on its connectors, and judge, all in one go.
+    """Plan the cuts of a design, check them, close the sheet, and judge, all in one go.
 
     Parameters
     ----------
@@ -370,7 +372,7 @@ def assess(
 def closed_as_cut(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, target: Outline | None = None
 ) -> AsCut | str:
-    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that cannot be told."""
+    """How a planned sheet of a width (mm) does as cut, simulated in one go, or why that is open."""
     return result_of(closing_as_cut(candidate, deployment, plan, width_mm, target))
 
 
@@ -388,7 +390,7 @@ def closing_as_cut(
 
 @dataclass(frozen=True, slots=True)
 class CloseLook:
-    """What a close look at a design found.
+    """Findings of a close look at a design.
 
     Attributes
     ----------
@@ -404,14 +406,14 @@ class CloseLook:
 
     @property
     def loss(self) -> float:
-        """Worth (IoU) that the design loses by being cut: match, and for the stretch of its connectors."""
+        """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
         return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
-    """Plan and check the cuts of a design as these settings ask for, and close it on its connectors, in one go."""
+    """Plan and check the cuts of a design, and close it on its connectors, in one go."""
     return result_of(looking(candidate, settings, target))
 
 
@@ -421,7 +423,7 @@ def looking(
     target: Outline | None = None,
     cancel: Callable[[], bool] = lambda: False,
 ) -> Generator[None, None, CloseLook]:
-    """Look at a design closely, see :func:`look_at`; yields between the steps, for others to have their turn.
+    """Look at a design closely, see :func:`look_at`; yields between the steps, for other jobs.
 
     Raises
     ------
@@ -459,7 +461,7 @@ def judge(
     as_cut: AsCut | str | None,
     verifications: Sequence[Verification] = (),
 ) -> Verdict:
-    """Judge a sheet by everything that is known of it.
+    """Judge a sheet by all that is known of it.
 
     Parameters
     ----------
@@ -484,7 +486,8 @@ def judge(
     ]
     if isinstance(as_cut, str):
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
-    notes: list[Note] = [*plan.notes, *(note for one in verifications for note in one.warnings)]
+    warned = (note for one in verifications for note in one.warnings)
+    notes: list[Note] = [*plan.notes, *_strain_notes(plan, known), *warned]
     if known is not None and known.closes:
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]
     told = {problem.text for problem in problems}
@@ -501,7 +504,7 @@ def judge(
 def expected(
     candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None, material: Material | None = None
 ) -> Verdict:
-    """An estimate of the verdict, made in no time for designs that nobody has planned the cuts of.
+    """An estimate of the verdict on a design whose cuts nobody has planned.
 
     Parameters
     ----------
@@ -519,14 +522,14 @@ def expected(
         *_of_room(candidate, ranking),
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
-        *([] if as_cut is None or material is None else _strained(material, [as_cut.strain])),
+        *([] if as_cut is None or material is None else _of_expected_strain(material, as_cut)),
         *_of_match(as_cut),
     ]
     return Verdict(_worst_first(problems), (), Source.ESTIMATE, as_cut, match_of(candidate, as_cut))
 
 
 def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
-    """IoU that the target is shown with: as cut where that is known, else as designed, trimmed if it is."""
+    """IoU with the target: as cut where that is known, else as designed and trimmed."""
     if as_cut is not None and as_cut.iou is not None:
         return as_cut.iou
     return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
@@ -561,7 +564,7 @@ def _of_design(candidate: Candidate) -> list[Problem]:
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
-    """What the check of a plan says of small panels, known from the design's own sizes."""
+    """Panels that are too small, by the design's own sizes."""
     if ranking.wide_enough(candidate):
         return []
     size = candidate.score.evenness.least_feature_mm(ranking.width_mm)
@@ -569,14 +572,14 @@ def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
 
 
 def _of_refusal(refusal: Note) -> list[Problem]:
-    """Why a close look refused a design; ranking alone by an estimate, or not at all, is no finding about it."""
+    """The finding of a close look; a rank by an estimate, or without a look, is none."""
     if refusal.code in ("rank.jams", "rank.not_looked_at"):
         return []
     return [refusal if isinstance(refusal, Problem) else Problem(refusal.code, refusal.fields, Severity.ERROR)]
 
 
 def _of_match(as_cut: AsCut | None) -> list[Problem]:
-    """Match that is lost by cutting; how well the design itself matches is an answer, and no problem."""
+    """Match that is lost by cutting; that of the design itself is an answer, and no problem."""
     if as_cut is None or as_cut.iou is None or as_cut.ideal_iou is None or (as_cut.lost or 0.0) <= LITTLE_LOST:
         return []
     values = {"match_percent": 100.0 * as_cut.iou, "designed_percent": 100.0 * as_cut.ideal_iou}
@@ -586,7 +589,7 @@ def _of_match(as_cut: AsCut | None) -> list[Problem]:
 
 
 def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut | None) -> list[Problem]:
-    """What two readers found in the files, once where several have it, and jams that only a file shows."""
+    """Findings of two readers, once where several files have them, and jams that only a file shows."""
     names: dict[tuple[Severity, str], list[str]] = {}
     jams = []
     for one in verifications:
@@ -623,20 +626,29 @@ def _of_jam(as_cut: AsCut | None) -> list[Problem]:
 
 
 def _of_strain(plan: CutPlan, report: PlanReport, as_cut: AsCut | None) -> list[Problem]:
-    """One sentence for connectors that break, by the larger of the plan's estimate and the simulated strain."""
+    """One problem for connectors that break, by the larger of planned and simulated strain."""
     planned = [problem for problem in report.problems if problem.code in STRAINED]
-    strains = [0.01 * float(str(problem.fields["strain_percent"])) for problem in planned]
-    return _strained(
-        plan.material,
-        [*strains, *([] if as_cut is None else [as_cut.strain])],
-        planned[0].where if planned else None,
-    )
+    found = [{name: problem.fields[name] for name in STRAIN_FIELDS} for problem in planned]
+    if as_cut is not None and as_cut.survival.breaks:
+        found.append(dict(strain_note(plan.material, as_cut.survival).fields))
+    return _strained(found, planned[0].where if planned else None)
 
 
-def _strained(material: Material, strains: Sequence[float], where: tuple[float, float] | None = None) -> list[Problem]:
-    """Whether the largest of these strains is more than the material bears: the one place that compares them."""
-    strain, limit = max(strains, default=0.0), material.strain_limit
-    if strain <= limit:
+def _of_expected_strain(material: Material, as_cut: AsCut) -> list[Problem]:
+    found = as_cut.survival
+    return _strained([strain_note(material, found).fields] if found.breaks else [])
+
+
+def _strained(found: Sequence[Mapping[str, object]], where: tuple[float, float] | None = None) -> list[Problem]:
+    """One sentence for connectors that break, of the strain that is furthest above its limit."""
+    if not found:
         return []
-    values = {"strain_percent": 100.0 * strain, "material": material.name, "limit_percent": 100.0 * limit}
-    return [Problem.error("as_cut.breaks", where, **values)]
+    worst = max(found, key=lambda fields: float(str(fields["strain_percent"])) / float(str(fields["limit_percent"])))
+    return [Problem.error("as_cut.breaks", where, **worst)]
+
+
+def _strain_notes(plan: CutPlan, as_cut: AsCut | None) -> list[Note]:
+    """Note on the strain that a sheet survives, and whether its connectors stay bent."""
+    if as_cut is None or as_cut.survival.breaks:
+        return []
+    return [strain_note(plan.material, as_cut.survival)]

@@ -230,7 +230,7 @@ def test_that_every_make_target_shown_exists(present: dict[Path, str], repositor
 def test_that_planted_faults_are_found(repository: Path) -> None:
     text = (
         "See [the map](docs/map.md), [here](README.md) and ![it](docs/pictures/none.png).\n"
-        "`lattice/gone.py` and `lattice/marching.py`, `tests/unit/nowhere`, `kirigami_studio/gone.py`, 10 m/s.\n\n"
+        "`lattice/gone.py` and `lattice/compact.py`, `tests/unit/nowhere`, `kirigami_studio/gone.py`, 10 m/s.\n\n"
         "    kirigami-studio benchmark lattice --json   # fits\n"
         "    kirigami-studio benchmark lattice --variant prior\n"
         "    make demo\n"
@@ -239,6 +239,6 @@ def test_that_planted_faults_are_found(repository: Path) -> None:
     assert dead_links(repository / "README.md", text) == ["docs/map.md", "docs/pictures/none.png"]
     found = missing_paths(repository, text)
     assert {"lattice/gone.py", "tests/unit/nowhere", "kirigami_studio/gone.py"} <= set(found)
-    assert "lattice/marching.py" not in found
+    assert "lattice/compact.py" not in found
     assert refused_commands(text) == ["benchmark lattice --variant prior"]
     assert missing_targets("demo: setup\n", text) == ["tea"]

@@ -12,8 +12,8 @@ import pytest
 @pytest.mark.parametrize(
     ("module", "definition", "said"),
     [
-        ("lattice/marching.py", "march", r"Eq\. 2"),
-        ("lattice/marching.py", "void_angle", r"parity rule \(Eq\. 1\)"),
+        ("lab/baselines/marching.py", "march", r"Eq\. 2"),
+        ("lab/baselines/marching.py", "void_angle", r"parity rule \(Eq\. 1\)"),
         ("evaluate/siou.py", None, r"sIoU"),
         ("evaluate/total_variation.py", None, r"[Tt]otal variation"),
         ("lab/training/flow_path.py", "cfm_loss", r"Eq\. \d"),

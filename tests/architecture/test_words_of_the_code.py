@@ -20,7 +20,7 @@ DIALECT = re.compile(r"\b(a person|told)\b", re.IGNORECASE)
 OFFENDERS = {
     "": 1,
     "evaluate": 94,
-    "export": 86,
+    "export": 71,
     "fabricate": 120,
     "generator": 45,
     "gui": 398,

@@ -12,12 +12,14 @@ from PySide6.QtCore import QModelIndex, QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.stage.grip_items import grip_places
 from kirigami_studio.gui.stage.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.making import planned
 
 LEFT = Qt.MouseButton.LeftButton
 Until = Callable[[Callable[[], bool]], None]
@@ -133,6 +135,60 @@ def test_that_the_track_says_where_it_jams(slider: PhiSlider) -> None:
     assert slider.marks()[0].kind is MarkKind.JAM and slider.marks()[0].words == "40° jams"
     assert "Jams at 40.0° as cut" in slider.toolTip()
     assert slider.stopped(1800) == value_at(JAM)
+
+
+def test_that_the_flat_sheet_is_drawn_with_all_cuts_of_its_plan_and_the_switch_shows_the_ideal_one(
+    closed: MainWindow,
+) -> None:
+    view, bar = closed.stage.view, closed.stage.deployment
+    bar.set_phi(math.pi)
+    pose, design = view.shown_as_cut, view.design
+    assert pose is not None and design is not None and bar.as_cut_button.isVisibleTo(closed)
+    request = closed.controller.cutting.request
+    assert request is not None
+    plan = planned(request).plan
+    mm = design.mm_per_world(plan.size_mm[0])
+    cut = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in pose.cuts) * mm
+    # Every cut is an edge of two panels, the outline of one; edge cuts begin a little outside.
+    outline = sum(path.length for path in plan.on_layer(Layer.OUTLINE))
+    over = len(plan.on_layer(Layer.EDGE_SLITS)) * plan.overcut_mm
+    assert cut == pytest.approx(2.0 * (plan.cut_length_mm - outline - over) + outline, rel=5e-4)
+    as_cut = view.grab().toImage()
+    closed.commands["as_cut"].trigger()
+    assert view.shown_as_cut is None and not bar.as_cut.isChecked() and view.grab().toImage() != as_cut
+    closed.commands["as_cut"].trigger()
+    assert view.grab().toImage() == as_cut
+
+
+def test_that_the_sheet_as_cut_is_drawn_at_every_angle_up_to_its_jam(jammed: MainWindow) -> None:
+    view, bar, sheet = jammed.stage.view, jammed.stage.deployment, jammed.controller.as_cut.state.sheet
+    assert sheet is not None
+    jam = sheet.as_cut.reached
+    before = None
+    for phi in np.linspace(math.pi, jam, 7).tolist():
+        bar.set_phi(phi)
+        pose = view.shown_as_cut
+        assert pose is not None and pose.phi == pytest.approx(phi, abs=1e-3)
+        assert before is None or not np.allclose(pose.nodes, before.nodes)
+        before = pose
+    bar.set_phi(0.5 * jam)
+    view.grab()
+    assert view.shown_as_cut is not None and view.shown_as_cut.phi == pytest.approx(jam)
+    said = [chip.text for chip, _ in view.legend(view.fontMetrics())]
+    assert f"as cut, stopped at {math.degrees(jam):.0f}°" in said
+    jammed.commands["ideal"].trigger()
+    assert view.shown_as_cut is None
+    bar.set_phi(jam)
+    assert view.shown_as_cut is not None
+
+
+def test_that_the_sample_and_a_draft_are_drawn_in_their_ideal_motion(closed: MainWindow, until: Until) -> None:
+    view = closed.stage.view
+    assert view.shown_as_cut is not None
+    closed.commands["hand"].trigger()
+    closed.controller.hand.nudge(frozenset({(1, 1)}), 0.2)
+    assert view.shown_as_cut is None
+    until(lambda: view.shown_as_cut is not None)
 
 
 def test_that_connectors_show_their_stretch(jammed: MainWindow) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.pdf import read_pages
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.gui.files.file_dialogs import follow_filter
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -30,7 +30,7 @@ FIRST_BYTES = {
 
 
 def test_that_the_window_offers_what_the_exporters_write() -> None:
-    assert [kind.extension for kind in FILE_KINDS] == list(exporters())
+    assert [kind.extension for kind in FILE_KINDS] == list(WRITERS)
 
 
 @pytest.mark.parametrize("extension", [kind.extension for kind in FILE_KINDS])

@@ -68,11 +68,6 @@ def shortcuts(window: MainWindow) -> QWidget:
     return window.dialogs.shortcuts
 
 
-def tour(window: MainWindow) -> QWidget:
-    window.commands["tour"].trigger()
-    return window.tour.callout
-
-
 def board(window: MainWindow) -> QWidget:
     window.target.set_editing(True)
     return window.target
@@ -102,7 +97,7 @@ def inner(widget: QWidget) -> bool:
 
 
 def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow) -> None:
-    for opened in (whole, cuts, tour, materials, guide, shortcuts, library, board):
+    for opened in (whole, cuts, materials, guide, shortcuts, library, board):
         place = opened(designed)
         QApplication.processEvents()
         controls = [one for one in place.findChildren(QWidget) if isinstance(one, CONTROLS) and not inner(one)]

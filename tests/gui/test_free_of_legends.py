@@ -99,7 +99,7 @@ def test_that_both_sides_of_a_comparison_are_fitted_alike(designed: MainWindow) 
     QApplication.processEvents()
     for overlays in (USUAL, USUAL | {Overlay.RATIOS}):
         designed.stage.compare.set_overlays(overlays)
-        left, right = (side.view for side in designed.stage.compare.sides)
+        left, right = (pane.view for pane in designed.stage.compare.shown)
         assert left.scene_box() == right.scene_box()
 
 

@@ -193,12 +193,10 @@ def test_that_the_empty_gallery_is_german(window: MainWindow) -> None:
 
 
 @pytest.mark.usefixtures("german")
-def test_that_the_tour_is_german(designed: MainWindow) -> None:
-    designed.tour.start()
-    assert designed.tour.callout.title.text() == "Ein Ziel wählen"
-    designed.tour.callout.next.click()
-    assert designed.tour.callout.title.text() == "Entwürfe erzeugen"
-    designed.tour.end()
+def test_that_the_welcome_page_is_german(window: MainWindow) -> None:
+    page = window.stage.welcome
+    assert page.headline.text() == "Mit einem Ziel beginnen"
+    assert page.offers["edit_target"].text() == "Form zeichnen" and page.guide.text() == "Handbuch"
 
 
 def without_room(designed: MainWindow) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -17,6 +18,7 @@ from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import choose_grid
 from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.project import store
 from kirigami_studio.project.document import Document, Mark
 
 Until = Callable[[Callable[[], bool]], None]
@@ -32,6 +34,25 @@ def wheel(widget: QWidget) -> None:
     none, nothing = Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier
     where, phase = widget.mapToGlobal(place), Qt.ScrollPhase.NoScrollPhase
     QApplication.sendEvent(widget, QWheelEvent(place, where, QPoint(), QPoint(0, 240), none, nothing, phase, False))
+
+
+def test_that_an_opened_project_shows_the_grid_that_was_chosen_for_its_designs(
+    window: MainWindow, designs: Document, tmp_path: Path, until: Until
+) -> None:
+    settings, path = window.settings, tmp_path / "auto.kiri"
+    store.save(replace(designs, settings=replace(designs.settings, auto_grid=True, grid=(4, 5))), path)
+    for _ in range(2):  # opening it again changes nothing
+        window.services.project.open(path)
+        until(lambda: window.session.stage is not None and not window.session.queue.busy)
+        until(lambda: settings.auto.accessibleDescription() != "" and not window.session.queue.busy)
+        assert (settings.rows.value(), settings.columns.value()) == (4, 5)
+        assert "4 x 5" in settings.auto.accessibleDescription()
+    window.services.settings.change(symmetry="none")  # another run, which would choose a grid by itself
+    until(lambda: "Expected match" in settings.auto.accessibleDescription())
+    assert (settings.rows.value(), settings.columns.value()) != (4, 5)
+    window.commands["undo"].trigger()
+    until(lambda: "4 x 5" in settings.auto.accessibleDescription())
+    assert (settings.rows.value(), settings.columns.value()) == (4, 5)
 
 
 def test_that_the_grid_is_chosen_by_the_target_until_a_number_is_given(

@@ -122,8 +122,8 @@ def test_that_a_form_that_nobody_touched_changes_nothing(qtbot: QtBot) -> None:
     for material in presets().values():
         form.show_value(material, editable=True)
         assert form.changes() == {}, material.key
-    form.numbers["strain_limit"].setValue(12.5)
-    assert form.changes() == {"strain_limit": 0.125}
+    form.numbers["break_strain"].setValue(12.5)
+    assert form.changes() == {"break_strain": 0.125}
 
 
 def test_that_every_number_says_its_unit(editor: MaterialEditor) -> None:

@@ -12,11 +12,15 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
+from kirigami_studio.gui.gallery.badges import badges_of, closing_text
+from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.as_cut import Source
 from kirigami_studio.studio.verdict import Level
 
 LEFT = Qt.MouseButton.LeftButton
+STAR = Path(__file__).parents[1] / "data" / "projects" / "star_jams_at_143.kiri"
 Until = Callable[[Callable[[], bool]], None]
 
 
@@ -133,3 +137,62 @@ def test_that_a_ready_sheet_is_reported_as_verified(ready: MainWindow, until: Un
     assert report is not None and report.judged is not None and report.judged.ok
     assert report.verdict.text().startswith("Verified")
     assert ready.messages.messages[-1].tone is Tone.DONE
+
+
+def test_that_card_table_stage_panel_report_and_record_tell_the_same_of_a_star_that_jams(
+    window: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    services, model = window.services, window.gallery.view.model_
+    services.project.open(STAR)
+    until(lambda: bool(services.estimates.known) and not services.estimates.busy)
+    (candidate,) = services.session.document.candidates
+    guessed = services.estimates.known[candidate]
+    assert guessed.closes and guessed.source is Source.ESTIMATE, "the estimate does not see this jam"
+    until(lambda: services.verdict.state.known and not services.verdict.state.pending)
+    verdict, sheet = services.verdict.state.verdict, services.as_cut.state.sheet
+    assert verdict is not None and sheet is not None and verdict.level is Level.FAILS
+    assert verdict.as_cut == sheet.as_cut and not verdict.is_estimate
+    word = f"jams at {verdict.as_cut.jam_deg:.0f}°"
+    shown = model.index(0, 0).data(VERDICT_ROLE)
+    assert shown == verdict and closing_text(shown) == word
+    assert [badge.text for badge in badges_of(shown)][:1] == ["Will not work"] and word in {
+        badge.text for badge in badges_of(shown)
+    }
+    tip = str(model.index(0, 0).data(Qt.ItemDataRole.ToolTipRole))
+    assert word in tip and "(estimate)" not in tip and "cuttable" not in tip
+    assert window.stage.as_cut.text().startswith(word.capitalize())
+    assert window.stage.deployment.slider.jam == verdict.as_cut.jam_phi
+    assert window.stage.verdict.headline.text().startswith("Will not work")
+    assert window.fabrication.warnings.text().startswith("Will not work: ")
+    services.exporter.export_all(tmp_path / "all", "star")
+    until(lambda: window.dialogs.report is not None)
+    report = window.dialogs.report
+    assert report is not None and report.verdict.text().startswith("Will not work: ") and word in report.answers.text()
+    record = json.loads((tmp_path / "all" / "star.json").read_text())["verdict"]
+    assert (record["jam_deg"], record["jam_from"]) == (verdict.as_cut.jam_deg, "simulation")
+    assert record["answers"]["closes"] == {"state": "bad", "word": word}
+    assert [problem["code"] for problem in record["problems"]] == [problem.code for problem in verdict.problems]
+
+
+def test_that_an_outdated_verdict_leaves_the_cards_at_once(ready: MainWindow, until: Until) -> None:
+    services, model = ready.services, ready.gallery.view.model_
+    candidate = services.session.document.candidates[0]
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+    services.fabrication.change(connector_mm=0.35)
+    assert model.verdict_of(candidate).words == "Not checked yet"
+    until(lambda: judged(ready))
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+    services.project.undo()
+    until(lambda: judged(ready))
+    assert model.verdict_of(candidate) == services.verdict.state.verdict
+
+
+def test_that_each_problem_is_followed_by_the_fix_that_was_tried(jamming: MainWindow) -> None:
+    state = jamming.services.verdict.state
+    assert state.verdict is not None and state.advice is not None
+    first = state.advice.fixes[0]
+    assert set(first.solves) <= {problem.code for problem in state.verdict.problems}
+    (solved, *_) = [problem for problem in state.verdict.problems if problem.code in first.solves]
+    lines = list(state.lines)
+    assert lines[lines.index(solved.text) + 1] == first.line
+    assert all(lines.count(fix.line) == 1 for fix in state.advice.fixes)

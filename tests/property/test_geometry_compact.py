@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lattice_strategies import corner_crosses, grids, local_rule_residual, polygon_areas, ratio_fields, sheets
 
+from kirigami_studio.lab.baselines.marching import march
 from kirigami_studio.lattice.compact import barycentric_stencil, solve_compact
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.marching import march
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology

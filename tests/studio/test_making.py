@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,9 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.material import library
+from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.window.services import Services
@@ -23,7 +27,8 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
-from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, exporting, planned
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, exporting, exporting_coupon, planned
+from kirigami_studio.studio.verdict import SIGNS_OF_A_JAM
 
 #: What goes wrong, and where: the verdict's sentences, the second reader, the sheet as cut.
 FAULTS = (
@@ -120,3 +125,23 @@ def test_that_an_error_in_the_verdict_is_shown_and_never_leaves_it_checking(
             assert "list index out of range" in message.sentence
     finally:
         services.close()
+
+
+def test_that_no_coupon_warns_of_a_jam_or_has_a_verdict(tmp_path: Path) -> None:
+    for material in library().materials.values():
+        (found,) = exporting_coupon(material, tmp_path / f"{material.key}.dxf", FabricationSettings(), never)
+        (read,) = found.verifications
+        said = [*read.findings, *read.warnings, *found.planned.plan.notes, *found.planned.report.problems]
+        assert not SIGNS_OF_A_JAM & {one.code for one in said} and read.void_miss_um is None
+        assert found.verdict is None and read.ok and not any("jam" in one.text for one in said)
+
+
+def test_that_a_sheet_whose_connectors_are_all_cut_is_written_and_will_not_work(
+    request_: CutRequest, tmp_path: Path
+) -> None:
+    count = cut_table(4, 4).hinge_count
+    settings = replace(request_.settings, options=CutOptions(removed=tuple(range(count))))
+    found = export(replace(request_, settings=settings), Output(tmp_path / "cut.dxf"))
+    assert (tmp_path / "cut.dxf").is_file() and found.verdict is not None
+    assert found.verdict.level is verdicts.Level.FAILS and not found.ok
+    assert found.verdict.as_cut is None and found.verdict.to_json()["jam_deg"] is None

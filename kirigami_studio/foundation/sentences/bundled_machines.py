@@ -24,12 +24,17 @@ NAMES = (
     mark("Wool felt 2 mm, diode laser"),
     mark("Leather 1.5 mm, diode laser"),
     mark("Birch plywood 3 mm, diode laser"),
+    mark("Card 0.5 mm, diode laser"),
     mark("Card 0.3 mm, scissors or knife"),
     mark("Wool felt 2 mm, scissors or knife"),
+    mark("Card 0.5 mm, scissors or knife"),
+    mark("Wool felt 3 mm, scissors or knife"),
     mark("Card 0.3 mm, drag knife"),
     mark("PET film 75-125 \N{MICRO SIGN}m, drag knife"),
     mark("Polypropylene 0.5 mm, drag knife"),
     mark("Leather 1.5 mm, drag knife"),
+    mark("Card 0.5 mm, drag knife"),
+    mark("EVA foam 2 mm, drag knife"),
     mark("diode laser"),
     mark("another machine"),
 )
@@ -106,6 +111,7 @@ NOTES = (
         "All figures are guesses: felt frays less than cloth, and a rotary cutter or a knife on a mat follows a "
         "printed line to about 0.5 mm."
     ),
+    mark("Speed, shortest slit and smallest panel: guesses. Print the PDF at 100 % and cut along its lines."),
     mark(
         "A blade removes no material, so the kerf is 0. Speed and shortest slit: estimates for a blade set to "
         "cardstock. Cut the coupon before trusting it."

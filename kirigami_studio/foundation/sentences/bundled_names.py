@@ -53,17 +53,26 @@ SILHOUETTES = (
 #: Names of materials, and the machines that they are cut with.
 MATERIALS = (
     mark("Acrylic 3 mm, CO2 laser"),
+    mark("Card 0.5 mm, CO2 laser"),
     mark("Card 0.3 mm, CO2 laser"),
-    mark("Mylar or paper, drag knife"),
+    mark("Cotton 0.3 mm, CO2 laser"),
+    mark("Paper 0.15 mm, drag knife"),
+    mark("EVA foam 2 mm, CO2 laser"),
+    mark("Wool felt 3 mm, CO2 laser"),
     mark("Wool felt 2 mm, CO2 laser"),
-    mark("PA/PI film 50 \N{MICRO SIGN}m, UV laser"),
+    mark("Polyimide film 50 \N{MICRO SIGN}m, UV laser"),
     mark("Aluminium foil 50 \N{MICRO SIGN}m, UV laser"),
     mark("Leather 1.5 mm, CO2 laser"),
+    mark("Polyamide film 50 \N{MICRO SIGN}m, UV laser"),
     mark("Paper 120-160 g/m2, scissors or knife"),
     mark("PET film 75-125 \N{MICRO SIGN}m, CO2 laser"),
     mark("Birch plywood 3 mm, CO2 laser"),
     mark("Polypropylene 0.5 mm, CO2 laser"),
+    mark("Ripstop nylon 0.08 mm, CO2 laser"),
+    mark("Silicone rubber 1 mm, CO2 laser"),
+    mark("Packing tape 50 \N{MICRO SIGN}m, drag knife"),
     mark("TPU film 0.5 mm, CO2 laser"),
+    mark("Tulle 0.2 mm, CO2 laser"),
     mark("CO2 laser"),
     mark("cutting plotter"),
     mark("UV or green pulsed laser"),
@@ -74,78 +83,93 @@ NOTES = (
     mark(  # acrylic-co2
         "Connectors break before a sheet is closed: no style, width and size up to the bed is known that holds. "
         "Kerf: 0.009 inch at 1/8 inch (table of laser504.com). Connector and smallest panel: as wide as the sheet "
-        "is thick, as cutlasercut.com advises; it calls details below 1 mm very fragile. Strain limit (0.045) and "
-        "Young's modulus (2.855 GPa): cast PMMA in the tables of designerdata.nl. Power and speed: starting values"
-        " for 40 to 60 W. Cut the coupon before trusting it."
+        "is thick, as cutlasercut.com advises; it calls details below 1 mm very fragile. Power and speed: starting "
+        "values for 40 to 60 W. Cut the coupon before trusting it."
+    ),
+    mark(  # card-05-co2
+        "Kerf: the upper end of what card has in practice. Power, speed and widths: starting values. Crease or "
+        "bend connectors slowly: the outer ply of thick card may crack. Cut the coupon before trusting it."
     ),
     mark(  # card-co2
-        "Kerf between 0.10 and 0.15 mm in practice; acceleration is a typical value. Cut the coupon before "
-        "trusting it. Strain limit: a common value for paper, 0.02 along and 0.05 across the fibres; not measured "
-        "here. Young's modulus: a common value for paper board, more along and less across the fibres."
+        "Kerf between 0.10 and 0.15 mm in practice. Crease or bend connectors slowly: the outer ply of thick card "
+        "may crack. Cut the coupon before trusting it."
+    ),
+    mark(  # cotton-co2
+        "The hinge layer of a backed sheet: glue tiles on it. Alone it is too limp to be a sheet. Starch or fray "
+        "check keeps its edges. Kerf, widths, power and speed: starting values. Cut the coupon before trusting it."
     ),
     mark(  # drag-knife
         "A blade removes no material, so the kerf is 0. Set the blade offset (often 0.25 mm) in the plotter's own "
-        "program. Strain limit: that of paper, the weaker of the two. Delays: a guess at lowering and lifting the "
-        "blade. Young's modulus: between Mylar film (3.8 to 5 GPa) and paper."
+        "program. For Mylar take PET film."
     ),
+    mark(  # eva-foam-co2
+        "Craft foam. Panels bend easily: expect a soft sheet. Kerf, widths, power and speed: starting values; "
+        "edges melt back. Cut the coupon before trusting it."
+    ),
+    mark("Kerf, power, speed and widths: starting values. Cut the coupon before trusting it."),  # felt-3-co2
     mark(  # felt-co2
-        "Thickness, kerf, connector and smallest ligament: those of the felt profile in dayangac/kirigami-"
-        "deployment. Strain limit: wool fibres stretch by up to 0.3 before they break (metricfelt.com). Young's "
-        "modulus: a guess from the tensile strength of SAE F-1 felt, 500 psi (3.4 MPa), over that strain. Power "
-        "and speed: starting values. Cut the coupon before trusting it."
+        "Thickness and kerf: those of the felt profile in dayangac/kirigami-deployment. Connectors as wide as they "
+        "must be to bend out of the plane. Power and speed: starting values. Cut the coupon before trusting it."
     ),
     mark(  # film-uv
-        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speed and passes: 0.2 mm of polycarbonate "
-        "takes 15 cuts at 40 mm/s of a UV laser (abstract of a study of thermal ablation of PC "
-        "film), so 50 \N{MICRO SIGN}m take 4; the paper's parts then take the 5 minutes that it tells. Cut the "
-        "coupon before trusting it. Strain limit: least elongation of 50 \N{MICRO SIGN}m Kapton HN film in its "
-        "general specifications (typical: 0.82). Young's modulus: data sheet of Kapton HN film (2.5"
-        " GPa)."
+        "Kerf from published polyimide cuts (20 \N{MICRO SIGN}m); speed and passes: 0.2 mm of polycarbonate takes "
+        "15 cuts at 40 mm/s of a UV laser (abstract of a study of thermal ablation of PC film), so 50 "
+        "\N{MICRO SIGN}m take 4; the paper's parts then take the 5 minutes that it tells. Cut the coupon before "
+        "trusting it."
     ),
     mark(  # foil-uv
-        "Expect connectors to fail: the aluminium sheet that the paper tried could be cut, but its connectors "
-        "broke instead of letting the panels turn. Strain limit: a common value for soft foil. All other numbers "
-        "are guesses from film of this thickness. Cut the coupon before trusting it. Young's modulus: that of "
-        "aluminium."
+        "The aluminium sheet that the paper tried could be cut, but its connectors broke instead of letting the "
+        "panels turn. Kerf, widths, power and speed: guesses from film of this thickness. Cut the coupon before "
+        "trusting it."
     ),
     mark(  # leather-co2
-        "Kerf: the upper end of the usual 0.15 to 0.2 mm (lasercutco.com). Strain limit: a common lower bound for "
-        "vegetable tanned leather, not measured here. Young's modulus: a guess from the tensile strength of cow "
-        "leather, 8 to 25 N/mm2 (leather-dictionary.com), over that strain. Both differ by hide, place and "
+        "Kerf: the upper end of the usual 0.15 to 0.2 mm (lasercutco.com). Leather differs by hide, place and "
         "direction. Power, speed and widths: starting values. Cut the coupon before trusting it."
     ),
+    mark(  # pa-film-uv
+        "The film of the paper's specimens. Kerf, speed and passes as in polyimide film. Moist air makes it "
+        "softer. Cut the coupon before trusting it."
+    ),
     mark(  # paper-hand
-        "Print the PDF at 100 % and cut along its lines. Thickness: 140 g/m2 at a bulk of 1.2 cm3/g, usual for "
-        "uncoated paper. A hand follows a printed line to about 0.5 mm: a connector of 2 mm keeps at least 1 mm "
-        "when both of its cuts run over by that much. Panels below 4 mm and cuts below 3 mm are hard to hold and "
-        "to see; a guess, as are speed and delays. Strain limit: of bending; paper is folded flat, to far more "
-        "than 0.1 at the crease, many times before it parts (folding endurance, ISO 5626), while it tears at 0.02 "
-        "to 0.05 when pulled. Young's modulus: that of paper board. Bed: a cutting mat of A3."
+        "Print the PDF at 100 % and cut along its lines. A hand follows a printed line to about 0.5 mm: a "
+        "connector of 2 mm keeps at least 1 mm when both of its cuts run over by that much. Panels below 4 mm and "
+        "cuts below 3 mm are hard to hold and to see; a guess, as is speed."
     ),
     mark(  # pet-co2
-        "Kerf as commonly reported for CO2 on thin sheet; acceleration is a typical value. Cut the coupon before "
-        "trusting it. Strain limit: typical elongation of Mylar film across the web (data sheet H-37232-3: 0.91). "
-        "Young's modulus: typical of Mylar film (3.8 to 5 GPa by direction)."
+        "Kerf as commonly reported for CO2 on thin sheet. Mylar is such a film. Cut the coupon before trusting it."
     ),
     mark(  # plywood-co2
         "Connectors break before a sheet is closed: no style, width and size up to the bed is known that holds. "
         "Kerf: 0.008 inch for birch plywood of 1/8 inch (table of laser504.com). Connector and smallest panel: as "
-        "wide as the sheet is thick, as cutlasercut.com advises; it calls details below 1 mm very fragile. Young's"
-        " modulus and strain limit: plywood of 6.9 to 9.0 GPa breaks at 38 to 66 MPa in bending, so at 0.005 to "
-        "0.007 (woodj.org, 53(4) 429, table 3). Power and speed: starting values for 40 to 60 W. Cut the coupon "
-        "before trusting it."
+        "wide as the sheet is thick, as cutlasercut.com advises; it calls details below 1 mm very fragile. Power "
+        "and speed: starting values for 40 to 60 W. Cut the coupon before trusting it."
     ),
     mark(  # polypropylene-co2
-        "Strain limit: elongation at yield of the copolymer, 0.23 by ASTM D638 in a technical data sheet (the "
-        "homopolymer yields at 0.12), so that connectors bend back; the copolymer breaks only at 4.5. That "
-        "elongation and Young's modulus (1.325 GPa): tables of designerdata.nl. Kerf, widths, power and speed: "
+        "Living hinges are made of it: connectors stay bent but do not break. Kerf, widths, power and speed: "
         "starting values; cut edges melt. Cut the coupon before trusting it."
     ),
+    mark(  # ripstop-co2
+        "The hinge layer of a backed sheet: glue tiles on it. Alone it is too limp to be a sheet. The laser seals "
+        "its edges. Kerf, widths, power and speed: starting values. Cut the coupon before trusting it."
+    ),
+    mark(  # silicone-co2
+        "Shore 50A. Panels bend as easily as connectors do: expect a soft sheet. Notches tear on: cut clean ends. "
+        "Kerf, widths, power and speed: starting values; the cut leaves white ash. Cut the coupon before trusting "
+        "it."
+    ),
+    mark(  # tape-knife
+        "The hinge layer of a backed sheet: it glues itself under tiles. Alone it sticks to itself. A blade "
+        "removes no material, so the kerf is 0. Film of 28 \N{MICRO SIGN}m and glue; stick it to its liner to cut "
+        "it."
+    ),
     mark(  # tpu-co2
-        "Strain limit: least strain at break of Platilon U films (4.5 to 6.5, product information of 2015). "
-        "Young's modulus: flexural secant modulus of a TPU of Shore 82A, 5220 psi (Elasthane 80A). Panels bend as "
-        "easily as connectors do: expect a soft sheet. Kerf, widths, power and speed: starting values; cut edges "
-        "melt. Cut the coupon before trusting it."
+        "Panels bend as easily as connectors do: expect a soft sheet. Kerf, widths, power and speed: starting "
+        "values; cut edges melt. Cut the coupon before trusting it."
+    ),
+    mark(  # tulle-co2
+        "The hinge layer of a backed sheet: glue tiles on it. Alone it is too limp to be a sheet. Tiles may be "
+        "printed straight onto it. A connector is several meshes wide. Kerf, widths, power and speed: starting "
+        "values. Cut the coupon before trusting it."
     ),
 )
 #: Titles of machine profiles.

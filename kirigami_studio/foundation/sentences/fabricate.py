@@ -308,8 +308,27 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."
     ),
     "plan.material_does_not_hold": mark(
-        "Connectors of {material!r} break before a sheet is closed: no style, width and size is known that holds. Cut "
-        "a tougher sheet, such as film, felt or polypropylene."
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Two pinned layers "
+        "can (not built yet). For one sheet cut film, paper or polypropylene."
+    ),
+    "plan.material_needs_backing": mark(
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Tiles of it glued on "
+        "a hinge layer can (not built yet). For one sheet cut film, paper or polypropylene."
+    ),
+    "plan.material_is_hinge_layer": mark(
+        "{material} is a hinge layer: alone it is too limp for panels. Glued under tiles of card or board it works "
+        "(not built yet)."
+    ),
+    "strain.escapes": mark(
+        "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
+        "plane, across its thickness."
+    ),
+    "strain.stays_flat": mark(
+        "The sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
+        "plane, across its width."
+    ),
+    "material.no_such_word": mark(
+        "Material {key!r:.60}: {name} must be one of {choices}, got {value!r:.40}. Correct its file."
     ),
     "plan.slits_short": mark_n(
         "{count} cut is shorter than the {least_mm:g} mm that {material!r} needs: {length_mm:.3f} mm at x = "
@@ -340,14 +359,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.strain_choose_style": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
-        "{softer_mm:g} mm). Choose arc or double connectors, thinner material or a target angle nearer to flat."
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm). {why} "
+        "Choose arc or double connectors, thinner material or a target angle nearer to flat."
     ),
     "plan.strain_larger_sheet": mark(
         "Opened to the target angle, every connector turns by {turn_deg:.0f} degrees. The one at x = {x:.2f}, y = "
         "{y:.2f} mm is then strained by about {strain_percent:.0f} %, but {material!r} breaks at {limit_percent:g} % "
-        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm about its softer side of "
-        "{softer_mm:g} mm). Choose a larger sheet, so that every slit end has room for its style, thinner material or "
+        "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm). {why} "
+        "Choose a larger sheet, so that every slit end has room for its style, thinner material or "
         "a target angle nearer to flat."
     ),
 }

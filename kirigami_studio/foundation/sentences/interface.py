@@ -74,6 +74,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.connector_and_width": mark(
         "--hinge-mm takes a connector and its width in mm, for example 3=0.8; got '{text}'."
     ),
+    "picture.angle": mark("A sheet cannot be shown at {angle:g} degrees: 180 is flat, 0 fully turned."),
+    "picture.none": mark("These choices are for pictures ({kinds}, or the whole set of --all), not for {path}."),
     "animate.not_a_gif": mark("animate writes .gif files, got {name}."),
     "licences.no_such_part": mark(
         "{part!r:.60} does not come with the program; kirigami-studio licences lists what does."

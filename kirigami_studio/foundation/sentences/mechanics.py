@@ -81,12 +81,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "other."
     ),
     "as_cut.jams_while_flat": mark(
-        "As cut, the sheet jams at {jam_deg:.0f} degrees and does not come to {phi_deg:.0f} while it stays flat. It is "
-        "thin and comes {opened_percent:.0f} % of its way, so it may pass by bending out of the plane."
+        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
+        "It is thin and may pass by bending out of the plane."
     ),
     "as_cut.hardly_opens": mark(
-        "As cut, the sheet jams at {jam_deg:.0f} degrees: it comes {opened_percent:.0f} % of its way from flat to "
-        "{phi_deg:.0f}. Thin sheet passes a jam by bending out of the plane only beyond {least_percent:.0f} %."
+        "As cut, the sheet jams at {jam_deg:.0f} degrees instead of {phi_deg:.0f}, {opened_percent:.0f} % of its way. "
+        "Thin sheet may bend past a jam only beyond {least_percent:.0f} %."
     ),
     "as_cut.nearly": mark("As cut, the sheet comes to {jam_deg:.0f} degrees instead of {phi_deg:.0f}."),
     "as_cut.file_jams": mark(
@@ -101,7 +101,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "as_cut.breaks": mark(
         "A connector is expected to break: it is strained by {strain_percent:.0f} %, and {material!r} breaks at "
-        "{limit_percent:g} %."
+        "{limit_percent:g} %. {why}"
+    ),
+    "as_cut.survives": mark(
+        "Connectors are strained by {strain_percent:.0f} % at most; {material!r} breaks at {limit_percent:g} %. {why}"
+    ),
+    "as_cut.stays_bent": mark(
+        "Connectors stay bent: they are strained by up to {strain_percent:.0f} %, {material!r} yields at "
+        "{yield_percent:g} % and breaks at {limit_percent:g} %. {why}"
     ),
     "as_cut.not_known": mark("The sheet could not be closed as cut, in simulation: {reason}"),
     # The command

@@ -1,4 +1,4 @@
-"""The open project: begun, opened, saved, recovered, undone; recent files, the material that came along."""
+"""The open project: begun, opened, saved, recovered; recent files, its material."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ProjectFiles(QObject):
         self._count = 0
 
     def save(self, path: Path) -> None:
-        """Write the open project, unless the file there was changed since it was read or written here."""
+        """Write the open project, unless its file was changed since it was read or written."""
         session = self._session
         document = session.document
         session.set_status(tr("Saving {name} …", name=path.name))
@@ -144,7 +144,7 @@ class OpenProject(QObject):
         self.recovery.recovered.connect(self._on_recovered)
 
     def close(self) -> None:
-        """Let go of what is kept for recovery: the session ends as it should, and the worker has ended."""
+        """Let go of the copy kept for recovery, as the session ends as it should."""
         self.recovery.close()
 
     # another project -----------------------------------------------------------------------------------------------

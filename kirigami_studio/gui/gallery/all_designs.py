@@ -1,4 +1,4 @@
-"""All designs in one window: a bar, filters, the table of cards, the comparison of up to four, what the keys do."""
+"""All designs in one window: a bar, filters, the table of cards, what the keys do."""
 
 from __future__ import annotations
 
@@ -11,13 +11,11 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSizePolicy,
     QSlider,
-    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.gui.gallery.compare_four import CompareFour
 from kirigami_studio.gui.gallery.design_table import WIDTHS, DesignTable
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.gallery.gallery_model import GalleryModel
@@ -33,8 +31,7 @@ class AllDesigns(QFrame):
     selection_changed = Signal(Selection)
     order_wanted = Signal(SortOrder)
     nearness_changed = Signal(int)  #: position of the slider
-    comparing_changed = Signal(bool)
-    compare_built = Signal(CompareFour)
+    compare_wanted = Signal()  #: show the marked designs beside each other
 
     def __init__(self, model: GalleryModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -42,21 +39,18 @@ class AllDesigns(QFrame):
         self._selection = model.selection
         self._model = model
         self.table = DesignTable(model)
-        self._compare: CompareFour | None = None
         self.filters = FilterControls(self, "all-")
         self.filters.changed.connect(lambda: self.selection_changed.emit(self.filters.apply(self._selection)))
-        self.pages = QStackedWidget()
-        self.pages.addWidget(self.table)
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 8, 8, 8)
         column.setSpacing(8)
         column.addLayout(self._head())
         self.filter_row = self._filter_row()
         column.addWidget(self.filter_row)
-        column.addWidget(self.pages, 1)
+        column.addWidget(self.table, 1)
         column.addLayout(self._foot())
         self.table.size_wanted.connect(lambda step: self.card_size.setValue(self.card_size.value() + step))
-        self.table.compare_wanted.connect(lambda: self.show_comparison(True))
+        self.table.compare_wanted.connect(self.compare)
         self.table.compared_changed.connect(self._show_compared)
         self.table.current_changed.connect(self._show_current)
         model.arranged.connect(self._count)
@@ -99,12 +93,11 @@ class AllDesigns(QFrame):
         self.nearness.valueChanged.connect(self.nearness_changed)
         self.comparison = QPushButton()
         self.comparison.setObjectName("small")
-        self.comparison.setCheckable(True)
         self.comparison.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.comparison.setToolTip(
-            tr("Compare up to four designs (C). Mark them with Space, the keys 1 to 4, or Ctrl+click.")
+            tr("Compare up to nine designs (C). Mark them with Space, the keys 1 to 9, Ctrl+click, or all with Ctrl+A.")
         )
-        self.comparison.clicked.connect(self.show_comparison)
+        self.comparison.clicked.connect(self.compare)
         self.close_button = ToolButton("closeAllDesigns", "close", tr("Back to the window (Esc)."))
         self.close_button.clicked.connect(self.closed)
         row = QHBoxLayout()
@@ -115,7 +108,6 @@ class AllDesigns(QFrame):
         near, far = QLabel(tr("near")), QLabel(tr("far"))
         for label in (near, far):
             label.setObjectName("muted")
-        self._grid_only: tuple[QWidget, ...] = (self.order, self.card_size, self.alike, near, self.nearness, far)
         parts: tuple[QWidget | None, ...] = (self.alike, near, self.nearness, far, self.again, None)
         for part in (*parts, self.comparison, self.order, self.card_size, self.close_button):
             if part is None:
@@ -156,40 +148,14 @@ class AllDesigns(QFrame):
         if self.table.current is not None:
             self.table.taken.emit(self.table.current)
 
-    @property
-    def compare(self) -> CompareFour:
-        """The comparison, built when it is first wanted: its drawings take longer than all the rest."""
-        if self._compare is None:
-            self._compare = CompareFour()
-            self._compare.left.connect(lambda: self.show_comparison(False))
-            self.pages.addWidget(self._compare)
-            self.compare_built.emit(self._compare)
-        return self._compare
-
     # what is shown -------------------------------------------------------------------------------------------------
 
-    @property
-    def comparing(self) -> bool:
-        """Whether the comparison is shown in the place of the cards."""
-        return self._compare is not None and self.pages.currentWidget() is self._compare
-
-    def show_comparison(self, on: bool) -> None:
-        """Show the marked designs beside each other, or the cards; with one alone, the next card is beside it."""
-        if on and len(self.table.compared) < 2:
+    def compare(self) -> None:
+        """Ask for the marked designs beside each other; with one alone, the next card is beside it."""
+        if len(self.table.compared) < 2:
             self._mark_two()
-        on = on and len(self.table.compared) >= 2
-        self.comparison.setChecked(on)
-        if on == self.comparing:
-            return
-        compare = self.compare
-        compare.bar.play.setChecked(False)
-        self.pages.setCurrentWidget(compare if on else self.table)
-        self.filter_row.setVisible(not on)
-        for part in (*self._grid_only, self.again, self.use):
-            part.setVisible(not on)
-        self.comparing_changed.emit(on)
-        self._show_keys()
-        self.focus()
+        if len(self.table.compared) >= 2:
+            self.compare_wanted.emit()
 
     def _mark_two(self) -> None:
         """Mark the current design and the next one, so that there is something to compare."""
@@ -203,7 +169,7 @@ class AllDesigns(QFrame):
 
     def focus(self) -> None:
         """Give the keyboard to what is shown."""
-        (self.compare if self.comparing else self.table).setFocus()
+        self.table.setFocus()
 
     def show_selection(self, selection: Selection) -> None:
         """Show which designs are shown, and in which order."""
@@ -228,8 +194,6 @@ class AllDesigns(QFrame):
         count = len(self.table.compared)
         text = tr_n("Compare {count}", "Compare {count}", count) if count > 1 else tr("Compare")
         self.comparison.setText(text)
-        if self.comparing and count < 2:
-            self.show_comparison(False)
 
     def _show_current(self) -> None:
         current = self.table.current
@@ -238,16 +202,13 @@ class AllDesigns(QFrame):
         self.note.setText(tr("{name}: {note}", name=name, note=" ".join(note.split())) if note else "")
 
     def _show_keys(self) -> None:
-        if self.comparing:
-            keys: tuple[str, ...] = (tr("1 to 4: use a design   ·   Space: play   ·   Esc: back to the cards"),)
-        else:
-            keys = (
-                tr(
-                    "Enter: use   ·   Space or 1 to 4: mark to compare   ·   C: compare   ·   F2: name and note   ·   "
-                    "I: pin   ·   Del: reject   ·   Esc: close"
-                ),
-                tr("Enter: use   ·   Space: mark   ·   C: compare   ·   F2: name   ·   Esc: close"),
-            )
+        keys = (
+            tr(
+                "Enter: use   ·   Space or 1 to 9: mark to compare   ·   C: compare   ·   F2: name and note   ·   "
+                "I: pin   ·   Del: reject   ·   Esc: close"
+            ),
+            tr("Enter: use   ·   Space: mark   ·   C: compare   ·   F2: name   ·   Esc: close"),
+        )
         self.keys.set_texts(*keys)
         self._fit()
 

@@ -10,7 +10,6 @@ from PySide6.QtWidgets import QStackedWidget, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.compare_page import ComparedDesign
 from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
 from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
 from kirigami_studio.gui.run.generation import Generation
@@ -20,7 +19,6 @@ from kirigami_studio.gui.widgets import theme
 
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.all_designs import AllDesigns
-    from kirigami_studio.gui.gallery.compare_four import CompareFour
 
 
 class AllDesignsPresenter(QObject):
@@ -37,8 +35,8 @@ class AllDesignsPresenter(QObject):
     marks : DesignMarks
     choose : callable
         Puts a design on the stage.
-    phi : callable
-        The angle that the stage shows, radians.
+    compare : callable
+        Shows designs beside each other, and has another callable that leads back here.
     """
 
     shown_changed = Signal(bool)  #: told before the table is shown, and after it is gone
@@ -53,11 +51,11 @@ class AllDesignsPresenter(QObject):
         generation: Generation,
         marks: DesignMarks,
         choose: Callable[[Candidate], None],
-        phi: Callable[[], float],
+        compare: Callable[[tuple[Candidate, ...], Callable[[], None]], None],
     ) -> None:
         super().__init__(pages)
         self._pages, self._panel, self._designs, self._session = pages, panel, designs, session
-        self._generation, self._marks, self._choose, self._phi = generation, marks, choose, phi
+        self._generation, self._marks, self._choose, self._compare = generation, marks, choose, compare
         self.page: AllDesigns | None = None
         panel.bar.all.clicked.connect(lambda: self.show(True))
 
@@ -75,7 +73,6 @@ class AllDesignsPresenter(QObject):
         if on == self.shown:
             return
         if not on:
-            self._page.show_comparison(False)
             self._pages.setCurrentIndex(0)
             self.shown_changed.emit(False)
             return
@@ -104,7 +101,7 @@ class AllDesignsPresenter(QObject):
         page = AllDesigns(view.model_)
         self._pages.addWidget(page)
         self._colour(page)
-        page.compare_built.connect(self._connect_compare)
+        page.compare_wanted.connect(lambda: self._compare(page.table.compared, lambda: self.show(True)))
         page.closed.connect(lambda: self.show(False))
         page.selection_changed.connect(bar.take)
         page.order_wanted.connect(bar.sort_by)
@@ -115,7 +112,6 @@ class AllDesignsPresenter(QObject):
         page.nearness_changed.connect(bar.nearness.setValue)
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())
-        page.comparing_changed.connect(self._show_compared)
         table = page.table
         table.hint = lambda: view.hint
         table.left.connect(lambda: self.show(False))
@@ -125,16 +121,11 @@ class AllDesignsPresenter(QObject):
         table.alike_toggled.connect(view.toggle_alike)
         table.clear_wanted.connect(bar.show_all)
         table.menu_wanted.connect(self._show_menu)
-        table.compared_changed.connect(self._show_compared)
         page.show_selection(view.model_.selection)
         self.page = page
         self.show_design(self._session.stage)
         self.show_run()
         return page
-
-    def _connect_compare(self, compare: CompareFour) -> None:
-        self._colour(compare)
-        compare.taken.connect(self._on_compared)
 
     def _colour(self, part: QWidget) -> None:
         """Give new parts the colours of the theme."""
@@ -148,7 +139,6 @@ class AllDesignsPresenter(QObject):
         if self.page is not None:
             self.page.table.set_target(self._session.document.target)
             self.show_run()
-            self._show_compared()
 
     def show_run(self) -> None:
         """A run has begun or ended: more designs can be asked for while there is none."""
@@ -193,24 +183,3 @@ class AllDesignsPresenter(QObject):
         table = self._page.table
         cell = table.visualRect(table.model_.index(max(table.model_.row_of(candidate), 0), 0))
         return QRect(table.viewport().mapToGlobal(cell.topLeft()), cell.size())
-
-    # the comparison ------------------------------------------------------------------------------------------------
-
-    def _show_compared(self, _: object = None) -> None:
-        page = self._page
-        if not page.comparing:
-            return
-        model, width_of = page.table.model_, self._session.width_of
-        numbers = [model.number_of(candidate) for candidate in page.table.compared]
-        entries = [model.all_entries[number - 1] for number in numbers if number]
-        designs = [
-            ComparedDesign(entry, model.name_of(entry.candidate), width_of(entry.candidate)) for entry in entries
-        ]
-        first = not page.compare.shown
-        page.compare.show_designs(designs, self._session.document.target)
-        if first:
-            page.compare.bar.set_phi(self._phi())
-            page.compare.fit()
-
-    def _on_compared(self, place: int) -> None:
-        self._put_on_stage(self._page.table.compared[place])

@@ -1,4 +1,4 @@
-"""The verdict on a design as a card shows it: its level, then what keeps it from being better, then what is well."""
+"""The verdict on a design as a card shows it: its level, then its answers, the worst first."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ def badges_of(verdict: Verdict) -> tuple[Badge, ...]:
 
 def closing_text(verdict: Verdict) -> str:
     """Whether the sheet closes, in a few words; "" where nobody has looked."""
-    from kirigami_studio.studio.verdict import Question, State
+    from kirigami_studio.studio.verdict import AnswerState, Question
 
     answer, found = verdict.answer(Question.CLOSES), verdict.as_cut
-    if answer.state is State.OPEN:
+    if answer.state is AnswerState.OPEN:
         return ""
     return f"{ABOUT}{answer.word}" if found is not None and found.source.value == "estimate" else answer.word

@@ -53,7 +53,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
 from kirigami_studio.gui.stage.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
-from kirigami_studio.gui.widgets.verdict_marks import ICONS, PALE, colour_of, level_of
+from kirigami_studio.gui.widgets.verdict_marks import ABOUT, ICONS, PALE, colour_of, level_of
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
@@ -100,7 +100,7 @@ class CardButton(Enum):
 
 
 class CardDelegate(QStyledItemDelegate):
-    """Paints one candidate: pictures, name, match, sort value, whether it closes, its verdict, its mark."""
+    """Paints one candidate: pictures, name, match, sort value, verdict and mark."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -193,7 +193,8 @@ class CardDelegate(QStyledItemDelegate):
 
         texts, found = [closing_text(verdict)], verdict.as_cut
         if found is not None and not found.closes:
-            texts.append(tr("{jam}°!", jam=round(found.jam_deg)))
+            about = ABOUT if found.source.value == "estimate" else ""
+            texts.append(about + tr("{jam}°!", jam=round(found.jam_deg)))
         state = verdict.answer(Question.CLOSES).state.value
         place, metrics = card.adjusted(left - card.left() + 6, 6, -10, 0), painter.fontMetrics()
         text = next((text for text in texts if metrics.horizontalAdvance(text) <= place.width()), "")

@@ -277,7 +277,7 @@ class SampledScores(QObject):
 
 
 class ChosenDesign(QObject):
-    """Chooses the design on the stage, and has it trimmed, fitted again or shown as it was sampled."""
+    """Chooses the design on the stage, trims it, fits it again, shows it as sampled."""
 
     def __init__(
         self, session: Session, hand: HandEditor, generation: Generation, regularity: Regularity, parent: QObject

@@ -1,43 +1,146 @@
-"""The third page of the stage: two designs side by side, moved together, with their differences."""
+"""Two designs or more beside each other, moved together, with the same figures under each."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
-from PySide6.QtCore import QPointF, QSize, Qt, Signal
-from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.words import number, tr
+from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.gallery.gallery_selection import differences
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.stage.layout_view import LayoutView
-from kirigami_studio.gui.widgets.card import FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
+from kirigami_studio.gui.widgets.legends import Chip
+from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_feature, readable_time
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette, themed
 from kirigami_studio.gui.widgets.view_transform import Bounds
 from kirigami_studio.outlines.outline import Outline
 
-#: Figures after the point of the numbers that can be subtracted, row by row.
-DIGITS = (1, 0, 2, 1, 2)
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import AsCut
+
+#: Designs that are compared at most: one for each of the keys 1 to 9.
+MOST = 9
+#: Width of a pane (pixels) below which panes go into one more row.
+LEAST_WIDTH = 150
+#: A narrower drawing (pixels) has no legends, which would cover it.
+LEGENDS_FROM = 240
+#: Pixels between panes, and between two columns of figures.
+GAP, BETWEEN = 10, 24
 
 
-class ComparedDesign(NamedTuple):
-    """A design beside others, what it is called, and the width of its flat sheet, mm."""
+@dataclass(frozen=True, slots=True)
+class ComparedDesign:
+    """A design beside others, and all that is known of it.
+
+    Attributes
+    ----------
+    entry : Entry
+    name : str
+        What it is called.
+    width_mm : float
+        Of its flat sheet.
+    chosen : bool
+        Whether it is the one on the stage.
+    as_cut : AsCut or None
+        How it does as cut, as far as that is known.
+    simulated : bool
+        Whether that was simulated, not estimated.
+    seconds : float or None
+        That cutting it takes, as far as that is known.
+    """
 
     entry: Entry
     name: str
     width_mm: float
+    chosen: bool = False
+    as_cut: AsCut | None = None
+    simulated: bool = False
+    seconds: float | None = None
+
+
+#: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.
+TIPS = {
+    "match": mark("Exact IoU with the target."),
+    "as_cut": mark("Whether the sheet comes to its angle as cut, or where it jams. \N{ALMOST EQUAL TO}: an estimate."),
+    "strain": mark("Largest strain of a connector on the way there. \N{ALMOST EQUAL TO}: an estimate."),
+    "time": mark("How long cutting takes; differences in seconds."),
+    "smallest": mark("Smallest panel edge or neck, mm."),
+    "panels": mark("How much panel sizes vary (coefficient of variation)."),
+    "gain": mark("Points of sIoU gained over a sheet of equal cuts."),
+    "roughness": mark("Total variation (TV) of the ratios, lower is smoother."),
+    "symmetric": mark("Whether the sheet is its own mirror image, or the same after a turn."),
+    "rim": mark("Where cuts meet the sheet's sides: free, or at even distances."),
+    "feasible": mark("Whether the sheet can be built and opens without touching itself."),
+}
+
+
+BEHIND = mark("Behind it the difference from design 1.")
+
+
+class ComparedFigure(NamedTuple):
+    """One row under a design; its value is None where two of them are not subtracted."""
+
+    caption: str
+    text: str
+    value: float | None = None
+    form: str = "+.0f"
+    kind: str = ""
+
+    def apart(self, first: ComparedFigure) -> str:
+        """How far the number is above or below that of another design."""
+        if self.value is None or first.value is None or self.kind != first.kind:
+            return ""
+        gap = number(self.value - first.value, self.form)
+        return "=" if gap in (number(0.0, self.form), number(-0.0, self.form)) else gap
+
+
+def figures_of(one: ComparedDesign) -> dict[str, ComparedFigure]:
+    """Return the rows under a design by their names, in their order."""
+    candidate, found = one.entry.candidate, one.as_cut
+    score, even = candidate.score, candidate.final_sheet.has_even_rim
+    match, variation, gain = 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, 100.0 * score.siou_gain
+    smallest = one.width_mm * least_panel_share(one.entry.design.deployment)
+    time = UNKNOWN if one.seconds is None else readable_time(one.seconds)
+    rows = {
+        "match": ComparedFigure(tr("Match"), tr("{match:.1f} %", match=match), match, "+.1f"),
+        "as_cut": ComparedFigure(tr("As cut"), UNKNOWN),
+        "strain": ComparedFigure(tr("Strain"), UNKNOWN),
+        "time": ComparedFigure(tr("Cut time"), time, one.seconds),
+        "smallest": ComparedFigure(tr("Smallest"), readable_feature(smallest), smallest, "+.2f"),
+        "panels": ComparedFigure(tr("Panels"), tr("±{variation:.0f} %", variation=variation), variation),
+        "gain": ComparedFigure(tr("Gain"), tr("{gain:+.1f}", gain=gain), gain, "+.1f"),
+        "roughness": ComparedFigure(tr("Roughness"), tr("{tv:.2f}", tv=score.tv), score.tv, "+.2f"),
+        "symmetric": ComparedFigure(tr("Symmetric"), tr("no") if candidate.symmetry is None else tr("yes")),
+        "rim": ComparedFigure(tr("Rim"), tr("even") if even else tr("free")),
+        "feasible": ComparedFigure(tr("Feasible"), tr("yes") if score.feasible else tr("no")),
+    }
+    if found is not None:
+        about, strain = "" if one.simulated else "\N{ALMOST EQUAL TO} ", 100.0 * found.strain
+        text, kind = about + tr("{strain:.0f} %", strain=strain), str(one.simulated)
+        rows["as_cut"] = rows["as_cut"]._replace(text=about + found.word)
+        rows["strain"] = rows["strain"]._replace(text=text, value=strain, kind=kind)
+    return rows
 
 
 class ComparedView(LayoutView):
-    """A layout that is fitted together with another one, so that both have one scale."""
+    """A layout that is fitted together with others, so that all have one scale."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._shared: Bounds | None = None
+        self.setMinimumSize(120, 140)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # keys belong to the page
 
     def share(self, bounds: Bounds | None) -> None:
         """Fit this part of the world instead of the design's own."""
@@ -48,65 +151,96 @@ class ComparedView(LayoutView):
         """Box of this design alone."""
         return super().scene_bounds()
 
+    def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
+        return super().legend(metrics) if self.width() >= LEGENDS_FROM else []
+
+    def scene_box(self) -> QRectF:
+        return super().scene_box() if self.width() >= LEGENDS_FROM else QRectF(self.rect())
+
     def scene_bounds(self) -> Bounds | None:
         own = super().scene_bounds()
         return own if own is None else self._shared or own
 
-    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(120, 140)
 
+class FigureRows(QWidget):
+    """Captions with their figures right beside them, in two columns where there is room."""
 
-class Side(QWidget):
-    """One of the two designs: its name, its layout, its numbers and by how much they differ."""
-
-    def __init__(self, name: str, accessible: str, button: QToolButton) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.title = FittingLabel()
-        self.title.setObjectName("number")
-        self._button = button
-        self.view = ComparedView()
-        self.view.setObjectName(name)
-        self.view.setAccessibleName(accessible)
-        self._grid = QGridLayout()
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setVerticalSpacing(0)
-        self._grid.setHorizontalSpacing(4)
-        self._grid.setColumnStretch(1, 1)
-        self.values: list[QLabel] = []
-        self.gaps: list[QLabel] = []
-        for row, (text, tip) in enumerate(_rows()):
-            caption, value, gap = QLabel(text), QLabel(), QLabel()
-            for label in (caption, gap):
-                label.setObjectName("muted")
-            for label in (value, gap):
+        self._grid.setHorizontalSpacing(3)
+        self.captions: dict[str, ElidedLabel] = {}
+        self.values: dict[str, QLabel] = {}
+        self.gaps: dict[str, QLabel] = {}
+        self._columns = 0
+
+    def show_figures(self, figures: Mapping[str, ComparedFigure], first: Mapping[str, ComparedFigure] | None) -> None:
+        """Show the rows of a design, and how far its numbers are from those of the first one."""
+        for name, figure in figures.items():
+            if name not in self.values:
+                self._add(name, figure.caption)
+            self.values[name].setText(figure.text)
+            self.gaps[name].setText("" if first is None else figure.apart(first[name]))
+
+    def _add(self, name: str, caption: str) -> None:
+        elided = ElidedLabel(Qt.TextElideMode.ElideRight)
+        labels = self.captions[name], self.values[name], self.gaps[name] = elided, QLabel(), QLabel()
+        labels[0].setText(caption)
+        labels[2].setObjectName("muted")
+        for label in labels:
+            label.setToolTip(f"{tr(TIPS[name])} {tr(BEHIND)}")
+            if label is not labels[0]:
                 label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-            gap.setMinimumWidth(gap.fontMetrics().horizontalAdvance("+0.0"))
-            for column, label in enumerate((caption, value, gap)):
-                label.setToolTip(tip)
-                self._grid.addWidget(label, row, column)
-            self.values.append(value)
-            self.gaps.append(gap)
+
+    @property
+    def column_width(self) -> int:
+        """Pixels that one column of rows takes."""
+        widths = [
+            max(label.sizeHint().width() for label in labels.values())
+            for labels in (self.captions, self.values, self.gaps)
+        ]
+        return sum(widths) + 2 * self._grid.horizontalSpacing()
+
+    def arrange(self, columns: int) -> None:
+        """Put the rows into so many columns; captions are as wide as the longest, or elided."""
+        if columns == self._columns:
+            return
+        self._columns = columns
+        rows = math.ceil(len(self.values) / columns)
+        widest = max(label.sizeHint().width() for label in self.captions.values())
+        for place, name in enumerate(self.values):
+            side, row = divmod(place, rows)
+            self.captions[name].setMaximumWidth(widest)
+            for part, label in enumerate((self.captions[name], self.values[name], self.gaps[name])):
+                self._grid.addWidget(label, row, 4 * side + part)
+        self._grid.setColumnMinimumWidth(3, BETWEEN if columns == 2 else 0)
+        for column, stretch in ((0, 100), (3, 1), (4, 100 if columns == 2 else 0), (7, 1)):
+            self._grid.setColumnStretch(column, stretch)
+
+
+class Pane(QWidget):
+    """One of the designs: its name, its layout and its figures."""
+
+    def __init__(self, place: int) -> None:
+        super().__init__()
+        self.title = ElidedLabel(Qt.TextElideMode.ElideRight)
+        self.title.setObjectName("number")
+        self.use = ToolButton(f"take{place + 1}", "check", tr("Use this design ({key}).", key=place + 1))
+        self.view = ComparedView()
+        self.view.setObjectName(f"compared{place + 1}")
+        self.view.setAccessibleName(tr("Layout of design {number}", number=place + 1))
+        self.figures = FigureRows()
         head = QHBoxLayout()
-        head.addWidget(self.title)
-        head.addStretch(1)
-        head.addWidget(button)
-        column_ = QVBoxLayout(self)
-        column_.setContentsMargins(0, 0, 0, 0)
-        column_.setSpacing(4)
-        column_.addLayout(head)
-        column_.addWidget(self.view, 1)
-        column_.addLayout(self._grid)
-
-    def name(self, *titles: str) -> None:
-        """Show the longest of these titles that there is room for."""
-        self.title.set_texts(*titles)
-        self._fit()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        super().resizeEvent(event)
-        self._fit()
-
-    def _fit(self) -> None:
-        self.title.fit(self.width() - self._button.sizeHint().width() - 12)
+        head.addWidget(self.title, 1)
+        head.addWidget(self.use)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        column.addLayout(head)
+        column.addWidget(self.view, 1)
+        column.addWidget(self.figures)
 
     def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
         """Show the layout of a design over the target."""
@@ -117,164 +251,223 @@ class Side(QWidget):
         self.view.set_sheet_width(one.width_mm)
         self.view.show_design(one.entry.design, known[0], target, known[1])
 
-    def show_numbers(self, values: Sequence[str], gaps: Sequence[str]) -> None:
-        """Show the numbers of this design, and by how much they are above or below the other's."""
-        for labels, texts in ((self.values, values), (self.gaps, gaps)):
-            for label, text in zip(labels, texts, strict=True):
-                label.setText(text)
-
 
 class ComparePage(QWidget):
-    """Shows the chosen design on the left and another one on the right, at one angle, zoom and place."""
+    """Designs at one angle, zoom and place, their figures compared with those of the first.
 
-    pair_changed = Signal()
+    Panes are made when they are first wanted: their drawings take longer than all the rest.
+    """
+
+    taken = Signal(Candidate)
+    left = Signal()
+    shown_changed = Signal()
     phi_changed = Signal(float)  #: radians
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._entries: tuple[Entry | None, Entry | None] = (None, None)
-        self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
-        self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K)."))
-        self.left = Side("comparedLeft", tr("Layout of the chosen design"), self.swap)
-        self.right = Side("comparedRight", tr("Layout of the design it is compared with"), self.leave)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._designs: tuple[ComparedDesign, ...] = ()
+        self._target: Outline | None = None
+        self._overlays: frozenset[Overlay] | None = None
+        self._palette: Palette = LIGHT
+        self._view = 1.0, QPointF()
+        self._columns = 0
+        self.panes: list[Pane] = []
         self.bar = DeploymentBar()
-        sides = QHBoxLayout()
-        sides.setSpacing(8)
-        sides.addWidget(self.left, 1)
-        sides.addWidget(self.right, 1)
+        self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
+        self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K or Esc)."))
+        self.leave.clicked.connect(self.left)
+        sheet = QWidget()
+        sheet.setObjectName("plain")
+        self._grid = QGridLayout(sheet)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setSpacing(GAP)
+        self.panes_area = QScrollArea()
+        self.panes_area.setWidgetResizable(True)
+        self.panes_area.setFrameShape(QFrame.Shape.NoFrame)
+        self.panes_area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.panes_area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.panes_area.setWidget(sheet)
+        foot = QHBoxLayout()
+        foot.setSpacing(4)
+        for part in (self.bar, self.swap, self.leave):
+            foot.addWidget(part, 1 if part is self.bar else 0)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
-        column.addLayout(sides, 1)
-        column.addWidget(self.bar)
-        for side, other in ((self.left, self.right), (self.right, self.left)):
-            side.view.view_changed.connect(other.view.set_view)
-            self.bar.phi_changed.connect(side.view.set_phi)
+        column.addWidget(self.panes_area, 1)
+        column.addLayout(foot)
         self.bar.phi_changed.connect(self.phi_changed)
 
     @property
-    def sides(self) -> tuple[Side, Side]:
-        return self.left, self.right
+    def designs(self) -> tuple[ComparedDesign, ...]:
+        """Those that are shown, the first one first."""
+        return self._designs
+
+    @property
+    def shown(self) -> tuple[Pane, ...]:
+        """The panes that hold them."""
+        return tuple(self.panes[: len(self._designs)])
 
     @property
     def summary(self) -> tuple[str, ...]:
-        """What the stage's header says, longest first."""
-        one, other = self._entries
-        if one is None or other is None:
+        """The header of the stage, longest text first."""
+        sheets = [one.entry.candidate for one in self._designs]
+        if len(sheets) < 2:
             return ()
-        apart = differences([one.candidate], other.candidate.sheet)[0]
-        return tr("the designs differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
+        apart = max(differences(sheets[1:], sheets[0].sheet))
+        if len(sheets) == 2:
+            return tr("the designs differ by {apart:.2f}", apart=apart), tr("differ by {apart:.2f}", apart=apart)
+        long = tr("up to {apart:.2f} from the first of {count}", apart=apart, count=len(sheets))
+        return long, tr("up to {apart:.2f} from the first", apart=apart)
 
-    @property
-    def entries(self) -> tuple[Entry | None, Entry | None]:
-        """The chosen design and the one it is compared with."""
-        return self._entries
+    def set_palette(self, palette: Palette) -> None:
+        """Give later panes other colours; those that are there have their own call."""
+        self._palette = palette
 
-    def show_pair(self, chosen: ComparedDesign | None, other: ComparedDesign | None, target: Outline | None) -> None:
-        """Show two designs; zoom and place stay."""
-        pair = (chosen, other)
-        self._entries = None if chosen is None else chosen.entry, None if other is None else other.entry
-        for side, one in zip(self.sides, pair, strict=True):
-            self._show_side(side, one, target)
-        bounds = [side.view.own_bounds() for side in self.sides]
+    def show_designs(self, designs: Sequence[ComparedDesign], target: Outline | None) -> None:
+        """Show these designs, at most :data:`MOST`; angle, zoom and place stay."""
+        before, self._designs = self._designs, tuple(designs[:MOST])
+        same_target, self._target = target == self._target, target
+        while len(self.panes) < len(self._designs):
+            self._add_pane()
+        first = figures_of(self._designs[0]) if self._designs else {}
+        for place, pane in enumerate(self.panes):
+            one = self._designs[place] if place < len(self._designs) else None
+            if one is None:
+                pane.hide()
+                pane.view.show_design(None, None, None)
+                continue
+            pane.title.setText(*_titles(place + 1, one))
+            if not (same_target and place < len(before) and before[place].entry is one.entry):
+                pane.show_design(one, target)
+            pane.view.set_sheet_width(one.width_mm)
+            pane.figures.show_figures(figures_of(one), first if place else None)
+            pane.show()
+        self._share_bounds()
+        self._mark_angles()
+        self.swap.setVisible(len(self._designs) == 2)
+        self._arrange()
+        self.shown_changed.emit()
+
+    def _add_pane(self) -> None:
+        place = len(self.panes)
+        pane = Pane(place)
+        pane.hide()
+        self._grid.addWidget(pane, 0, place)
+        pane.use.clicked.connect(lambda: self._take(place))
+        pane.view.set_view(*self._view)
+        pane.view.view_changed.connect(self.set_view)
+        self.bar.phi_changed.connect(pane.view.set_phi)
+        pane.view.set_phi(self.bar.slider.phi)
+        if self._overlays is not None:
+            pane.view.set_overlays(self._overlays)
+        for part in themed((pane, *pane.findChildren(QWidget))):
+            part.set_palette(self._palette)
+        self.panes.append(pane)
+        self._columns = 0
+
+    def _share_bounds(self) -> None:
         shared = None
-        if bounds[0] is not None and bounds[1] is not None:
-            shared = bounds[0].united(bounds[1])
-        for place, side in enumerate(self.sides):
-            side.view.share(shared)
-            side.show_numbers(*number_texts(pair[place], pair[1 - place]))
-        self.bar.set_ready(chosen is not None)
-        if chosen is not None:
-            contacts = [one.entry.candidate.score.contact for one in pair if one is not None]
-            first = max((contact.phi for contact in contacts if contact is not None), default=None)
-            second = chosen.entry.candidate.second
-            self.bar.set_marks(chosen.entry.design.phi_target, first, None if second is None else second.target.phi)
-        self.pair_changed.emit()
+        for pane in self.shown:
+            box = pane.view.own_bounds()
+            shared = box if shared is None or box is None else shared.united(box)
+        for pane in self.panes:
+            pane.view.share(shared)
 
-    def _show_side(self, side: Side, one: ComparedDesign | None, target: Outline | None) -> None:
-        if one is None:
-            side.name("")
-            side.view.set_hint("compare", tr("Nothing to compare with"), tr("Ctrl+click a card in the gallery."))
-            side.view.show_design(None, None, None)
+    def _mark_angles(self) -> None:
+        self.bar.set_ready(bool(self._designs))
+        if self._designs:
+            first = self._designs[0].entry
+            contacts = [one.entry.candidate.score.contact for one in self._designs]
+            touches = max((contact.phi for contact in contacts if contact is not None), default=None)
+            second = first.candidate.second
+            self.bar.set_marks(first.design.phi_target, touches, None if second is None else second.target.phi)
+
+    def _arrange(self) -> None:
+        """Lay out panes in rows of equal length, and figures alike in all of them."""
+        count = len(self._designs)
+        if not count:
             return
-        name = one.name
-        chosen = side is self.left
-        alone = tr("Design {name}", name=name)
-        side.name(*((tr("Design {name}, chosen", name=name), tr("{name}, chosen", name=name)) if chosen else ()), alone)
-        side.show_design(one, target)
+        most = max(2, (self.width() + GAP) // (LEAST_WIDTH + GAP))
+        rows = math.ceil(count / most)
+        columns = math.ceil(count / rows)
+        if columns != self._columns:
+            for column in range(MOST):
+                self._grid.setColumnStretch(column, 1 if column < columns else 0)
+            for place, pane in enumerate(self.panes):
+                self._grid.addWidget(pane, *divmod(place, columns))
+            self._columns = columns
+        room = (self.width() + GAP) // columns - GAP - BETWEEN
+        two = all(2 * pane.figures.column_width <= room for pane in self.shown)
+        for pane in self.shown:
+            pane.figures.arrange(2 if two else 1)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._arrange()
 
     def set_phi(self, phi: float) -> None:
-        """Show both at another angle, radians."""
+        """Show all at another angle, radians."""
         self.bar.set_phi(phi)
 
     def set_overlays(self, overlays: frozenset[Overlay]) -> None:
-        """Choose what is drawn over both."""
-        for side in self.sides:
-            side.view.set_overlays(overlays)
+        """Choose the overlays of all."""
+        self._overlays = overlays
+        for pane in self.panes:
+            pane.view.set_overlays(overlays)
 
     def fit(self) -> None:
-        """Show everything of both."""
-        self.left.view.fit()
+        """Show everything of all."""
+        if self.panes:
+            self.panes[0].view.fit()
 
     def zoom(self, factor: float) -> None:
-        """Enlarge both."""
-        self.left.view.zoom(factor)
+        """Enlarge all."""
+        if self.panes:
+            self.panes[0].view.zoom(factor)
 
     def set_view(self, zoom: float, shift: QPointF) -> None:
-        """Show one part of both."""
-        for side in self.sides:
-            side.view.set_view(zoom, shift)
+        """Show one part of all."""
+        self._view = zoom, QPointF(shift)
+        for pane in self.panes:
+            pane.view.set_view(zoom, shift)
+
+    def _take(self, place: int) -> None:
+        if place < len(self._designs):
+            self.taken.emit(self._designs[place].entry.candidate)
+
+    def _place_of(self, event: QKeyEvent) -> int | None:
+        """The design that a key without others stands for."""
+        plain = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
+        place = event.key() - Qt.Key.Key_1
+        return place if plain and 0 <= place < len(self._designs) else None
+
+    def event(self, event: QEvent) -> bool:
+        """Take the keys of designs before the window does."""
+        asks = event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent)
+        if asks and isinstance(event, QKeyEvent) and self._place_of(event) is not None:
+            event.accept()
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        place = self._place_of(event)
+        if place is not None:
+            self._take(place)
+        elif event.key() == Qt.Key.Key_Escape:
+            self.left.emit()
+        else:
+            super().keyPressEvent(event)
 
 
-def _rows() -> tuple[tuple[str, str], ...]:
+def _titles(place: int, one: ComparedDesign) -> tuple[str, ...]:
+    """How a pane is called, longest first."""
+    plain = (tr("{place}   Design {name}", place=place, name=one.name), f"{place}   {one.name}")
+    if not one.chosen:
+        return plain
     return (
-        (tr("Match"), tr("Exact IoU with the target, %; then the difference from the other design, points.")),
-        (
-            tr("Panels"),
-            tr("Evenness: how much panel sizes vary, % (coefficient of variation); then the difference, points."),
-        ),
-        (tr("Smallest"), tr("Smallest panel edge or neck, mm; then the difference from the other design.")),
-        (
-            tr("Match gained"),
-            tr("Points of sIoU gained over a sheet of equal cuts; then the difference from the other design."),
-        ),
-        (
-            tr("Roughness"),
-            tr("Total variation (TV) of the ratios, lower is smoother; then the difference from the other design."),
-        ),
-        (tr("Symmetric"), tr("Whether the sheet is its own mirror image, or the same after a turn.")),
-        (tr("Rim"), tr("Where cuts meet the sheet's sides: free, or at even distances.")),
-        (tr("Feasible"), tr("Whether the sheet can be built and opens without touching itself.")),
+        tr("{place}   Design {name}, chosen", place=place, name=one.name),
+        tr("{place}   {name}, chosen", place=place, name=one.name),
+        *plain[1:],
     )
-
-
-def number_texts(one: ComparedDesign | None, other: ComparedDesign | None) -> tuple[list[str], list[str]]:
-    """What is said below one design, and by how much it is above or below another; one text for every row."""
-    rows = len(_rows())
-    if one is None:
-        return [""] * rows, [""] * rows
-    mine, candidate = _numbers(one), one.entry.candidate
-    values = [
-        tr("{match:.1f} %", match=mine[0]),
-        tr("±{variation:.0f} %", variation=mine[1]),
-        tr("{size:.2f} mm", size=mine[2]),
-        tr("{gain:+.1f}", gain=mine[3]),
-        tr("{tv:.2f}", tv=mine[4]),
-        tr("no") if candidate.symmetry is None else tr("yes"),
-        tr("even") if candidate.final_sheet.has_even_rim else tr("free"),
-        tr("yes") if candidate.score.feasible else tr("no"),
-    ]
-    if other is None:
-        return values, [""] * rows
-    gaps = [here - there for here, there in zip(mine, _numbers(other), strict=True)]
-    gap_texts = [
-        number(gap, f"+.{digits}f") if abs(gap) >= 0.5 * 0.1**digits else "="
-        for gap, digits in zip(gaps, DIGITS, strict=True)
-    ]
-    return values, [*gap_texts, "", "", ""]
-
-
-def _numbers(one: ComparedDesign) -> tuple[float, float, float, float, float]:
-    score = one.entry.candidate.score
-    smallest_mm = one.width_mm * least_panel_share(one.entry.design.deployment)
-    return 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, smallest_mm, 100.0 * score.siou_gain, score.tv

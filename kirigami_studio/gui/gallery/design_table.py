@@ -13,6 +13,7 @@ from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
     QKeyEvent,
+    QKeySequence,
     QMouseEvent,
     QPainter,
     QPaintEvent,
@@ -25,6 +26,7 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.card_delegate import GAP, SCROLL_BAR, CardButton, lay_out_cards
+from kirigami_studio.gui.gallery.compare_page import MOST
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.gui.gallery.table_card import TableCards, button_at, card_size
 from kirigami_studio.gui.widgets.theme import Palette
@@ -32,10 +34,8 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Least widths of a card, pixels, from small to large.
 WIDTHS = (270, 340, 430, 560)
-#: Designs that are compared at most.
-MOST_COMPARED = 4
 #: Keys that give a design a place in the comparison.
-PLACES = (Qt.Key.Key_1, Qt.Key.Key_2, Qt.Key.Key_3, Qt.Key.Key_4)
+PLACES = tuple(Qt.Key(Qt.Key.Key_1 + place) for place in range(MOST))
 
 
 class DesignTable(QListView):
@@ -145,7 +145,11 @@ class DesignTable(QListView):
                 marked[at] = candidate  # it takes the place of the one there
             else:
                 marked.insert(at, candidate)
-        self._set_compared(marked[-MOST_COMPARED:])
+        self._set_compared(marked[-MOST:])
+
+    def mark_all(self) -> None:
+        """Mark the first designs that are shown, as many as can be compared."""
+        self._set_compared([entry.candidate for entry in self.model_.entries[:MOST]])
 
     def clear_compared(self) -> None:
         """Nothing is to be compared."""
@@ -164,14 +168,16 @@ class DesignTable(QListView):
         if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
             plain = not event.modifiers() & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier)
             function = Qt.Key.Key_F1 <= event.key() <= Qt.Key.Key_F12
-            if plain and not function and event.text() != "?":
+            if (plain and not function and event.text() != "?") or event.matches(QKeySequence.StandardKey.SelectAll):
                 event.accept()
                 return True
         return super().event(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         key, candidate = event.key(), self.current
-        if key in (Qt.Key.Key_Escape, Qt.Key.Key_A):
+        if event.matches(QKeySequence.StandardKey.SelectAll):
+            self.mark_all()
+        elif key in (Qt.Key.Key_Escape, Qt.Key.Key_A):
             self.left.emit()
         elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
             self.size_wanted.emit(-1 if key == Qt.Key.Key_Minus else 1)

@@ -200,7 +200,7 @@ class GalleryModel(QAbstractListModel):
         return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
 
     def verdict_of(self, candidate: Candidate) -> Verdict:
-        """The verdict on a design as it is cut now: the one that everything shows, an estimate until it was made."""
+        """The verdict on a design as it is cut now, an estimate until it was made."""
         from kirigami_studio.studio.verdict import expected
 
         known = self._judged.get(candidate) or self._expected.get(candidate)
@@ -215,7 +215,7 @@ class GalleryModel(QAbstractListModel):
         material: Material | None = None,
         judged: Mapping[Candidate, Verdict] = MappingProxyType({}),
     ) -> None:
-        """Take how designs do as cut, by an estimate, in which material, and the verdicts that were made of some."""
+        """Take estimates of designs as cut, their material, and the verdicts made of some."""
         self._as_cut, self._material, self._judged = known, material, judged
         self._show_verdicts()
 
@@ -225,6 +225,10 @@ class GalleryModel(QAbstractListModel):
             self._rearrange()
         elif self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
+
+    def as_cut_of(self, candidate: Candidate) -> AsCut | None:
+        """The estimate of a design as cut, as far as there is one."""
+        return self._as_cut.get(candidate)
 
     def set_ranking(self, ranking: Ranking) -> None:
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""

@@ -155,7 +155,7 @@ class GalleryPresenter(QObject):
         return self._estimated(self._session.ranking)
 
     def _estimated(self, ranking: Ranking) -> Ranking:
-        """A ranking with what is known of the designs as cut; a verdict overrules what was expected before."""
+        """A ranking with all that is known as cut; a verdict overrules an estimate."""
         found, verdicts = dict(self._estimates.known), self._estimates.verdicts
         found |= {candidate: one.as_cut for candidate, one in verdicts.items() if one.as_cut is not None}
         jams = {candidate: one.jam_phi for candidate, one in found.items()}

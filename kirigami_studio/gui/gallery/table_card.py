@@ -269,7 +269,7 @@ class TableCards(QStyledItemDelegate):
         return found
 
     def _paint_chip(self, painter: QPainter, box: QRect, badge: Badge, estimate: bool) -> None:
-        """A fact in its frame; the verdict has an icon, pale where it is an estimate, answers have their colour."""
+        """A fact in its frame; icons and colours of verdicts, pale for estimates."""
         palette, well = self.palette_, badge.state in ("good", "ready_to_cut", "")
         colour = colour_of(badge.state, palette)
         painter.setPen(QPen(QColor(palette.border if well else colour), 1.0))

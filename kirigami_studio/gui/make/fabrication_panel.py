@@ -178,7 +178,7 @@ class FabricationPanel(Card):
             settings.setValue("fabrication", self._extent.value)
 
     def _material_row(self) -> QWidget:
-        """Machine and material stand where designs are asked for: what they bear decides how designs are made."""
+        """Place the fields of machine and material where designs are asked for."""
         row = QWidget()
         row.setObjectName("plain")
         table = QGridLayout(row)

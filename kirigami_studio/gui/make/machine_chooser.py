@@ -1,4 +1,4 @@
-"""Two questions, one after the other: which machine, and which of the materials that it cuts."""
+"""Choice of a machine, and then of a material that it cuts."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     machine_changes,
     machine_for,
+    material_changes,
     stored_material,
 )
 
@@ -21,7 +22,7 @@ USUAL = mark("Usual for the material")
 
 
 class MachineChooser(QObject):
-    """A box of machines and one of materials, which the first one decides; a place for them is up to whoever has it.
+    """A box of machines, and a box of the materials that the chosen one cuts.
 
     Attributes
     ----------
@@ -52,7 +53,7 @@ class MachineChooser(QObject):
         self.show_settings(self._settings)
 
     def show_settings(self, settings: FabricationSettings) -> Material | None:
-        """Show the machine and the material of settings, and return the material; None for one that is unknown."""
+        """Show machine and material of settings, and return the material, None if unknown."""
         self._settings = settings
         machine = self._machines.get(settings.machine)
         offered = self._offer_materials(machine)
@@ -66,14 +67,14 @@ class MachineChooser(QObject):
                 self.material.addItem(tr(material.name) if material else settings.material, settings.material)
             self.material.setCurrentIndex(self.material.findData(settings.material))
         if material is not None:
-            self.material.setToolTip(
-                tr(
-                    "{machine}, {thickness_mm:g} mm. {note}",
-                    machine=tr(material.machine),
-                    thickness_mm=material.thickness_mm,
-                    note=tr(material.note),
-                )
+            about = tr(
+                "{machine}, {thickness_mm:g} mm. {note}",
+                machine=tr(material.machine),
+                thickness_mm=material.thickness_mm,
+                note=tr(material.note),
             )
+            limits = material.limits_note
+            self.material.setToolTip(about if limits is None else f"{limits.text}\n{about}")
             cutter = machine or machine_for(settings)
             self.machine.setToolTip(_about_machine(cutter))
         return material
@@ -94,7 +95,9 @@ class MachineChooser(QObject):
                 for key, _ in listed:
                     self.material.addItem("", key)
         for row, (_, material) in enumerate(listed):
+            limits = material.limits_note
             self.material.setItemText(row, tr(material.name))
+            self.material.setItemData(row, None if limits is None else limits.text, Qt.ItemDataRole.ToolTipRole)
         return offered
 
     def _take_machine(self, index: int) -> None:
@@ -104,8 +107,7 @@ class MachineChooser(QObject):
         self.edited.emit()
 
     def _take_material(self, index: int) -> None:
-        """A new material brings its own connector and kerf."""
-        self.changed.emit({"material": self.material.itemData(index), "connector_mm": None, "kerf_mm": None})
+        self.changed.emit(dict(material_changes(self._settings, self.material.itemData(index))))
         self.edited.emit()
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, QPushButton, QSizePolicy, QVBoxLayout
 
 from kirigami_studio.fabricate.machine import Machine, MachineKind, cuttable, machines
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
 
 #: Kinds of machines in the order in which they are offered, with their names on the buttons.
@@ -19,8 +20,8 @@ KINDS = (
 )
 
 
-class MachineQuestion(QFrame):
-    """Asks once for the machine, then for a material that it cuts, in the menus of one button for each kind."""
+class CuttingQuestion(QFrame):
+    """Asks for the machine, then for a material that it cuts: one button for each kind."""
 
     answered = Signal(str, str)  #: keys of a machine and of a material
     declined = Signal()
@@ -35,6 +36,7 @@ class MachineQuestion(QFrame):
         self.why.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.later = QPushButton(tr("Not now"))
         self.later.setObjectName("link")
+        self.later.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.later.setToolTip(tr("Start with thin film and a UV laser; the material can be changed at any time."))
         self.later.clicked.connect(self.declined)
         self.buttons: dict[MachineKind, QPushButton] = {}
@@ -62,6 +64,7 @@ class MachineQuestion(QFrame):
         button = QPushButton(name)
         button.setObjectName("machineChoice")
         button.setToolTip(about)
+        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         menu = QMenu(button)
         for machine in found:
             self._offer_materials(menu if len(found) == 1 else menu.addMenu(tr(machine.name)), machine)
@@ -71,17 +74,21 @@ class MachineQuestion(QFrame):
         self._arrange()
 
     def _offer_materials(self, menu: QMenu, machine: Machine) -> None:
-        """The materials that a machine cuts, in the order of their names."""
-        taken = sorted((tr(material.name), key) for key, material in cuttable(machine).items())
-        for name, key in taken:
-            action = menu.addAction(name)
+        """The materials that a machine cuts, by name; those that one sheet cannot be made of come last and say so."""
+        menu.setToolTipsVisible(True)
+        taken = [
+            (material.limits_note is not None, tr(material.name), key) for key, material in cuttable(machine).items()
+        ]
+        for _, name, key in sorted(taken):
+            action, material = menu.addAction(name), find_material(key)
+            action.setToolTip(tr(material.note) if material.limits_note is None else material.limits_note.text)
             action.triggered.connect(lambda _=False, key=key: self.answered.emit(machine.key, key))
 
     def _arrange(self) -> None:
-        """In one row where all names fit, else in rows of three; the reason gives way in a narrow place."""
+        """Put buttons in one row or in rows of three or two, where the reason gives way."""
         buttons = list(self.buttons.values())
         widest = max((button.sizeHint().width() for button in buttons), default=0)
-        columns = len(KINDS) if len(buttons) * (widest + 8) <= self.width() else 3
+        columns = next((count for count in (len(KINDS), 3) if count * (widest + 8) <= self.width()), 2)
         for place, button in enumerate(buttons):
             self._grid.addWidget(button, *divmod(place, columns))
         self.why.setVisible(columns > 3)

@@ -20,7 +20,10 @@ PAUSE_MS = 250
 
 
 class TargetReader(QObject):
-    """Reads the target in the worker whenever target, angle, symmetry, start, sheet or material have changed."""
+    """Reads the target in the worker whenever target, angle, symmetry, start, sheet or material have changed.
+
+    As long as they are those that a project was opened with, its designs' grid is the one that was chosen for them.
+    """
 
     known = Signal(object)  #: TargetReading, or None while there is none
 
@@ -30,6 +33,9 @@ class TargetReader(QObject):
         self._job = LatestJob[TargetReading](session.queue)
         self._asked: tuple[object, ...] | None = None
         self._request: Request | None = None
+        self._project = -1  # number of the project that was read last
+        self._opened: tuple[object, ...] | None = None  # what was asked when it was opened
+        self._grid: tuple[int, int] | None = None  # chosen by the run that made its designs
         self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._pause.timeout.connect(self._read)
         session.document_changed.connect(self._follow)
@@ -41,6 +47,7 @@ class TargetReader(QObject):
 
     def read_again(self) -> None:
         """A run has chosen a grid by trying: that may be another one than was expected."""
+        self._opened = self._grid = None
         if not self._pause.isActive():
             self._read()
 
@@ -51,9 +58,13 @@ class TargetReader(QObject):
             sheet = (request.width_mm, request.least_feature_mm)
             unfolding = () if request.start.is_plain else (request.grid, request.rim)
             asked = (request.target, request.phi, request.symmetry, request.start, *sheet, *unfolding)
-        if asked == self._asked:
+        if self._session.project != self._project:
+            self._project, self._opened = self._session.project, asked
+        made = asked == self._opened and document.settings.auto_grid and bool(document.candidates)
+        grid = document.settings.grid if made else None
+        if (asked, grid) == (self._asked, self._grid):
             return
-        self._asked, self._request = asked, request
+        self._asked, self._request, self._grid = asked, request, grid
         self._job.stop()
         self.known.emit(None)
         if request is None:
@@ -64,7 +75,9 @@ class TargetReader(QObject):
     def _read(self) -> None:
         if self._request is not None:
             callbacks = JobCallbacks(self.known.emit, on_failed=self._session.report_failure)
-            self._job.start(tr("reading the target's shape"), partial(reading_shape, self._request), callbacks)
+            self._job.start(
+                tr("reading the target's shape"), partial(reading_shape, self._request, self._grid), callbacks
+            )
 
 
 def next_run(document: Document) -> Request | None:

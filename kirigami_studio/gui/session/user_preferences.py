@@ -27,7 +27,7 @@ class UserPreferences:
         self._path: Path | None = None
 
     def use(self, path: Path) -> None:
-        """Start with the file's preferences and keep it up to date; one that cannot be read is left as it is."""
+        """Start with the file's preferences and keep it up to date."""
         session = self._session
         untouched = session.document in (Document(), self.new_document()) and not session.history.steps
         try:
@@ -62,10 +62,6 @@ class UserPreferences:
     def choose_language(self, language: str) -> None:
         """The window is to speak this language from now on: "system" or a code such as "de"."""
         self._save(replace(self.present, language=language))
-
-    def note_tour(self) -> None:
-        """The guided tour was taken."""
-        self._save(replace(self.present, tour_seen=True))
 
     def _save(self, wanted: Preferences) -> None:
         if wanted == self.present:

@@ -60,7 +60,7 @@ def texts(found: AsCut) -> tuple[str, ...]:
 
 def figures(found: AsCut) -> str:
     """The figures behind the verdict, one in each line."""
-    from kirigami_studio.studio.as_cut import StrainFigure
+    from kirigami_studio.fabricate.strain import StrainFigure
 
     lines = [texts(found)[0]]
     if found.iou is not None and found.ideal_iou is not None:

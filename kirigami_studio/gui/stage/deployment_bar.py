@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.phi_slider import PhiSlider
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.card import TOOL_ICON, ToolButton
+from kirigami_studio.gui.widgets.card import TOOL_ICON, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
@@ -68,6 +68,11 @@ class DeploymentBar(QWidget):
         self.play = ToolButton("play", "play", tr("Play or pause the deployment (Space)."), checkable=True)
         self.options = PlayOptions()
         self.slider = PhiSlider()
+        tip = tr("As cut: show the panels with their bows and connectors, as they are cut (Shift+C).")
+        self.as_cut_button = SwitchButton("asCutSwitch", "connector", tip)
+        self.as_cut_button.hide()  # shown where a sheet is drawn as it is cut
+        self.as_cut = self.as_cut_button.switch
+        self.as_cut.setChecked(True)
         self.ideal = QToolButton()
         self.ideal.setText(tr("Ideal"))
         self.ideal.setObjectName("ideal")
@@ -92,6 +97,7 @@ class DeploymentBar(QWidget):
         row.addWidget(self.play)
         row.addWidget(self.options)
         row.addWidget(self.slider, 1)
+        row.addWidget(self.as_cut_button)
         row.addWidget(self.ideal)
         row.addWidget(self.number)
         self._timer = QTimer(self)
@@ -167,12 +173,14 @@ class DeploymentBar(QWidget):
             self.play.setChecked(False)
 
     def restore(self, settings: QSettings) -> None:
-        """Play as the last time."""
+        """Play as the last time, and show as much of the cuts."""
         self.options.restore(settings)
+        self.as_cut.setChecked(settings.value("asCut") != "no")
 
     def remember(self, settings: QSettings) -> None:
-        """Keep how it is played for the next time."""
+        """Keep how it is played and shown for the next time."""
         self.options.remember(settings)
+        settings.setValue("asCut", "yes" if self.as_cut.isChecked() else "no")
 
 
 class PlayOptions(QToolButton):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, QSizeF, Qt
@@ -13,11 +14,14 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.gui.widgets.paths import DOZEN, line_path, paths_of_quads, round_pen
+from kirigami_studio.gui.widgets.paths import DOZEN, line_path, paths_of_lines, paths_of_quads, round_pen
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
+
+if TYPE_CHECKING:
+    from kirigami_studio.export.cut_motion import CutPose
 
 #: Panels smaller than this (pixels) get no line: it would swallow them.
 SMALLEST_LINED_PANEL = 3.6
@@ -49,13 +53,8 @@ def paint_panels(
     trimmed = trimmed or {}
     whole = np.ones(len(panels), dtype=np.bool_)
     whole[list(trimmed)] = False
-    size = np.median(np.linalg.norm(panels[:, 2] - panels[:, 0], axis=-1)) if len(panels) else 0.0
-    line = QPen(Qt.PenStyle.NoPen)
-    if size >= SMALLEST_LINED_PANEL:
-        line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6 if size > 6 else 0.4)
-        line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
-    # In a drawing that is saved, every panel is a shape of its own.
-    together = 1 if painter.paintEngine().type() is QPaintEngine.Type.SVG else DOZEN
+    line = _panel_pen(panels, palette)
+    together = _together(painter)
     for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
         painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
@@ -65,6 +64,62 @@ def paint_panels(
         for row, part in trimmed.items():
             if chosen[row] and len(part):
                 painter.drawPath(line_path(part, closed=True))
+
+
+def paint_cut_panels(
+    painter: QPainter,
+    pose: CutPose,
+    transform: ViewTransform,
+    quads: FloatArray,
+    turns_left: BoolArray,
+    palette: Palette,
+) -> None:
+    """Fill the panels as the cuts leave them, and draw the cuts; where connectors are, panels go on into each other.
+
+    Parameters
+    ----------
+    painter : QPainter
+    pose : CutPose
+    transform : ViewTransform
+    quads : (K, 4, 2) float, pixels
+        The ideal panels, whose size decides how wide lines are.
+    turns_left : (K,) bool
+        As for :func:`paint_panels`.
+    palette : Palette
+    """
+    together = _together(painter)
+    panels = _in_pixels(pose.panels, transform)
+    for left, colour in ((False, palette.panel_even), (True, palette.panel_odd)):
+        painter.setPen(QPen(QColor(colour), 0.5))
+        painter.setBrush(QColor(colour))
+        chosen = np.flatnonzero(turns_left[pose.numbers] == left).tolist()
+        for path in paths_of_lines([panels[place] for place in chosen], True, together):
+            painter.drawPath(path)
+    painter.setPen(_panel_pen(quads, palette))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for path in paths_of_lines(_in_pixels(pose.cuts, transform), False, together):
+        painter.drawPath(path)
+
+
+def _in_pixels(lines: Sequence[FloatArray], transform: ViewTransform) -> list[FloatArray]:
+    """Lines (L, 2) of the world in pixels, all at once."""
+    ends = np.cumsum([len(line) for line in lines])
+    return np.split(transform.to_pixels(np.concatenate(lines)), ends[:-1]) if len(lines) else []
+
+
+def _panel_pen(quads: FloatArray, palette: Palette) -> QPen:
+    """The line around panels (K, 4, 2), pixels; none around tiny ones."""
+    size = np.median(np.linalg.norm(quads[:, 2] - quads[:, 0], axis=-1)) if len(quads) else 0.0
+    if size < SMALLEST_LINED_PANEL:
+        return QPen(Qt.PenStyle.NoPen)
+    line = QPen(QColor(palette.panel_line), 1.0 if size > 14 else 0.6 if size > 6 else 0.4)
+    line.setJoinStyle(Qt.PenJoinStyle.MiterJoin)
+    return line
+
+
+def _together(painter: QPainter) -> int:
+    """How many panels are one path; in a drawing that is saved, each is a shape of its own."""
+    return 1 if painter.paintEngine().type() is QPaintEngine.Type.SVG else DOZEN
 
 
 def turning_left(rows: int, columns: int) -> BoolArray:

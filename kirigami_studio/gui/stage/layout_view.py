@@ -32,7 +32,7 @@ from kirigami_studio.gui.stage.fault_items import (
 from kirigami_studio.gui.stage.grip_items import GripPlaces, grip_places, paint_grips
 from kirigami_studio.gui.stage.gripping import UNKNOWN as GRIPS_UNKNOWN
 from kirigami_studio.gui.stage.gripping import GripState
-from kirigami_studio.gui.stage.layout_items import paint_panels, turning_left
+from kirigami_studio.gui.stage.layout_items import paint_cut_panels, paint_panels, turning_left
 from kirigami_studio.gui.stage.layout_labels import (
     SmallPart,
     heat_tiles,
@@ -62,6 +62,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     Mismatch,
     design_mismatch,
     difference_chips,
+    mismatch_of_nodes,
     paint_mismatch,
     usual_chips,
 )
@@ -70,11 +71,14 @@ from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)
+#: Angles (radians) that differ by less are one.
+SAME_ANGLE = 1e-6
 #: Opacity of the target's outline there.
 FAINT = 0.4
 #: Width (mm) of the flat sheet until it is known.
@@ -162,6 +166,8 @@ class LayoutView(Canvas):
         self._width_mm = USUAL_WIDTH_MM
         self._scales: list[ColourScale] = []
         self._cut: SimulatedSheet | None = None
+        self._as_cut, self._ideal = True, False
+        self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self._artwork: ShownArtwork | None = None
         self._grips = GRIPS_UNKNOWN
         self._overstretched = 0
@@ -253,6 +259,28 @@ class LayoutView(Canvas):
         if sheet is not self._cut:
             self._cut = sheet
             self.update()
+
+    def set_as_cut(self, on: bool) -> None:
+        """Draw the panels as the cuts leave them, as far as the sheet comes, or those of the ideal motion."""
+        self._as_cut = on
+        self.update()
+
+    def set_ideal(self, on: bool) -> None:
+        """Go on as the ideal motion does where the sheet as cut jams, or stay there."""
+        self._ideal = on
+        self.update()
+
+    @property
+    def shown_as_cut(self) -> CutPose | None:
+        """The pose that is drawn, at the jam for angles beyond it; None where the ideal motion is drawn."""
+        sheet, design = self._cut, self._design
+        if not self._as_cut or sheet is None or design is None:
+            return None
+        if self._ideal and self._phi < sheet.as_cut.reached - SAME_ANGLE:
+            return None
+        if self._made is None or self._made[0] is not sheet:
+            self._made = (sheet, design if sheet.made is None else design.laid_over(sheet.made))
+        return sheet.motion.pose(self._made[1], self._phi)
 
     def show_artwork(self, shown: ShownArtwork | None) -> None:
         """Show the printed sheet of a design on its panels; None where nothing is printed."""
@@ -391,7 +419,7 @@ class LayoutView(Canvas):
                 "{count} connector stretched too far", "{count} connectors stretched too far", self.overstretched
             )
             found.append(Chip((self.palette_.fault,), words))
-        found += self._grip_chips()
+        found += [*self._jam_chips(), *self._grip_chips()]
         chips = found
         if self._areas is not None:
             areas, mm = self._areas, self.mm_per_unit
@@ -404,7 +432,8 @@ class LayoutView(Canvas):
             if self._target is not None:
                 paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
-        nodes = self._design.nodes(self._phi)
+        pose = self.shown_as_cut
+        nodes = self._design.nodes(self._phi) if pose is None else pose.nodes
         field = self._design.deployment.field
         panels = transform.to_pixels(self._design.panels(nodes))
         trimmed = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
@@ -414,12 +443,16 @@ class LayoutView(Canvas):
         artwork = self._painted_artwork(painter)
         if artwork is not None:
             palette = replace(palette, panel_even=PAPER, panel_odd=PAPER, panel_line=palette.muted)
-        paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
+        turning = turning_left(field.rows, field.columns)
+        if pose is None:
+            paint_panels(painter, panels, turning, palette, trimmed)
+        else:
+            paint_cut_panels(painter, pose, transform, panels, turning, palette)
         if artwork is not None:
             paint_artwork(painter, artwork, self._phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
-            self._paint_comparison(painter, transform)
+            self._paint_comparison(painter, transform, pose)
         self._paint_stretch(painter, transform, nodes)
         self._paint_labels(painter, transform, nodes)
         self._paint_grips(painter, transform)
@@ -468,6 +501,14 @@ class LayoutView(Canvas):
         state = self._grips
         shown = Overlay.GRIPS in self._overlays and self._cut is not None and state.sheet is self._cut
         return state.found if shown else None
+
+    def _jam_chips(self) -> list[Chip]:
+        """Where the sheet as cut stays, at angles that it does not come to."""
+        sheet = self._cut
+        if not self._as_cut or self._ideal or sheet is None or self._phi >= sheet.as_cut.reached - SAME_ANGLE:
+            return []
+        words = tr("as cut, stopped at {angle:.0f}°", angle=math.degrees(sheet.as_cut.reached))
+        return [Chip((self.palette_.fault,), words)]
 
     def _grip_chips(self) -> list[Chip]:
         """What the legend says of grips: how many panels to hold and to pull, or why none are marked."""
@@ -524,13 +565,17 @@ class LayoutView(Canvas):
                 occupied,
             )
 
-    def _paint_comparison(self, painter: QPainter, transform: ViewTransform) -> None:
+    def _paint_comparison(self, painter: QPainter, transform: ViewTransform, pose: CutPose | None) -> None:
+        """Sheet against target, as it is cut or in its ideal motion."""
         self._areas = None
         if self._design is None or self._target is None:
             return
         nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
         if Overlay.MISMATCH in self._overlays and nearness > 0.0:
-            self._areas = design_mismatch(self._design, self._target, self._phi)
+            if pose is None:
+                self._areas = design_mismatch(self._design, self._target, self._phi)
+            else:
+                self._areas = mismatch_of_nodes(self._design, self._target, pose.phi, pose.nodes)
             painter.setOpacity(min(1.0, 2.0 * nearness))
             paint_mismatch(painter, self._areas, transform, self.palette_)
             painter.setOpacity(1.0)

@@ -164,7 +164,7 @@ class TargetPanel(Card):
         objects: tuple[Outline, ...] = (),
         source: Outline | None = None,
     ) -> None:
-        """Show the target in the size it will be cut in, and the threshold when it was traced from a picture.
+        """Show the target in the size it is cut in, and the threshold of a traced picture.
 
         ``source`` is the same target as it was read, if its size was in pixels or unknown.
         """

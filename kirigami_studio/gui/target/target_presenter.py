@@ -97,7 +97,7 @@ class TargetPresenter(QObject):
         reshaping.restarted.connect(panel.refine.restart)
 
     def _on_board(self, outline: Outline) -> Outline:
-        """A contour at another threshold lies on its picture, which lies still while the board is open."""
+        """Lay a contour at another threshold on its picture, which lies still meanwhile."""
         picture = self._targeting.tracer.picture_of(outline)
         return self._panel.view.on_picture(outline, None if picture is None else picture.traced)
 

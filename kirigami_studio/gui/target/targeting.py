@@ -22,7 +22,7 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import PART_READERS
+from kirigami_studio.outlines.read import PART_READERS, PICTURES
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -37,7 +37,6 @@ from kirigami_studio.studio.parts import (
     reading_start,
 )
 from kirigami_studio.studio.targets import (
-    PICTURES,
     Picture,
     TargetRead,
     checking_start,

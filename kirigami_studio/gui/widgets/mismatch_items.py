@@ -81,7 +81,11 @@ def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray
 @lru_cache(maxsize=32)
 def design_mismatch(design: PosedDesign, target: Outline, phi: float) -> Mismatch:
     """Compare a design at an angle with its target; kept, as a view is painted more often than it turns."""
-    nodes = design.nodes(phi)
+    return mismatch_of_nodes(design, target, phi, design.nodes(phi))
+
+
+def mismatch_of_nodes(design: PosedDesign, target: Outline, phi: float, nodes: FloatArray) -> Mismatch:
+    """Compare a design whose nodes (N, 2) are at other places than in its ideal motion."""
     return mismatch(target.points, design.outline(nodes, phi), design.removed(nodes, phi))
 
 

@@ -7,6 +7,7 @@ every point would take longer than drawing.
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,6 +74,17 @@ def paths_of_quads(quads: FloatArray, together: int = DOZEN) -> list[QPainterPat
     rings = np.concatenate([quads, quads[:, :1]], axis=1)
     parts = (rings[place : place + together] for place in range(0, len(rings), together))
     return [_path(part.reshape(-1, 2), 5 * np.arange(len(part)), Qt.FillRule.WindingFill) for part in parts]
+
+
+def paths_of_lines(lines: Sequence[FloatArray], closed: bool, together: int = DOZEN) -> list[QPainterPath]:
+    """Polylines or polygons (L, 2), pixels, that look alike, so many in each path; those with less than a line not."""
+    drawn = [line for line in lines if len(line) > 1]
+    rings = [np.concatenate([line, line[:1]]) for line in drawn] if closed else drawn
+    parts = (rings[place : place + together] for place in range(0, len(rings), together))
+    return [
+        _path(np.concatenate(part), np.cumsum([0, *(len(ring) for ring in part[:-1])]), Qt.FillRule.WindingFill)
+        for part in parts
+    ]
 
 
 def area_path(area: BaseGeometry, transform: ViewTransform) -> QPainterPath:

@@ -13,6 +13,11 @@ def readable_length(mm: float) -> str:
     return tr("{mm:.0f} mm", mm=mm) if mm < 1000 else tr("{mm:.2f} m", mm=mm / 1000)
 
 
+def readable_feature(mm: float) -> str:
+    """Hundredths of a millimetre below a centimetre, tenths above."""
+    return tr("{mm:.2f} mm", mm=mm) if mm < 10 else tr("{mm:.1f} mm", mm=mm)
+
+
 def readable_time(seconds: float) -> str:
     """Seconds up to two minutes, then minutes."""
     return tr("{seconds:.0f} s", seconds=seconds) if seconds < 120 else tr("{seconds:.1f} min", seconds=seconds / 60)

@@ -1,4 +1,4 @@
-"""How a verdict looks wherever it is shown: an icon and a colour for its level, pale for an estimate."""
+"""Icon and colour of a verdict wherever it is shown, pale for an estimate."""
 
 from __future__ import annotations
 

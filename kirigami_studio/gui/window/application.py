@@ -226,7 +226,7 @@ def run(argv: list[str]) -> int:
             open_first(window, argv[1] if len(argv) > 1 else FIRST_TARGET)
 
     QTimer.singleShot(0, window, begin)
-    QTimer.singleShot(0, window, window.first_start.begin)
+    QTimer.singleShot(0, window, window.presenters.welcome.begin)
     code = application.exec()
     while window.starts_again:
         window = open_window(application, window)

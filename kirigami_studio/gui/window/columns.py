@@ -1,4 +1,4 @@
-"""The three columns of the window: target and settings, the stage, the gallery over the fabrication panel."""
+"""The three columns of the window: target and settings, stage, gallery and making."""
 
 from __future__ import annotations
 
@@ -45,12 +45,14 @@ class Columns(QWidget):
         self.settings.body.insertWidget(0, self.fabrication.material_row)
         self.settings.body.addWidget(self.run)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
-        for part in (_column(self.target, self.settings), self.stage, _column(self.gallery, self.fabrication)):
+        self._outer = _column(self.target, self.settings), _column(self.gallery, self.fabrication)
+        for part in (self._outer[0], self.stage, self._outer[1]):
             self.splitter.addWidget(part)
         self.splitter.setChildrenCollapsible(False)
         self.splitter.setStretchFactor(1, 1)
         self.splitter.splitterMoved.connect(self._keep_sizes)
         self.target.editing_changed.connect(self._make_room)
+        self.stage.whole_width_wanted.connect(self._give_whole_width)
         self.pages = QStackedWidget()
         self.pages.addWidget(self.splitter)
         whole = QVBoxLayout(self)
@@ -64,7 +66,7 @@ class Columns(QWidget):
         self.fabrication.fit(next(extent for height, extent in EXTENT_BY_HEIGHT if window.height() >= height))
 
     def share_width(self, width: int) -> None:
-        """Share the window's width among the columns, until the user has moved a border between them."""
+        """Share the window's width among the columns, until the user has moved a border."""
         if not self._laid_out and not self.target.editing:
             left = min(max(LEFT_SHARE * width, LEFT_WIDTH[0]), LEFT_WIDTH[1])
             right = min(max(RIGHT_SHARE * width, RIGHT_WIDTH[0]), RIGHT_WIDTH[1])
@@ -76,6 +78,9 @@ class Columns(QWidget):
     def _make_room(self, editing: bool) -> None:
         """The target's editor takes the place of the stage and the settings while it is open."""
         sizes = self.splitter.sizes()
+        if editing and self.stage.wants_whole_width:
+            self.stage.set_comparing(False)
+            sizes = self._sizes_before
         if editing:
             self._sizes_before = sizes
             self.splitter.setSizes([sizes[0] + sizes[1], 0, sizes[2]])
@@ -86,7 +91,19 @@ class Columns(QWidget):
             self.splitter.setSizes(self._sizes_before)
             self.share_width(self.window().width())
             if self.target.view.hasFocus() or self.window().focusWidget() is None:
-                self.stage.view.setFocus()
+                self.stage.take_focus()
+
+    def _give_whole_width(self, whole: bool) -> None:
+        """Three designs and more beside each other take the place of the outer columns."""
+        if whole == self._outer[0].isHidden():
+            return
+        if whole:
+            self._sizes_before = self.splitter.sizes()
+        for column in self._outer:
+            column.setVisible(not whole)
+        if not whole:
+            self.splitter.setSizes(self._sizes_before)
+            self.share_width(self.window().width())
 
     def _keep_sizes(self) -> None:
         self._laid_out = True

@@ -1,4 +1,4 @@
-"""The Help menu: the guide, the keys, the tour, the sample, the licences."""
+"""The Help menu: the guide, the keys, the sample, the licences."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from kirigami_studio.gui.session.command import Command
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 
 
-def commands(dialogs: Dialogs, start_tour: Callable[[], None], open_sample: Callable[[], None]) -> tuple[Command, ...]:
+def commands(dialogs: Dialogs, open_sample: Callable[[], None]) -> tuple[Command, ...]:
     """Return the commands of the Help menu."""
     menu = tr("&Help")
     return (
@@ -25,19 +25,12 @@ def commands(dialogs: Dialogs, start_tour: Callable[[], None], open_sample: Call
             shortcuts=("?", "Ctrl+/"),
         ),
         Command(
-            "tour",
-            menu,
-            tr("&Tour"),
-            tr("Take a six-step tour"),
-            start_tour,
-            gap=True,
-        ),
-        Command(
             "sample",
             menu,
             tr("Open &sample project"),
             tr("Open a sample project with heart designs"),
             open_sample,
+            gap=True,
         ),
         Command(
             "about",

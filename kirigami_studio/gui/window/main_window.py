@@ -30,12 +30,10 @@ from kirigami_studio.gui.window import (
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
-from kirigami_studio.gui.window.first_start import FirstStart
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
-from kirigami_studio.gui.window.tour import Tour
 from kirigami_studio.gui.window.unsaved_work import UnsavedWork
 from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS
 
@@ -106,13 +104,12 @@ class MainWindow(QMainWindow):
             command=lambda name: self.commands[name],
         )
         self._connect_session()
-        self.first_start = FirstStart(self.stage, session, services.preferences, lambda: self.tour.start())
         self.commands = CommandActions(self, self._all_commands(), self.state)
         self._build_submenus(ask)
         self._refresh_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
-        self.tour = Tour(columns, services, self.appearance, self.commands["cancel"])
+        self.stage.welcome.offer(self.commands.actions)
         self.appearance.changed.connect(self.commands.set_palette)
         self.appearance.set_theme(palette)
 
@@ -164,10 +161,8 @@ class MainWindow(QMainWindow):
             *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
             *draw_commands.commands(self.target, self.session.post),
             *design_commands.commands(services, self.stage, self.gallery, presenters, dialogs),
-            *view_commands.commands(
-                self.columns, self.session, presenters, self.appearance, self.first_start.switch_motion
-            ),
-            *help_commands.commands(dialogs, lambda: self.tour.start(), self.files.open_sample),
+            *view_commands.commands(self.columns, self.session, presenters, self.appearance),
+            *help_commands.commands(dialogs, self.files.open_sample),
         )
 
     def _build_submenus(self, ask: FileDialogs) -> None:
@@ -248,7 +243,7 @@ class MainWindow(QMainWindow):
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
         self.columns.share_width(self.width())
-        self.stage.view.setFocus()
+        self.stage.take_focus()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
@@ -296,7 +291,7 @@ class MainWindow(QMainWindow):
             event.ignore()
             return
         self.stage.player.play.setChecked(False)
-        self.tour.end()
+        self.stage.set_comparing(False)  # whose columns would be remembered
         self.dialogs.close()
         self.hide()  # the worker may be deep in an import: let it end out of sight
         self.services.close()

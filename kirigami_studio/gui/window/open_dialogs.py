@@ -213,7 +213,7 @@ class Dialogs(QObject):
         bring_to_front(self.artwork)
 
     def export_artwork(self) -> None:
-        """Write the printed sheet into a folder of the user's choice; without artwork, offer to choose a picture."""
+        """Write the printed sheet into a folder; without artwork, offer to choose a picture."""
         if self._services.session.document.artwork is None:
             self.show_artwork()
         else:

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QLabel
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.gui.gallery.all_designs_presenter import AllDesignsPresenter
+from kirigami_studio.gui.gallery.comparing import Comparison
 from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
-from kirigami_studio.gui.gallery.side_by_side import SideBySide
 from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
 from kirigami_studio.gui.run.run_presenter import RunPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
@@ -25,6 +25,7 @@ from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.stage_presenter import StagePresenter
+from kirigami_studio.gui.window.welcome_page import WelcomePresenter
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of
 from kirigami_studio.studio.making import Motion
@@ -76,7 +77,9 @@ class Presenters(QObject):
             choose=chosen.choose,
             change=services.settings.change,
         )
-        self.side_by_side = SideBySide(gallery, stage.compare, session, choose=chosen.choose, turn=stage.set_comparing)
+        self.comparison = Comparison(
+            gallery, stage.compare, session, services.as_cut, choose=chosen.choose, turn=stage.set_comparing
+        )
         self.all_designs = AllDesignsPresenter(
             columns.pages,
             gallery,
@@ -85,7 +88,7 @@ class Presenters(QObject):
             generation=services.generation,
             marks=services.marks,
             choose=chosen.choose,
-            phi=lambda: stage.view.phi,
+            compare=self.comparison.compare,
         )
         self.target = TargetPresenter(
             target,
@@ -155,6 +158,7 @@ class Presenters(QObject):
             showing_before=lambda: stage.showing_before,
             command=command,
         )
+        self.welcome = WelcomePresenter(stage.welcome, session, services.preferences)
         self._connect_session()
         self._connect_stage()
         self._connect_pages()
@@ -195,8 +199,8 @@ class Presenters(QObject):
     def _connect_pages(self) -> None:
         """A view in the place of another."""
         stage = self._columns.stage
-        self.designs.compare_wanted.connect(self.side_by_side.compare_with)
-        stage.comparing_changed.connect(self.side_by_side.follow)
+        self.designs.compare_wanted.connect(self.comparison.compare_with)
+        stage.comparing_changed.connect(self.comparison.follow)
         for hidden_by_table in (self._columns.target.editing_changed, stage.comparing_changed):
             hidden_by_table.connect(self.all_designs.leave_to)
         self.all_designs.shown_changed.connect(self._make_way)
@@ -253,7 +257,7 @@ class Presenters(QObject):
     def _show_document(self, document: Document) -> None:
         """The document has changed."""
         self.designs.show_document(document)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
         self.all_designs.show_document()
         self.target.show_document(document)
         self.stage.show_document()
@@ -266,7 +270,7 @@ class Presenters(QObject):
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is on the stage, or none."""
         self.designs.show_design(entry)
-        self.side_by_side.show_design(entry)
+        self.comparison.show_design(entry)
         self.all_designs.show_design(entry)
         self.stage.show_design(entry)
         self.making.show_design(entry)
@@ -276,13 +280,13 @@ class Presenters(QObject):
     def _show_gallery(self, entries: tuple[Entry, ...]) -> None:
         """Other designs are in the gallery."""
         self.designs.show_gallery(entries)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
         self.all_designs.show_document()
 
     def _show_found(self, entry: Entry) -> None:
         """A run has found a design, or improved one."""
         self.designs.add(entry)
-        self.side_by_side.show_pair()
+        self.comparison.refresh()
 
     def _show_reading(self, reading: TargetReading | None) -> None:
         """Show what the target's shape says of symmetry and grid."""
@@ -306,7 +310,7 @@ class Presenters(QObject):
         """The table of all designs comes, or is gone."""
         columns = self._columns
         if not shown:
-            columns.stage.view.setFocus()
+            columns.stage.take_focus()
             return
         if columns.target.editing:
             columns.target.set_editing(False)

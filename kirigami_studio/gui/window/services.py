@@ -1,4 +1,4 @@
-"""The services of one window: built on its session, stopped when the project changes, closed with it."""
+"""The services of one window, built on its session and closed with it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from kirigami_studio.gui.target.targeting import SecondReader, StartReader, Targ
 
 
 class Services(QObject):
-    """Builds the session and all that works on it; goes on with the project of an ``earlier`` window that is closed.
+    """Builds the session and all that works on it, with the project of an ``earlier`` window.
 
     Attributes
     ----------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QResizeEvent
 from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
@@ -17,12 +17,12 @@ from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutState
 from kirigami_studio.gui.stage.as_cut_line import AsCutLine
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
-from kirigami_studio.gui.stage.empty_stage import EmptyStage
 from kirigami_studio.gui.stage.ends_line import EndsLine
 from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, LayoutView
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
 from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.two_states import TwoStates
 
@@ -59,7 +59,8 @@ class StagePanel(Card):
     before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
     status = Signal(str)
     switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
-    comparing_changed = Signal(bool)  #: whether two designs are shown side by side
+    comparing_changed = Signal(bool)  #: whether several designs are shown side by side
+    whole_width_wanted = Signal(bool)  #: more of them than have room beside the other columns
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Layout"), parent)
@@ -80,7 +81,7 @@ class StagePanel(Card):
         self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
         self.compare = ComparePage()
-        self.compare.pair_changed.connect(self.show_title)
+        self.compare.shown_changed.connect(self._show_comparison)
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
@@ -101,6 +102,9 @@ class StagePanel(Card):
         self._add_overlays()
         self._add_pages()
         self.deployment.phi_changed.connect(self.view.set_phi)
+        self.deployment.as_cut_button.show()
+        self.deployment.as_cut.toggled.connect(self.view.set_as_cut)
+        self.deployment.ideal.toggled.connect(self.view.set_ideal)
         self.ends.phi_wanted.connect(self.deployment.set_phi)
         self.deployment.ideal.toggled.connect(lambda _: self.switches_changed.emit())
         self.deployment.phi_changed.connect(self.plots.set_phi)
@@ -140,7 +144,7 @@ class StagePanel(Card):
         self.whole.clicked.connect(self.fit)
         self.header.addWidget(self.whole)
         for button in (self.whole, *self.toggles.values()):
-            button.hide()  # until it is known that there is room: they must not make the stage wider than its share
+            button.hide()  # until it is known that there is room
 
     def _add_pages(self) -> None:
         self._layout_page = layout = QWidget()
@@ -154,9 +158,8 @@ class StagePanel(Card):
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
-        self.empty = EmptyStage()
-        self.empty.hide()
-        column.addWidget(self.empty, 1)
+        self.welcome = WelcomePage()
+        column.addWidget(self.welcome, 1)
         column.addWidget(self.split, 1)
         self.voids = VoidBar()
         self.voids.hide()
@@ -175,7 +178,7 @@ class StagePanel(Card):
     def set_hint(self, icon: str, headline: str, hint: str) -> None:
         """Say what to do while there is no design."""
         self.view.set_hint(icon, headline, hint)
-        self.empty.say(headline, hint)
+        self.welcome.say(headline, hint)
 
     def show_run(self, target: Outline | None) -> None:
         """Show the target until the first design of a run comes; the sample must not hide that."""
@@ -189,21 +192,23 @@ class StagePanel(Card):
         self._show_waiting()
 
     def _show_waiting(self) -> None:
-        self.place_sample()
+        self._place_welcome()
         if self._entry is None:
             self._show()
 
-    def place_sample(self) -> None:
-        """Show the sample while there is no design, if it is there and allowed."""
-        shown = self._sample_allowed and self._entry is None and self.empty.ready
-        pages: tuple[QWidget, QWidget] = (self.split, self.empty)
+    def _place_welcome(self) -> None:
+        """Show the welcome page while there is no design, and none on its way."""
+        shown = self._sample_allowed and self._entry is None
+        pages: tuple[QWidget, QWidget] = (self.split, self.welcome)
         leaving, coming = pages if shown else pages[::-1]
         focused = self.window().focusWidget()
         held = focused is not None and (leaving is focused or leaving.isAncestorOf(focused))
         coming.show()
         if held:  # else Qt would hand it to the next button
-            (self.empty if shown else self.view).setFocus()
+            (self.welcome if shown else self.view).setFocus()
         leaving.hide()
+        for part in (self.deployment, self.as_cut):
+            part.setVisible(not shown)
 
     @property
     def showing_cuts(self) -> bool:
@@ -212,13 +217,18 @@ class StagePanel(Card):
 
     @property
     def comparing(self) -> bool:
-        """Whether two designs are shown side by side."""
+        """Whether several designs are shown side by side."""
         return self.pages.currentWidget() is self.compare
 
     @property
     def player(self) -> DeploymentBar | CutBar:
         """What Space plays now."""
         return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
+
+    def take_focus(self) -> None:
+        """Give the keyboard to what is in sight."""
+        view = self.welcome if self.split.isHidden() else self.view
+        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else view).setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
@@ -229,10 +239,19 @@ class StagePanel(Card):
         (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
 
     def set_comparing(self, on: bool) -> None:
-        """Show two designs side by side, or one alone."""
+        """Show several designs side by side, or one alone."""
         if on != self.comparing:
             self.cuts_switch.switch.setChecked(False)
             self._turn_to(self.compare if on else self._layout_page)
+
+    @property
+    def wants_whole_width(self) -> bool:
+        """Whether more designs are compared than have room beside the other columns."""
+        return self.comparing and len(self.compare.designs) > 2
+
+    def _show_comparison(self) -> None:
+        self.show_title()
+        self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _toggle_cuts(self, on: bool) -> None:
         self._turn_to(self.cuts if on else self._layout_page)
@@ -249,11 +268,12 @@ class StagePanel(Card):
             button.setVisible(not cuts)
         for button in self.cuts.toggles.values():
             button.setVisible(cuts)
-        (self.cuts.view if cuts else self.compare.left.view if self.comparing else self.view).setFocus()
+        self.take_focus()
         self.show_title()
         self.switches_changed.emit()
         if compared != self.comparing:
             self.comparing_changed.emit(self.comparing)
+            self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _toggle_hand(self, on: bool) -> None:
         self.voids.setVisible(on)
@@ -274,7 +294,7 @@ class StagePanel(Card):
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.design is None and target != self._posed_for
         self._entry, self._target, self._name, self._sample = entry, target, name, None
-        self.place_sample()
+        self._place_welcome()
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()
@@ -379,7 +399,8 @@ class StagePanel(Card):
     def show_title(self) -> None:
         """Show what the header says of the design or of its cuts."""
         entry, name = self._entry, self._name
-        self.title.setText(tr("Layout") if entry is None or not name else tr("Design {name}", name=name))
+        alone = tr("Layout") if entry is None or not name else tr("Design {name}", name=name)
+        self.title.setText(tr("Comparison") if self.comparing else alone)
         self.numbers.set_texts(*self._texts())
         self.numbers.setToolTip("" if entry is None else described(entry.candidate, name))
         self._fit_numbers()
@@ -448,6 +469,13 @@ class StagePanel(Card):
         self.deployment.remember(settings)
         settings.setValue("plots", "yes" if self.plots_switch.isChecked() else "no")
         settings.setValue("plotsSplit", self.split.saveState())
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        """Leave out the buttons that go where there is no room."""
+        whole, spacing = super().minimumSizeHint(), self.header.spacing()
+        shown = [button for button in (self.whole, *self.toggles.values()) if not button.isHidden()]
+        header = whole.width() - sum(button.minimumSizeHint().width() + spacing for button in shown)
+        return QSize(max(header, self.pages.minimumSizeHint().width() + 2 * INSET), whole.height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         self._fit_numbers()

@@ -72,10 +72,7 @@ class StagePresenter(QObject):
         if self._session.document.target is not None:
             self._panel.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
             return
-        hint = tr(
-            "Open a file (Ctrl+O), choose from the library (Ctrl+L), or draw a silhouette on the left. "
-            "File > Examples of pairs has finished designs."
-        )
+        hint = tr("Draw a shape, open a file, or take a silhouette.")
         self._panel.set_hint("target", tr("Start with a target"), hint)
 
     def show_document(self) -> None:

@@ -39,9 +39,8 @@ def commands(
     session: Session,
     presenters: Presenters,
     appearance: Appearance,
-    switch_motion: Callable[[], None],
 ) -> tuple[Command, ...]:
-    """Return the commands of the View menu; ``switch_motion`` lets what moves by itself stand still."""
+    """Return the commands of the View menu."""
     stage = columns.stage
     return (
         *_deployment(stage, session),
@@ -49,7 +48,7 @@ def commands(
         *_faults(stage),
         *_pages(columns, presenters),
         *_zooms(columns.target, stage),
-        *_themes(appearance, switch_motion),
+        *_themes(appearance, presenters.welcome.switch_motion),
     )
 
 
@@ -104,6 +103,15 @@ def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
             tr("Show the target angle"),
             partial(_go_to_target, stage, session),
             shortcuts=("Ctrl+Right",),
+        ),
+        Command(
+            "as_cut",
+            menu,
+            tr("As &cut"),
+            tr("Show the panels with their bows and connectors, as they are cut"),
+            bar.as_cut.trigger,
+            shortcuts=("Shift+C",),
+            switch=bar.as_cut,
         ),
         Command(
             "ideal",
@@ -202,7 +210,7 @@ def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
             "compare",
             menu,
             tr("Si&de by side"),
-            tr("Compare two designs side by side"),
+            tr("Compare designs side by side"),
             compare.trigger,
             shortcuts=("K",),
             icon="compare",
@@ -222,7 +230,7 @@ def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
             menu,
             tr("S&wap compared designs"),
             tr("Make the compared design the chosen one"),
-            presenters.side_by_side.swap,
+            presenters.comparison.swap,
             shortcuts=("Shift+K",),
             icon="swap",
             enabled_when=lambda now: now.comparing,

@@ -12,9 +12,9 @@ import numpy as np
 import torch
 
 from kirigami_studio.generator.sampler import one_torch_thread
+from kirigami_studio.lab.baselines.marching import march
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.marching import march
 from kirigami_studio.lattice.ratio_field import RatioField
 
 GROWTH_SIZES = (10, 14, 20, 28, 38, 48)

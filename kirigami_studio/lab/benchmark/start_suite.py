@@ -13,9 +13,9 @@ import shapely
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.feasibility import UNION_GRID, invalid_quads, path_contact
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lab.baselines.marching import void_angle
 from kirigami_studio.lattice.deployment import Deployment, deploy, rotate
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
-from kirigami_studio.lattice.marching import void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, anchor_points, rim_table
 from kirigami_studio.outlines.outline import Outline

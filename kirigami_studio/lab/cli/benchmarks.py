@@ -137,6 +137,7 @@ lattice = alone("lattice_suite:measure_lattice", "Timing the lattice")
 fabrication = alone("fabrication_suite:measure_fabrication", "Random designs", designs="count")
 cut_files = alone("cut_files_suite:measure_cut_files", "Random designs")
 mechanics = alone("mechanics_suite:measure_mechanics", "Closing published networks")
+presets = alone("preset_suite:measure_presets", "Sheets in bundled materials")
 
 
 def robustness(arguments: argparse.Namespace) -> int:

@@ -462,6 +462,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="finished widths of the connectors (default 0.2 0.5 1.0)"),
         GRID, samples(32), SEED, STYLE, *FIGURES,
     ), ("kirigami-studio benchmark as-cut", "kirigami-studio benchmark as-cut --targets library --connectors-mm 0.2")),
+    SubCommand("benchmark presets", "design shapes in every bundled material at its usual size",
+               "lab.cli.benchmarks:presets", (
+        option("--materials", nargs="+", default=[], metavar="KEY", help="of bundled materials (default: all)"),
+        option("--shapes", nargs="+", default=[], metavar="NAME",
+               help="silhouettes of the library (default: hexagon house heart star letter-l gear)"),
+        samples(32), SEED, *FIGURES,
+    ), ("kirigami-studio benchmark presets --materials card-co2 --k 8",)),
 )  # fmt: skip
 
 #: Groups of sub-commands, and what each is for.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -99,6 +99,15 @@ def _in_group(arguments: argparse.Namespace, work: Callable[[Process], None]) ->
     return 0
 
 
+def _last_told(records: Iterator[dict[str, float]], arguments: argparse.Namespace) -> dict[str, float]:
+    """Train to the end, print every record unless JSON is wanted, and return the last one."""
+    record: dict[str, float] = {}
+    for record in records:
+        if not arguments.json:
+            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    return record
+
+
 def train(arguments: argparse.Namespace) -> int:
     """Train the prior, or go on training it, and write its weights into the run folder."""
     return _in_group(arguments, partial(_train, arguments))
@@ -131,8 +140,7 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
         shape=shape,
     )
     folder = Path(arguments.out)
-    record: dict[str, float] = {}
-    for record in train_flow(
+    records = train_flow(
         settings,
         folder,
         process.device,
@@ -141,9 +149,8 @@ def _train(arguments: argparse.Namespace, process: Process) -> None:
         recorded=arguments.recorded,
         seconds=seconds,
         validate_every=arguments.validate_every,
-    ):
-        if not arguments.json:
-            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    )
+    record = _last_told(records, arguments)
     if process.ranks.first:
         about = {"validation": record, "settings": settings.to_json()}
         network = trained_network(settings, folder, process.device)
@@ -239,8 +246,7 @@ def _train_baseline(
         seed=arguments.seed,
     )
     folder = Path(arguments.out)
-    record: dict[str, float] = {}
-    for record in train_baseline(
+    records = train_baseline(
         settings,
         folder,
         process.device,
@@ -249,9 +255,8 @@ def _train_baseline(
         recorded=arguments.recorded,
         seconds=seconds,
         validate_every=arguments.validate_every,
-    ):
-        if not arguments.json:
-            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    )
+    record = _last_told(records, arguments)
     if process.ranks.first:
         about = {"validation": record, "settings": settings.to_json()}
         made = trained_baseline(settings, folder, process.device)
@@ -321,8 +326,7 @@ def grpo(arguments: argparse.Namespace) -> int:
         return watched(network) | {f"structured_{name}": value for name, value in among.items()}
 
     folder = Path(arguments.out)
-    record: dict[str, float] = {}
-    for record in train_grpo(
+    records = train_grpo(
         settings,
         folder,
         device,
@@ -332,9 +336,8 @@ def grpo(arguments: argparse.Namespace) -> int:
         seconds=seconds,
         validate_every=arguments.validate_every,
         keep_at=arguments.keep_at,
-    ):
-        if not arguments.json:
-            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    )
+    record = _last_told(records, arguments)
     about = {"validation": record, "settings": settings.to_json(), "start": start.variant}
     path = store_model(f"grpo-{settings.reward}", aligned_network(folder, start), folder, about)
     _tell_weights(arguments, path, record)
@@ -387,8 +390,7 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
     def validate(network: Network) -> dict[str, float]:
         return preference_figures(network, VALIDATION_COUNT, tuple(VARIANTS.values()), settings.sampling_steps)
 
-    record: dict[str, float] = {}
-    for record in train_aligned(
+    records = train_aligned(
         settings,
         folder,
         process.device,
@@ -397,9 +399,8 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         begin,
         seconds=seconds,
         validate_every=arguments.validate_every,
-    ):
-        if not arguments.json:
-            say(" ".join(f"{key} {value:.4f}" for key, value in record.items()))
+    )
+    record = _last_told(records, arguments)
     if process.ranks.first:
         network = aligned_network(settings, folder, process.device)
         record = record or validate(network)

@@ -25,7 +25,7 @@ from kirigami_studio.outlines.placed import Placed
 SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
 #: A large screen, for the states that look different there.
 LARGE = QSize(2560, 1440)
-LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open", "tour"})
+LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open"})
 #: Size of the window at twice the scale: 2560 x 1440 device pixels.
 SCALED = QSize(1280, 720)
 #: A rectangle with a notch, mm.

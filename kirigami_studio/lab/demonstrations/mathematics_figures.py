@@ -20,10 +20,10 @@ import shapely
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_near, siou_of_many
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lab.baselines.marching import march, void_angle
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.lattice.marching import march, void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline

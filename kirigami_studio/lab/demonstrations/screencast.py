@@ -101,9 +101,9 @@ class Screencast(OffscreenSession):
         """Film every step and return the files."""
         window = self.window
         window.show()
-        window.first_start.begin()  # reads the sample that moves on the empty stage
-        self.until(lambda: window.stage.empty.ready, "the sample did not come")
-        window.first_start.decline()
+        window.presenters.welcome.begin()  # reads the sample that moves
+        self.until(lambda: window.stage.welcome.ready, "the sample did not come")
+        window.presenters.welcome.decline()
         self.say("Kirigami Studio: from a silhouette to a cut file, in two minutes")
         self.live(6.0)
         self.choose_target()

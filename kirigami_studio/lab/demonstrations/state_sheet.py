@@ -101,7 +101,7 @@ class StateSheet(BoardStates):
         window = self.window
         window.show()
         self.all_sizes("empty")
-        self.first_start()
+        self.welcome()
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
@@ -151,15 +151,15 @@ class StateSheet(BoardStates):
         self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
         return self.files
 
-    def first_start(self) -> None:
-        """The sample on the empty stage with the question for machine and material, and without it."""
-        first, empty = self.window.first_start, self.window.stage.empty
-        first.begin()
-        self.until(lambda: empty.ready, "the sample was not read")
-        empty.stop()
-        empty.view.set_phi(math.radians(100.0))
+    def welcome(self) -> None:
+        """The welcome page with the question for machine and material, and without it."""
+        presenter, page = self.window.presenters.welcome, self.window.stage.welcome
+        presenter.begin()
+        self.until(lambda: page.ready, "the sample was not read")
+        page.stop()
+        page.view.set_phi(math.radians(100.0))
         self.all_sizes("first-start")
-        first.decline()
+        presenter.decline()
         self.all_sizes("sample")
 
     def german(self) -> None:
@@ -182,15 +182,8 @@ class StateSheet(BoardStates):
         speak(SYSTEM)
 
     def first_steps(self) -> None:
-        """The tour at a control on every side, the sheet of keys, and the licences."""
-        tour, dialogs = self.window.tour, self.window.dialogs
-        tour.start()
-        for step in range(len(tour.steps)):
-            if step == 2:
-                self.all_sizes("tour")
-            else:
-                self.picture(f"tour-{step + 1}")
-            click(tour.callout.next)
+        """The sheet of keys, and the licences."""
+        dialogs = self.window.dialogs
         dialogs.show_shortcuts()
         dialogs.show_about()
         for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
@@ -217,7 +210,7 @@ class StateSheet(BoardStates):
             services.marks.pin(services.session.document.candidates[row])
         services.marks.reject(services.session.document.candidates[3], None)
         click(bar.filter)
-        for box in (bar.filters.feasible, bar.filters.rejected):
+        for box in (bar.filters.works, bar.filters.rejected):
             box.setChecked(True)
         bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
         bar.order.activated.emit(bar.order.currentIndex())
@@ -267,8 +260,9 @@ class StateSheet(BoardStates):
         self.all_sizes("all-designs-nothing")
         click(page.show_all)
         press_key(page.table, Qt.Key.Key_C)
-        page.compare.bar.set_phi(math.radians(60.0))
+        window.stage.compare.set_phi(math.radians(60.0))
         self.all_sizes("all-designs-compared")
+        click(window.stage.compare.leave)
         page.table.clear_compared()
         window.commands["rename"].trigger()
         if window.dialogs.label is not None:
@@ -283,7 +277,7 @@ class StateSheet(BoardStates):
         click(window.gallery.bar.compare)
         self.all_sizes("compare")
         window.stage.deployment.set_phi(math.radians(100.0))
-        window.stage.compare.left.view.zoom(2.0)
+        window.stage.compare.zoom(2.0)
         self.all_sizes("compare-half-open")
         window.stage.deployment.set_phi(0.0)
         click(window.stage.compare.leave)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,6 +68,15 @@ def test_that_a_simulated_sheet_has_panels_on_its_way(cuts: ks.Cuts) -> None:
     closed, open_ = motion.panels(), motion.panels(math.pi / 2)
     assert len(closed) == len(open_) == 30
     assert np.ptp(np.concatenate(open_), axis=0).prod() > 1.3 * np.ptp(np.concatenate(closed), axis=0).prod()
+
+
+def test_that_a_picture_shows_the_angle_that_is_asked_for_as_cut_or_ideal(cuts: ks.Cuts, tmp_path: Path) -> None:
+    ways: list[dict[str, Any]] = [{}, {"phi": math.pi / 2}, {"as_cut": True}, {"phi": math.pi / 2, "as_cut": True}]
+    written = set()
+    for number, way in enumerate(ways):
+        cuts.export(tmp_path / f"{number}.png", **way)
+        written.add((tmp_path / f"{number}.png").read_bytes())
+    assert len(written) == 4
 
 
 def test_that_a_file_is_checked_alone_and_beside_its_design(cuts: ks.Cuts, design: ks.Design, tmp_path: Path) -> None:

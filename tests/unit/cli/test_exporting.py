@@ -9,13 +9,16 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from PIL import Image
 
 from kirigami_studio.cli import main
+from kirigami_studio.cli.fabrication import export
 from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import STRAIGHT
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -24,6 +27,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
+from tests.refusals import refused
 
 
 @pytest.fixture
@@ -261,3 +265,60 @@ def test_that_a_senseless_number_of_copies_is_wrong_usage(
     except SystemExit as left:
         code = int(str(left.code))
     assert code == 2 and not (tmp_path / "cut.dxf").exists()
+
+
+def pixels(path: Path) -> np.ndarray:
+    with Image.open(path) as read:
+        return np.asarray(read.convert("RGB"))
+
+
+def test_that_pictures_show_the_sheet_as_it_is_cut_and_half_open(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    shown = {}
+    for name, choices in {
+        "ideal": [], "half": ["--at-deg", "90"], "flat": ["--at-deg", "180"],
+        "cut": ["--as-cut"], "cut-half": ["--as-cut", "--at-deg", "90"], "cut-flat": ["--as-cut", "--at-deg", "180"],
+    }.items():  # fmt: skip
+        path = tmp_path / f"{name}.png"
+        words = ("export", project, "--out", path, "--connector-mm", "1.5", *choices, "--json")
+        code, out, err = run(capsys, *words)
+        assert code == 0, err
+        assert json.loads(out)["verdict"]["level"]
+        shown[name] = pixels(path)
+    # Flat, it is seen over the same target, so both pictures have one frame: they differ by bows and connectors alone.
+    assert shown["flat"].shape == shown["cut-flat"].shape
+    differ = np.abs(shown["flat"].astype(int) - shown["cut-flat"]).max(axis=2) > 60
+    assert 5e-4 < differ.mean() < 0.2
+    assert len({(image.shape, image.tobytes()) for image in shown.values()}) == 6
+
+
+def test_that_the_pictures_of_the_whole_set_are_as_cut_and_the_cut_files_the_same(
+    capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path
+) -> None:
+    for name, choices in {"plain": [], "cut": ["--as-cut", "--at-deg", "60"]}.items():
+        code, _, err = run(capsys, "export", project, "--out", tmp_path / name, "--all", *choices, "--json")
+        assert code == 0, err
+    for name in ("cut.dxf", "cut.svg", "cut.pdf"):
+        assert (tmp_path / "plain" / name).read_bytes() == (tmp_path / "cut" / name).read_bytes(), name
+    plain, cut = ((tmp_path / name / "layout.svg").read_text() for name in ("plain", "cut"))
+    assert "Picture, not a cut file. As cut" in cut and "at 60 degrees" in cut
+    assert "As cut" not in plain and "at 0 degrees" in plain
+
+
+@pytest.mark.parametrize(
+    ("out", "choices", "code"),
+    [
+        ("cut.dxf", ["--as-cut"], "picture.none"),
+        ("cut.svg", ["--at-deg", "90"], "picture.none"),
+        ("open.gif", ["--at-deg", "90"], "picture.none"),
+        ("open.png", ["--at-deg", "181"], "picture.angle"),
+    ],
+)
+def test_that_choices_of_pictures_are_refused_for_cut_files(
+    project: Path, tmp_path: Path, out: str, choices: list[str], code: str
+) -> None:
+    arguments = build_parser().parse_args(["export", str(project), "--out", str(tmp_path / out), *choices])
+    with refused(UsageError, code):
+        export(arguments)
+    assert not (tmp_path / out).exists()

@@ -55,7 +55,8 @@ def test_that_a_sheet_is_closed_as_the_contract_says(sheet_file: Path, capsys: p
         assert found["max_strain_out_of_plane"][-1] < found["max_strain"][-1]
     # Finished widths differ by less than a micrometre, so connectors do not turn quite alike.
     assert max(ideal["max_stretch_widths"]) < 1e-3
-    assert ideal["jam_deg"] is None
+    # Nothing jams as far as it was driven: beyond that there is only an estimate.
+    assert (ideal["jam_deg"], ideal["jam_from"]) == (0.0, "estimate")
     assert cut["max_stretch_widths"][-1] > 0.01
     stiff = answer(capsys, *words, "--young-gpa", 5.0)
     assert stiff["energy_mj"][-1] == pytest.approx(2.0 * cut["energy_mj"][-1], rel=1e-6)
@@ -94,7 +95,7 @@ def test_that_grips_are_held_and_moved(sheet_file: Path, capsys: pytest.CaptureF
 def test_that_a_project_tells_its_overlap_as_cut(capsys: pytest.CaptureFixture[str]) -> None:
     project = resource("examples", "heart.kiri")
     found = answer(capsys, "mechanics", project, "--centres", "node", "--steps", 11, "--json")
-    assert found["jam_deg"] == 0.0
+    assert (found["jam_deg"], found["jam_from"]) == (0.0, "simulation") and "estimated_jam_deg" not in found
     assert found["iou_as_cut"] == pytest.approx(found["iou_ideal"], abs=0.003)
     centred, straight = (
         answer(capsys, "mechanics", project, "--style", style, "--steps", 16, "--json")
@@ -154,3 +155,31 @@ def test_that_options_of_sheets_are_checked(sheet_file: Path, capsys: pytest.Cap
         found, sentence = refusal(capsys, "mechanics", sheet_file, *words)
         assert found == code
         assert told in sentence
+
+
+def test_that_card_which_would_close_is_said_to_break(sheet_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("mechanics", sheet_file, "--material", "card-co2", "--connector-mm", 0.5, "--steps", 9)
+    found = answer(capsys, *words, "--json")
+    assert found["breaks"] and 90.0 < found["breaks_deg"] < 180.0
+    assert (found["strain_limit"], found["strain_believed"]) == (0.03, "in_plane")
+    assert max(found["max_strain"]) > 0.5
+    assert main([str(word) for word in words]) == 0
+    told = capsys.readouterr().out
+    assert "breaks at 3 %" in told and "Closes" not in told
+    film = answer(capsys, "mechanics", sheet_file, "--steps", 5, "--json")
+    assert (film["breaks"], film["breaks_deg"]) == (False, None)
+
+
+def test_that_energy_torque_and_force_are_named_by_their_units_in_all_figures(
+    sheet_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = answer(capsys, "mechanics", sheet_file, "--steps", 5, "--json")
+    for figure in (found, found["in_plane_yielding"], found["out_of_plane"]):
+        for torque, force in zip(figure["torque_nmm"], figure["force_n"], strict=True):
+            assert torque == pytest.approx(force * found["lever_mm"], rel=1e-9, abs=1e-9)
+    assert found["out_of_plane"]["energy_mj"][-1] < found["in_plane_yielding"]["energy_mj"][-1] < found["energy_mj"][-1]
+    gripped = answer(
+        capsys, "mechanics", sheet_file, "--hold", 0, "--move", 15, "--steps", 5, "--end-deg", 120, "--json"
+    )
+    assert "torque_nmm" not in gripped and gripped["lever_mm"] is None
+    assert set(gripped["out_of_plane"]) == {"energy_mj", "force_n"}

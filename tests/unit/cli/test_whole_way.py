@@ -11,6 +11,7 @@ import pytest
 from ezdxf import bbox
 
 from kirigami_studio.cli import main
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.project.store import load
 
@@ -113,6 +114,21 @@ def test_that_a_grid_left_to_the_program_is_stored_as_such(tmp_path: Path, capsy
     project = load(tmp_path / "design.kiri")
     assert project.settings.auto_grid and list(project.settings.grid) == best["grid"]
     assert project.provenance["grid_choice"] == "auto"
+
+
+def test_that_what_a_material_cannot_do_is_said_before_the_run_and_its_size_is_the_usual_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["hexagon", "--k", "1", "--no-polish", "--grid", "4x4", "--out", str(tmp_path), "--json"]
+    assert main(["design", *words, "--material", "plywood-co2"]) == 0
+    told = capsys.readouterr()
+    note = json.loads(told.out)["material_note"]
+    assert "Two pinned layers" in note and note in told.err
+    plywood = load(tmp_path / "design.kiri").fabrication
+    assert plywood.width_mm == find_material("plywood-co2").sheet_mm
+    assert main(["design", *words, "--material", "card-co2", "--width-mm", "200"]) == 0
+    assert "material_note" not in json.loads(capsys.readouterr().out)
+    assert load(tmp_path / "design.kiri").fabrication.width_mm == 200.0
 
 
 def test_that_a_name_to_engrave_is_the_best_design_s_and_is_in_its_cut_file(

@@ -70,12 +70,25 @@ def test_that_the_layout_svg_shows_all_panels_voids_and_the_target_in_mm(job: Ex
     write_layout_svg(job, tmp_path / "layout.svg", width_mm=60.0)
     root = ElementTree.parse(tmp_path / "layout.svg").getroot()
     counts = {group.get("id"): len(group) for group in root.iter(f"{SVG_NS}g")}
-    assert counts == {"TARGET_AREA": 1, "VOIDS": 20, "PANELS": 30, "TARGET": 1}
-    data = root.find(f".//{SVG_NS}g[@id='TARGET']/{SVG_NS}path")
+    assert counts == {"TARGET_AREA": 1, "VOIDS": 20, "PANELS": 30, "EDGES": 30, "TARGET": 1}
+    data = root.find(f".//{SVG_NS}g[@id='TARGET_AREA']/{SVG_NS}path")
     assert data is not None
     loop = np.array([float(number) for number in re.findall(r"-?[\d.]+", str(data.get("d")))]).reshape(-1, 2)
     # The sheet of 6 x 5 cells is 60 mm wide: 100 mm^2 for each unit of area; y is turned over.
     assert -signed_area(loop) == pytest.approx(100.0 * job.deployment.area(0.0), rel=1e-4)
+
+
+def test_that_the_layout_svg_has_nothing_to_cut_and_says_that_it_is_a_picture(job: ExportJob, tmp_path: Path) -> None:
+    write_layout_svg(job, tmp_path / "layout.svg")
+    root = ElementTree.parse(tmp_path / "layout.svg").getroot()
+    elements = list(root.iter())
+    # Laser programs cut or engrave strokes, inherited ones too.
+    assert {element.get("stroke", "none") for element in elements} == {"none"}
+    assert all("style" not in element.attrib and "stroke-width" not in element.attrib for element in elements)
+    assert all(path.get("fill", "none") != "none" for path in root.iter(f"{SVG_NS}path"))
+    assert root.get("id") == "PICTURE"
+    notes = [root.findtext(f"{SVG_NS}{name}") or "" for name in ("title", "desc", "text")]
+    assert all("picture" in note.lower() for note in notes) and all("not a cut file" in n for n in notes)
 
 
 def test_that_the_pdf_page_is_the_sheet_at_one_to_one(job: ExportJob, tmp_path: Path) -> None:

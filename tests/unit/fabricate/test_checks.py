@@ -148,3 +148,9 @@ def test_that_a_material_whose_connectors_break_anyway_is_told(make_design: Make
         material = replace(find_material("film-uv"), connectors_hold=holds)
         problems = check_plan(plan_cuts(make_design(3, 3), material=material), phi=0.0).problems
         assert any(problem.code == "plan.material_does_not_hold" for problem in problems) != holds
+
+
+def test_that_a_check_says_of_a_cloth_that_it_is_a_hinge_layer(make_design: MakeDesign) -> None:
+    plan = plan_cuts(make_design(3, 3), 200.0, material=find_material("cotton-co2"))
+    assert "plan.material_is_hinge_layer" in [problem.code for problem in check_plan(plan, phi=0.0).problems]
+    assert "plan.material_is_hinge_layer" not in [problem.code for problem in check_plan(plan).problems]

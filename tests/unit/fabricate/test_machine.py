@@ -7,11 +7,12 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from kirigami_studio.export.profile import PROFILES
-from kirigami_studio.export.registry import exporters
+from kirigami_studio.export.registry import WRITERS
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import plan_cuts
 from kirigami_studio.fabricate.machine import (
@@ -32,7 +33,13 @@ from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import read_sheet
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, new_settings
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    machine_for,
+    material_changes,
+    material_for,
+    new_settings,
+)
 from kirigami_studio.studio.cutting import plan_sheet
 from tests.refusals import refused
 
@@ -45,7 +52,7 @@ def test_that_every_bundled_machine_names_a_profile_a_file_and_where_its_numbers
     found = machines()
     assert not found.faults and not found.own and next(iter(found.items)) == "uv-laser"
     for machine in found.items.values():
-        assert machine.profile in PROFILES and machine.file in exporters(), machine.key
+        assert machine.profile in PROFILES and machine.file in WRITERS, machine.key
         assert min(machine.reach_mm) > 150.0 and machine.note, machine.key
     kinds = {machine.kind for machine in found.items.values()}
     assert kinds == set(MachineKind) - {MachineKind.OTHER} == set(USUAL)
@@ -74,7 +81,7 @@ def test_that_a_material_has_its_own_figures_on_another_kind_of_machine() -> Non
     card, blade = find_material("card-co2"), find_machine("cricut-maker")
     on_blade = material_on(card, blade)
     assert (on_blade.kerf_mm, on_blade.relief_radius_mm, on_blade.power_percent) == (0.0, 0.0, 0.0)
-    assert (on_blade.thickness_mm, on_blade.strain_limit) == (card.thickness_mm, card.strain_limit)
+    assert (on_blade.thickness_mm, on_blade.bend_strain) == (card.thickness_mm, card.bend_strain)
     assert material_on(card, find_machine("k40")) == card
     acrylic = find_material("acrylic-co2")
     assert kinds_for(acrylic) == (MachineKind.CO2,) and material_on(acrylic, blade) == acrylic
@@ -101,9 +108,9 @@ def test_that_a_machine_is_of_a_kind_by_what_it_is_called(words: str, kind: Mach
 
 
 def test_that_an_own_material_from_before_keeps_its_bed_speeds_and_delays(own_materials: Path) -> None:
-    older = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
-    bed = {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
-    path = save_copy(replace(find_material("card-co2"), key="mine", **older, **bed))
+    older: dict[str, Any] = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
+    older |= {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
+    path = save_copy(replace(find_material("card-co2"), key="mine", **older))
     assert "travel_mm_s = 321.0" in path.read_text(encoding="utf-8")
     material = read_preset(path)
     machine = machine_of(material)
@@ -118,6 +125,25 @@ def test_that_settings_that_name_a_material_only_are_for_the_machine_of_that_mat
         settings = FabricationSettings(material=key)
         assert settings.machine == "" and machine_for(settings).key == wanted
         assert material_for(settings) == find_material(key)
+
+
+def test_that_new_settings_have_the_usual_size_of_their_material_unless_told_otherwise() -> None:
+    for key in ("film-uv", "card-co2", "leather-co2"):
+        assert new_settings({"material": key}).width_mm == find_material(key).sheet_mm
+    assert new_settings({}).width_mm == 100.0
+    assert new_settings({"material": "card-co2", "width_mm": 90.0}).width_mm == 90.0
+    assert new_settings({"material": "card-co2", "machine": "hand"}).width_mm == 280.0
+
+
+def test_that_a_change_of_material_takes_its_usual_size_along_and_leaves_a_typed_one() -> None:
+    card = find_material("card-co2").sheet_mm
+    assert material_changes(FabricationSettings(), "card-co2") == {
+        "material": "card-co2", "connector_mm": None, "kerf_mm": None, "width_mm": card,
+    }  # fmt: skip
+    assert "width_mm" not in material_changes(FabricationSettings(width_mm=123.0), "card-co2")
+    opened = material_changes(FabricationSettings(width_mm=87.0, opened_mm=100.0), "card-co2")
+    assert opened["opened_mm"] == card and "width_mm" not in opened
+    assert set(material_changes(FabricationSettings(), "gone")) == {"material", "connector_mm", "kerf_mm"}
 
 
 def test_that_a_machine_alone_brings_its_profile_and_a_material_that_it_cuts() -> None:
@@ -173,11 +199,12 @@ def test_that_sharp_corners_and_starts_cost_their_delays_in_every_pass(make_desi
     assert slow.times.total - quick.times.total == pytest.approx(3 * (0.5 * len(slow.paths) + 0.25 * corners))
 
 
+@pytest.mark.parametrize("material", ["film-uv", "pa-film-uv"])
 @pytest.mark.parametrize("shape", ["heart", "star", "hexagon"])
-def test_that_the_papers_parts_take_the_five_minutes_that_it_gives(shape: str) -> None:
+def test_that_the_papers_parts_take_the_five_minutes_that_it_gives(shape: str, material: str) -> None:
     """The paper gives about 5 min of laser cutting; the sheets are this program's, of its grid, 100 mm wide."""
     sheet = read_sheet(Path(__file__).parents[2] / "data" / "paper_parts" / f"{shape}.json")
-    plan = plan_sheet(deploy(sheet), FabricationSettings())
+    plan = plan_sheet(deploy(sheet), FabricationSettings(material=material, width_mm=100.0))
     assert plan.machine.key == "uv-laser" and plan.material.passes > 1
     assert plan.times.total == pytest.approx(PAPER_SECONDS, rel=0.3)
 

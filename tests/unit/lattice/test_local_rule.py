@@ -9,8 +9,8 @@ import pytest
 from lattice_strategies import local_rule_residual
 
 from kirigami_studio.foundation.errors import AngleError
+from kirigami_studio.lab.baselines.marching import march, void_angle
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.marching import march, void_angle
 from kirigami_studio.lattice.ratio_field import RatioField
 
 GRIDS = [(2, 2), (2, 48), (48, 2), (3, 31), (7, 9), (10, 10), (16, 16), (24, 24), (33, 20), (47, 48), (48, 48)]

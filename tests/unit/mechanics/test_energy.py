@@ -10,7 +10,7 @@ import pytest
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.energy import NetworkEnergy
-from kirigami_studio.mechanics.network import CONTACT_BELOW, Contacts, Ligaments, PanelNetwork
+from kirigami_studio.mechanics.network import CONTACT_BELOW, Contacts, Ligaments, PanelNetwork, Stops
 
 
 def mixed_network(seed: int = 0) -> PanelNetwork:
@@ -61,6 +61,65 @@ def test_that_gradient_and_hessian_are_differences_of_the_energy(seed: int) -> N
     assert gradient == pytest.approx(slope, rel=1e-6, abs=1e-6 * np.abs(gradient).max())
     assert energy.gradient(motion) == pytest.approx(gradient)
     assert hessian.toarray() == pytest.approx(np.array(bend), abs=1e-6 * np.abs(hessian.toarray()).max())
+
+
+def stopped_network(seed: int) -> PanelNetwork:
+    """The same with points that edges of other panels stop: not yet, a little, deep, and one that is not near."""
+    network = mixed_network(seed)
+    generator = np.random.default_rng(seed + 10)
+    angle = generator.uniform(-3.0, 3.0, 4)
+    return replace(
+        network,
+        stops=Stops(
+            panels=np.array([[0, 3], [1, 4], [2, 0], [3, 1]]),
+            point=generator.uniform(-8.0, 8.0, (4, 2)),
+            foot=generator.uniform(-8.0, 8.0, (4, 2)),
+            normal=np.stack([np.cos(angle), np.sin(angle)], axis=1),
+            ligament=np.array([1, 2, 4, 5]),
+            turned=np.array([1e-9, -1e-9, 1e-9, 9.0]),
+            stiffness=generator.uniform(20.0, 60.0, 4),
+            soft=np.array([5.0, 60.0, 0.5, 1.0]),
+        ),
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_gradient_and_hessian_of_stops_are_differences_of_the_energy(seed: int) -> None:
+    network = stopped_network(seed)
+    energy, motion = NetworkEnergy(network), moved(network, seed)
+    gradient, hessian = energy.slopes(motion)
+    size, step = motion.size, 1e-5
+    along = [step * np.eye(size)[k].reshape(motion.shape) for k in range(size)]
+    slope = [(energy.value(motion + move) - energy.value(motion - move)) / (2.0 * step) for move in along]
+    bend = [(energy.gradient(motion + move) - energy.gradient(motion - move)) / (2.0 * step) for move in along]
+    assert gradient == pytest.approx(slope, rel=1e-6, abs=1e-6 * np.abs(gradient).max())
+    assert energy.gradient(motion) == pytest.approx(gradient)
+    assert hessian.toarray() == pytest.approx(np.array(bend), abs=1e-6 * np.abs(hessian.toarray()).max())
+
+
+def test_that_a_stop_pushes_only_what_is_behind_its_edge_and_near() -> None:
+    network = mixed_network()
+    network = replace(network, contacts=replace(network.contacts, rest=network.contacts.rest + 3.0))
+    # The edge of panel 0 runs along y through its centroid; the point is the centroid of panel 3, from the other side.
+    far = network.centroids[3] - network.centroids[0]
+    depth, soft = 0.8, 0.2
+    stops = Stops(
+        np.array([[0, 3]]), network.centroids[[3]], network.centroids[[0]] + [[far[0] + depth, 0.0]],
+        np.array([[1.0, 0.0]]), np.array([0]), np.array([0.1]), np.array([30.0]), np.array([soft]),
+    )  # fmt: skip
+    bare, stopped = NetworkEnergy(network), NetworkEnergy(replace(network, stops=stops))
+    motion = np.zeros((5, 3))
+    assert stopped.value(motion) == bare.value(motion)  # not near each other: ligament 0 has not turned
+    motion[1, 2] = 0.2
+    expected = 30.0 * (0.5 * depth**2 - 0.5 * soft * depth + soft**2 / 6.0)
+    assert stopped.value(motion) - bare.value(motion) == pytest.approx(expected, rel=1e-9)
+    push = (stopped.gradient(motion) - bare.gradient(motion)).reshape(-1, 3)
+    assert push[3, :2] == pytest.approx([-30.0 * (depth - 0.5 * soft), 0.0])
+    assert push[0, :2] == pytest.approx(-push[3, :2])
+    motion[3, 0] = depth + 1e-6  # before the edge
+    assert stopped.value(motion) == bare.value(motion)
+    motion[3, 0], motion[1, 2] = 0.0, -0.2  # the ligament has turned the other way
+    assert stopped.value(motion) == bare.value(motion)
 
 
 def test_that_a_network_at_rest_has_neither_energy_nor_force() -> None:

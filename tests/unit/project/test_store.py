@@ -18,6 +18,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
 from kirigami_studio.evaluate.trimming import trim
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, ProjectError
 from kirigami_studio.lattice.deployment import deploy
@@ -64,6 +65,31 @@ def test_that_a_project_comes_back_as_it_was(document: Document, tmp_path: Path)
     assert again.target is not None and document.target is not None
     assert (again.target.name, again.target.size, again.target.unit) == ("pentagon", document.target.size, "mm")
     assert not again.candidates[0].sheet.field.ratio.flags.writeable
+
+
+def test_that_an_own_material_comes_back_with_its_strains_and_sources(document: Document, tmp_path: Path) -> None:
+    own = replace(find_material("cotton-co2"), key="mine", yield_strain=0.01, style=ConnectorStyle.ARC)
+    store.save(replace(document, fabrication=FabricationSettings(material="mine", own=own)), tmp_path / "a.kiri")
+    again = store.load(tmp_path / "a.kiri").fabrication.own
+    assert again == own and again is not None and again.sources == own.sources
+    assert (again.backing, again.construction, again.style) == (True, own.construction, ConnectorStyle.ARC)
+
+
+def test_that_the_one_limit_of_an_own_material_in_an_older_project_is_that_of_both(
+    document: Document, tmp_path: Path
+) -> None:
+    own = replace(find_material("card-co2"), key="mine")
+    members = members_of(replace(document, fabrication=FabricationSettings(material="mine", own=own)))
+    design = json.loads(members["design.json"])
+    (record,) = [part["own"] for part in design.values() if isinstance(part, dict) and part.get("own")]
+    newer = ("yield_strain", "break_strain", "bend_strain", "construction", "backing", "sheet_mm", "style", "sources")
+    for name in newer:
+        del record[name]
+    record["strain_limit"] = 0.07
+    members["design.json"] = json.dumps(design).encode()
+    again = store.load(write_members(tmp_path / "old.kiri", members)).fabrication.own
+    assert again is not None and (again.yield_strain, again.break_strain, again.bend_strain) == (0.0, 0.07, 0.07)
+    assert (again.sources, again.sheet_mm, again.thickness_mm) == ({}, 100.0, own.thickness_mm)
 
 
 def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outline, tmp_path: Path) -> None:

@@ -33,10 +33,10 @@ from kirigami_studio.studio.verdict import (
     HALF_WAY,
     LITTLE_LOST,
     MATCHES_ROUGHLY,
+    AnswerState,
     Assessment,
     Level,
     Question,
-    State,
     Verdict,
     assess,
     expected,
@@ -82,7 +82,7 @@ def test_that_a_sheet_without_problems_is_ready_to_cut(
     design: Candidate, ready: Assessment, written: Verification
 ) -> None:
     assert ready.verdict.level is Level.READY and ready.verdict.ok and ready.verdict.problems == ()
-    assert [note.code for note in ready.verdict.notes] == ["plan.material_uncalibrated"]
+    assert [note.code for note in ready.verdict.notes] == ["plan.material_uncalibrated", "as_cut.stays_bent"]
     assert ready.verdict.lines[0] == "Ready to cut" and ready.verdict.lines[1] == ready.verdict.summary
     with_file = judge(design, ready.plan, ready.report, ready.as_cut, [written])
     assert written.ok and with_file == replace(ready.verdict, read=True)
@@ -119,7 +119,7 @@ def test_that_a_design_says_why_it_cannot_be_cut(design: Candidate) -> None:
     assert good.refusal is None and good.as_cut is not None and good.as_cut.closes
     reasons = {
         "as_cut.jams_while_flat": replace(FILM, options=STRAIGHT),
-        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0),
+        "as_cut.breaks": FabricationSettings(material="card-co2", width_mm=250.0, connector_mm=1.0),
         "edge_cut.no_room": replace(FILM, connector_mm=30.0),
     }
     for code, settings in reasons.items():
@@ -155,8 +155,8 @@ def test_that_a_film_star_which_jams_at_143_degrees_will_not_work() -> None:
     assert found.level is Level.FAILS
     assert codes(found)[:2] == ["as_cut.hardly_opens", "as_cut.does_not_match"]
     answers = {answer.question: answer.state for answer in found.answers}
-    assert answers[Question.CLOSES] is State.BAD and answers[Question.MATCHES] is State.BAD
-    assert answers[Question.FITS] is not State.BAD and answers[Question.FILES] is State.OPEN
+    assert answers[Question.CLOSES] is AnswerState.BAD and answers[Question.MATCHES] is AnswerState.BAD
+    assert answers[Question.FITS] is not AnswerState.BAD and answers[Question.FILES] is AnswerState.OPEN
     assert found.match == as_cut.iou and found.answer(Question.CLOSES).word == as_cut.word
 
 
@@ -169,10 +169,10 @@ def test_that_match_lost_by_cutting_is_a_problem_and_a_rough_design_is_none(
     poor = judge(design, ready.plan, ready.report, replace(losing, iou=MATCHES_ROUGHLY - 0.01))
     assert codes(poor) == ["as_cut.does_not_match"] and poor.level is Level.FAILS
     rough = judge(design, ready.plan, ready.report, replace(losing, iou=0.8, ideal_iou=0.8))
-    assert rough.ok and rough.answer(Question.MATCHES).state is State.CARE
+    assert rough.ok and rough.answer(Question.MATCHES).state is AnswerState.CARE
     none = judge(design, ready.plan, ready.report, replace(losing, iou=0.6, ideal_iou=0.6))
-    assert none.ok and none.answer(Question.MATCHES).state is State.BAD
-    assert found.answer(Question.MATCHES).state is State.CARE
+    assert none.ok and none.answer(Question.MATCHES).state is AnswerState.BAD
+    assert found.answer(Question.MATCHES).state is AnswerState.CARE
 
 
 def test_that_four_questions_have_an_answer_each(design: Candidate, ready: Assessment, written: Verification) -> None:
@@ -192,7 +192,7 @@ def test_that_four_questions_have_an_answer_each(design: Candidate, ready: Asses
     unseen = judge(design, ready.plan, ready.report, None)
     assert unseen.is_estimate and unseen.words == "Not checked yet"
     states = [answer.state for answer in unseen.answers]
-    assert states == [State.GOOD, State.GOOD, State.OPEN, State.OPEN]
+    assert states == [AnswerState.GOOD, AnswerState.GOOD, AnswerState.OPEN, AnswerState.OPEN]
     assert (unseen.to_json()["jam_deg"], unseen.to_json()["from"]) == (None, "estimate")
 
 
@@ -205,9 +205,9 @@ def test_that_every_problem_belongs_to_one_question(design: Candidate, ready: As
     }
     for question, problem in by_question.items():
         found = Verdict((problem,), source=Source.SIMULATION, as_cut=CLOSES, match=0.99, read=True)
-        bad = State.BAD if problem.severity is Severity.ERROR else State.CARE
+        bad = AnswerState.BAD if problem.severity is Severity.ERROR else AnswerState.CARE
         states = {answer.question: answer.state for answer in found.answers}
-        assert states == {one: bad if one is question else State.GOOD for one in Question}
+        assert states == {one: bad if one is question else AnswerState.GOOD for one in Question}
         (entry,) = found.to_json()["problems"]  # type: ignore[misc]
         assert entry["question"] == question.value
 
@@ -232,14 +232,25 @@ def test_that_a_connector_which_breaks_will_not_work(design: Candidate) -> None:
     made = assess(design, card)
     assert made.verdict.level is Level.FAILS and codes(made.verdict)[0] == "as_cut.breaks"
     assert isinstance(made.as_cut, AsCut)
-    text = made.verdict.problems[0].text
-    assert "breaks at 3 %" in text and "Choose" not in text
+    told = made.verdict.problems[0]
+    assert told.fields["limit_percent"] == 25.0 and "0.30 times" in str(told.fields["why"])
+    assert "Choose" not in told.text
     # Either prediction is enough.
     calm = replace(CLOSES, strain=0.0)
     assert codes(judge(design, made.plan, made.report, calm))[0] == "as_cut.breaks"
     unstrained = replace(made.report, problems=())
-    assert codes(judge(design, made.plan, unstrained, replace(CLOSES, strain=0.031))) == ["as_cut.breaks"]
-    assert judge(design, made.plan, unstrained, replace(CLOSES, strain=0.029)).ok
+    limited = replace(CLOSES, strain_limit=0.03)
+    assert codes(judge(design, made.plan, unstrained, replace(limited, strain=0.031))) == ["as_cut.breaks"]
+    assert judge(design, made.plan, unstrained, replace(limited, strain=0.029)).ok
+
+
+def test_that_a_verdict_says_which_strain_it_believes_and_why(design: Candidate) -> None:
+    for width, code in ((0.7, "strain.escapes"), (0.5, "strain.stays_flat")):
+        made = assess(design, FabricationSettings(material="card-co2", width_mm=250.0, connector_mm=width))
+        assert isinstance(made.as_cut, AsCut) and made.as_cut.survival.why.code == code
+        (told,) = [problem for problem in made.verdict.problems if problem.code == "as_cut.breaks"]
+        assert f"{0.3 / width:.2f} times" in told.text and "0.5" in told.text
+        assert told.fields["limit_percent"] == (25.0 if code == "strain.escapes" else 3.0)
 
 
 def test_that_a_material_of_which_no_connector_holds_will_not_work(design: Candidate) -> None:

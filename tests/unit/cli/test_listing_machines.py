@@ -67,7 +67,7 @@ def test_that_impossible_wishes_are_refused_in_a_sentence(
 
 def test_that_materials_of_a_machine_are_those_that_it_cuts(capsys: pytest.CaptureFixture[str]) -> None:
     assert answer(capsys, "materials", "--machine", "diode-10w")["materials"] == [
-        "plywood-co2", "card-co2", "leather-co2", "felt-co2",
+        "plywood-co2", "card-co2", "card-05-co2", "leather-co2", "felt-co2",
     ]  # fmt: skip
     assert "film-uv" in answer(capsys, "materials")["materials"]
 

@@ -1,0 +1,308 @@
+"""The page of the stage before there is a design: ways to begin, first steps, a question.
+
+The question is for machine and material; once it is answered, or declined, it is not asked again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from PySide6.QtCore import QElapsedTimer, QEvent, QLocale, QObject, Qt, QTimer
+from PySide6.QtGui import QAction, QHideEvent, QResizeEvent
+from PySide6.QtWidgets import (
+    QApplication,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QStyle,
+    QVBoxLayout,
+    QWidget,
+)
+
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.fabricate.machine import MachineKind, find_machine
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.make.machine_question import CuttingQuestion
+from kirigami_studio.gui.session.overlays import Overlay
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.session.user_preferences import UserPreferences
+from kirigami_studio.gui.stage.deployment_bar import phi_at
+from kirigami_studio.gui.stage.layout_view import LayoutView
+from kirigami_studio.gui.widgets.card import ToolButton, muted_label
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.preferences import MotionPreference, TypedSize
+from kirigami_studio.studio.projects import Pair, reading_sample
+
+#: Seconds from flat to open and back: slower than a design is played, so that it draws no eye from the work.
+SWING_SECONDS = 10.0
+#: Thirty pictures a second are enough for a slow motion.
+FRAME_MS = 33
+#: Anything that the user does to the window; the sample stands still from then on.
+ACTS = frozenset(
+    {QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.Wheel, QEvent.Type.Drop, QEvent.Type.TouchBegin}
+)
+#: Longer side (mm) of opened shapes that are cut by hand: their sheets fit on one page of A4 or Letter.
+BY_HAND_MM = 150.0
+#: Where printers hold Letter paper.
+LETTER_LANDS = frozenset(
+    {
+        QLocale.Country.UnitedStates,
+        QLocale.Country.Canada,
+        QLocale.Country.Mexico,
+        QLocale.Country.Philippines,
+        QLocale.Country.Chile,
+        QLocale.Country.Colombia,
+    }
+)
+#: Ways to begin: command, icon, words.
+OFFERS = (
+    ("edit_target", "edit", mark("Draw a shape")),
+    ("open_target", "open", mark("Open a file")),
+    ("library", "library", mark("Silhouettes")),
+    ("sample", "project", mark("Finished heart")),
+    ("pairs", "swap", mark("Finished pairs")),
+    ("recover", "reset", mark("Recover work")),
+)
+#: From a shape to a cut file.
+STEPS = (
+    mark("Choose a target: draw it (E), open a file (Ctrl+O), or take a silhouette (Ctrl+L). Type its size."),
+    mark("Choose the material, then Generate (Ctrl+G)."),
+    mark("Compare designs, best first (K). Click the one to keep."),
+    mark("Open the sheet with the slider, or play it (Space)."),
+    mark("Check the cuts in cutting order (C)."),
+    mark("Export the file for your machine, or a PDF to cut by hand (Ctrl+E)."),
+)
+#: Pixels of height that the sheet has at least.
+LEAST_VIEW = 140
+
+
+class WelcomePage(QWidget):
+    """Shows a sheet that moves until the user does anything, and what can be done next."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._phase = 0.0
+        self._target = 0.0
+        self._clock = QElapsedTimer()
+        self._timer = QTimer(self)
+        self._timer.setInterval(FRAME_MS)
+        self._timer.timeout.connect(self._advance)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.view = LayoutView()
+        self.view.setObjectName("sampleView")
+        self.view.setAccessibleName(tr("A sample sheet that opens and closes"))
+        self.view.setToolTip("")
+        self.view.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.view.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.view.set_overlays(frozenset({Overlay.TARGET}))
+        self.view.setMinimumHeight(LEAST_VIEW)
+        keeps = self.view.sizePolicy()
+        keeps.setRetainSizeWhenHidden(True)
+        self.view.setSizePolicy(keeps)
+        self.view.hide()
+        self.headline = QLabel()
+        self.headline.setObjectName("cardTitle")
+        self.hint = muted_label()
+        self.guide = QPushButton(tr("Guide"))
+        self.guide.setObjectName("link")
+        self.guide.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.question = CuttingQuestion()
+        self.question.hide()
+        self.offers: dict[str, ToolButton] = {}
+        self._grid = QGridLayout()
+        self._grid.setSpacing(6)
+        self.steps = QWidget()
+        rows = QGridLayout(self.steps)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setColumnStretch(1, 1)
+        for row, step in enumerate(STEPS):
+            number, words = QLabel(str(row + 1)), muted_label()
+            number.setObjectName("number")
+            words.setText(tr(step))
+            rows.addWidget(number, row, 0, Qt.AlignmentFlag.AlignTop)
+            rows.addWidget(words, row, 1)
+        words_ = QVBoxLayout()
+        words_.setSpacing(2)
+        words_.addWidget(self.headline)
+        words_.addWidget(self.hint)
+        line = QHBoxLayout()
+        line.addLayout(words_, 1)
+        line.addWidget(self.guide, 0, Qt.AlignmentFlag.AlignTop)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        column.addWidget(self.view, 1)
+        column.addLayout(line)
+        column.addWidget(self.question)
+        column.addLayout(self._grid)
+        column.addWidget(self.steps)
+
+    def offer(self, actions: Mapping[str, QAction]) -> None:
+        """Offer ways to begin, by commands of the window."""
+        for name, icon, text in OFFERS:
+            button = ToolButton(f"offer-{name}", icon, actions[name].toolTip())
+            button.setProperty("offer", True)
+            button.setText(tr(text))
+            button.setAccessibleName(tr(text))
+            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+            button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+            button.clicked.connect(actions[name].trigger)
+            self.offers[name] = button
+        self.guide.setToolTip(actions["guide"].toolTip())
+        self.guide.clicked.connect(actions["guide"].trigger)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Lay out offers in few rows, and the steps where the sheet keeps its height."""
+        widest = max((button.sizeHint().width() for button in self.offers.values()), default=1)
+        most = max(1, (self.width() + self._grid.spacing()) // (widest + self._grid.spacing()))
+        columns = next(count for count in (6, 3, 2, 1) if count <= most)
+        for place, button in enumerate(self.offers.values()):
+            self._grid.addWidget(button, *divmod(place, columns))
+        for column in range(len(OFFERS)):
+            self._grid.setColumnStretch(column, 1 if column < columns else 0)
+        layout = self.layout()
+        if layout is not None:
+            shown = self.steps.isVisibleTo(self)
+            least = layout.totalHeightForWidth(self.width())
+            if not shown:
+                least += self.steps.heightForWidth(self.width()) + layout.spacing()
+            self.steps.setVisible(least <= self.height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._arrange()
+
+    @property
+    def ready(self) -> bool:
+        """Whether there is a sample to show."""
+        return self.view.design is not None
+
+    @property
+    def moving(self) -> bool:
+        """Whether it opens and closes now."""
+        return self._timer.isActive()
+
+    def show_sample(self, design: PosedDesign, target: Outline) -> None:
+        """Show a design, open, as it stands still."""
+        self._target = design.phi_target
+        self.view.show_design(design, None, target)
+        self.view.set_phi(self._target)
+        self.view.show()
+        self._phase = 0.5
+
+    def say(self, headline: str, hint: str) -> None:
+        """Say what to do next."""
+        self.headline.setText(headline)
+        self.hint.setText(hint)
+        self._arrange()
+
+    def start(self) -> None:
+        """Open and close until the user does something in the window."""
+        application = QApplication.instance()
+        if self.ready and self.isVisible() and not self.moving and application is not None:
+            application.installEventFilter(self)
+            self._clock.start()
+            self._timer.start()
+
+    def stop(self) -> None:
+        """Stand still."""
+        application = QApplication.instance()
+        if self.moving and application is not None:
+            application.removeEventFilter(self)
+        self._timer.stop()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        if event.type() in ACTS and isinstance(watched, QWidget) and watched.window() is self.window():
+            self.stop()
+        return False
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
+        super().hideEvent(event)
+        self.stop()
+
+    def _advance(self) -> None:
+        self._phase = (self._phase + self._clock.restart() / 1000.0 / SWING_SECONDS) % 1.0
+        self.view.set_phi(phi_at(self._phase, last=self._target))
+
+
+class WelcomePresenter(QObject):
+    """Begins once the window is shown."""
+
+    def __init__(self, page: WelcomePage, session: Session, preferences: UserPreferences) -> None:
+        super().__init__(page)
+        self._page, self._session, self._preferences = page, session, preferences
+        page.question.answered.connect(self.choose)
+        page.question.declined.connect(self.decline)
+
+    def begin(self) -> None:
+        """Read the sample and ask the question, if it was not asked before."""
+        callbacks: JobCallbacks[Pair] = JobCallbacks(self._on_sample)
+        self._session.queue.start(tr("reading the sample"), reading_sample, callbacks)
+        if not self._preferences.present.machine_asked:
+            question = self._page.question
+            question.offer()
+            question.show()
+
+    def _on_sample(self, sample: Pair) -> None:
+        self._page.show_sample(sample.design, sample.target)
+        if moves(self._preferences.present.motion, self._page.style()):
+            self._page.start()
+
+    def choose(self, machine: str, material: str) -> None:
+        """Cut this material on this machine from now on, in this project and in new ones."""
+        preferences, session = self._preferences, self._session
+        chosen, known = find_machine(machine), find_material(material)
+        wanted = replace(
+            preferences.present, machine=machine, material=material, profile=chosen.profile, machine_asked=True
+        )
+        if chosen.kind is MachineKind.HAND:
+            letter = QLocale.system().territory() in LETTER_LANDS
+            wanted = replace(
+                wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
+            )
+        else:
+            wanted = replace(wanted, size=TypedSize.OPENED, opened_mm=known.sheet_mm)
+        preferences.keep(wanted)
+        cut = wanted.new_document().fabrication
+        changed = replace(session.document, fabrication=cut)
+        if session.history.unsaved or session.document.candidates:
+            session.apply(Edit(tr("Change the material"), changed))
+        else:  # nothing was done yet: this is how it starts
+            session.restart(changed, session.path)
+        self._page.question.hide()
+        begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
+        session.set_status(begin if known.limits_note is None else known.limits_note.text)
+
+    def decline(self) -> None:
+        """Do not ask again."""
+        preferences = self._preferences
+        preferences.keep(replace(preferences.present, machine_asked=True))
+        self._page.question.hide()
+
+    def switch_motion(self) -> None:
+        """Let what moves by itself stand still, or move again."""
+        preferences, page = self._preferences, self._page
+        still = preferences.present.motion is MotionPreference.STILL
+        preferences.keep(
+            replace(preferences.present, motion=MotionPreference.SYSTEM if still else MotionPreference.STILL)
+        )
+        if moves(preferences.present.motion, self._page.style()):
+            page.start()
+        else:
+            page.stop()
+
+
+def moves(preferred: str, style: QStyle) -> bool:
+    """Whether things may move by themselves, by preferences and desktop."""
+    animated = bool(style.styleHint(QStyle.StyleHint.SH_Widget_Animate))
+    duration = style.styleHint(QStyle.StyleHint.SH_Widget_Animation_Duration)
+    return preferred == "system" and animated and duration > 0 and not math.isnan(duration)

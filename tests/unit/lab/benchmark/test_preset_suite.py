@@ -1,0 +1,43 @@
+"""The table of shapes in bundled materials, and what makes it fail."""
+
+from __future__ import annotations
+
+import pytest
+
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lab.benchmark.preset_suite import PresetFigures, PresetSheet, measure_presets
+from kirigami_studio.studio.verdict import Level
+
+NOTES = {"plywood-co2": "two pinned layers can"}
+READY, FAILS = Level.READY.value, Level.FAILS.value
+
+
+def test_that_a_sheet_that_fails_without_a_word_before_the_run_fails_the_table() -> None:
+    ready, care = PresetSheet("film-uv", "heart", READY), PresetSheet("film-uv", "star", Level.CARE.value)
+    said = PresetSheet("plywood-co2", "heart", FAILS)
+    assert PresetFigures((ready, care, said), NOTES).ok
+    assert not PresetFigures((ready, care, said), {}).ok
+    assert not PresetFigures((ready, PresetSheet("film-uv", "star", FAILS)), NOTES).ok
+
+
+def test_that_the_table_has_a_row_for_every_material_and_what_it_says() -> None:
+    sheets = [PresetSheet(key, shape, READY, iou_as_cut=0.98) for key in ("film-uv", "plywood-co2") for shape in "ab"]
+    head, _, film, plywood, word = PresetFigures(tuple(sheets), NOTES).sentences()
+    assert head.endswith("| a | b |") and film.count("ready, 98.0 %") == 2
+    assert film.startswith("| `film-uv` | 0.2 mm, 100 mm, centred |") and plywood.startswith("| `plywood-co2` |")
+    assert word == "plywood-co2: two pinned layers can"
+
+
+@pytest.mark.torch
+def test_that_a_material_is_designed_and_judged_at_its_usual_size() -> None:
+    found = measure_presets(["pa-film-uv"], ["hexagon"], k=1)
+    (sheet,) = found.sheets
+    assert found.ok and found.notes == {} and sheet.works and sheet.figure == "out_of_plane"
+    assert sheet.strain < sheet.strain_limit and sheet.iou_as_cut > 0.9
+    assert found.sentences()[2].count("ready") + found.sentences()[2].count("care") == 1
+
+
+def test_that_an_unknown_material_is_refused() -> None:
+    with pytest.raises(UsageError) as caught:
+        measure_presets(["oak"])
+    assert caught.value.code == "material.unknown"
