@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio.api.design import Design
+from kirigami_studio.export.file_record import FileRecord
 from kirigami_studio.studio.checking import Checked, checked
 
 
@@ -23,6 +24,11 @@ class CheckedFile(Checked):
     verdict : Verdict or None
         On the sheet of that design.
     """
+
+    @property
+    def record(self) -> FileRecord | None:
+        """The file's own account of its making; None in files of other programs."""
+        return self.report.record
 
     @property
     def problems(self) -> tuple[str, ...]:

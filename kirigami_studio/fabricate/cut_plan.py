@@ -434,7 +434,7 @@ def _on_grid(points: FloatArray) -> FloatArray:
 
 
 def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> str:
-    """Identify a sheet, and what was trimmed off it: ``kept`` as for :func:`plan_cuts`, empty for a whole one."""
+    """Identify a sheet and its trim; ``kept`` as for :func:`plan_cuts`, empty for none."""
     sheet, ratio = deployment.sheet, deployment.field.ratio
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
-    """What was found in a cut file.
+    """Findings on a cut file.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Checked:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """What was checked of the file itself, what it says of its making, and what was said of its sheet then."""
+        """Lines on the file itself, on its making, and on the verdict of its export."""
         report, record = self.report, self.report.record
         found = []
         if report.pieces is not None and report.min_ligament_mm is not None:
@@ -104,7 +104,7 @@ class Checked:
 
 
 def checked(path: Path, document: Document | None = None) -> Checked:
-    """Read a cut file; compare it with the design of a project, and judge the sheet, where one is given.
+    """Read a cut file, compare it with its design, and judge the sheet.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def _is_cut_file(report: FileReport) -> bool:
 
 
 def _request(record: FileRecord | None, path: Path, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
-    """The design of a file, cut as its record says; a problem where the project does not have that design."""
+    """Design of a file, cut as its record says, and a problem where the project lacks it."""
     if record is None:
         return CutRequest.of(document, _enclosed(path) or document.fabrication), ()
     found = _design_of(document, record.design)
@@ -189,7 +189,7 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
 
 
 def _own_material(key: str, path: Path, saved: FabricationSettings) -> Material | None:
-    """The numbers of a material that is no preset: the project's, else those of the design in the file."""
+    """Numbers of a material that is no preset: the project's, else the file's."""
     if key in library().materials:
         return None
     stored = stored_material(saved)

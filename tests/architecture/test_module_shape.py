@@ -16,7 +16,6 @@ FRAGMENT_LINES = 60
 #: Small modules with one importer (or none) that stand alone all the same, and why.
 STANDS_ALONE = {
     "__main__.py": "python -m needs it",
-    "api/checked_file.py": "the package imports it by name, when one of its names is asked for",
     "generator/libraries.py": "it is read before torch is imported, by a thread that must not import it",
     "gui/window/help_commands.py": "every menu has its module",
 }

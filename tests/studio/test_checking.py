@@ -96,7 +96,8 @@ def test_that_a_trimmed_design_is_known_again(tmp_path: Path) -> None:
     made = planned(request)
     found = written(request, made, Output(tmp_path / "cut.dxf"), closed(request, made))
     again = checked(found.path, project)
-    assert again.ok and again.report.record is not None and again.report.record.trimmed == made.plan.trimmed > 0
+    assert again.sound and again.report.record is not None and again.report.record.trimmed == made.plan.trimmed > 0
+    assert again.verdict is not None and found.verdict is not None and again.verdict.level is found.verdict.level
 
 
 def test_that_a_file_of_another_design_is_refused_by_name(
