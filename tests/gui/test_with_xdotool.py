@@ -21,6 +21,7 @@ import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QApplication, QWidget
 
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline.variety import look_alikes
@@ -268,7 +269,7 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     window.presenters.welcome.begin()
     until(lambda: window.stage.welcome.ready)
     QApplication.processEvents()
-    scissors = middle(window.stage.welcome.question.buttons["by hand"], window)
+    scissors = middle(window.stage.welcome.question.buttons[MachineKind.HAND], window)
     generate = middle(window.run.generate, window)
     cut, actions = tmp_path / "heart.pdf", []
     with started(person, tmp_path / "log.txt") as program:

@@ -85,7 +85,7 @@ TIPS = {
 }
 
 
-BEHIND = mark("Behind it the difference from design 1.")
+APART = mark("Difference from design 1: {gap}.")
 
 
 class ComparedFigure(NamedTuple):
@@ -174,40 +174,39 @@ class FigureRows(QWidget):
         self.captions: dict[str, ElidedLabel] = {}
         self.values: dict[str, QLabel] = {}
         self.gaps: dict[str, QLabel] = {}
-        self._columns = 0
+        self._arranged = 0, True
 
     def show_figures(self, figures: Mapping[str, ComparedFigure], first: Mapping[str, ComparedFigure] | None) -> None:
         """Show the rows of a design, and how far its numbers are from those of the first one."""
         for name, figure in figures.items():
             if name not in self.values:
                 self._add(name, figure.caption)
+            gap = "" if first is None else figure.apart(first[name])
             self.values[name].setText(figure.text)
-            self.gaps[name].setText("" if first is None else figure.apart(first[name]))
+            self.gaps[name].setText(gap)
+            tip = f"{tr(TIPS[name])} {tr(APART, gap=gap)}" if gap else tr(TIPS[name])
+            for label in (self.captions[name], self.values[name], self.gaps[name]):
+                label.setToolTip(tip)
 
     def _add(self, name: str, caption: str) -> None:
         elided = ElidedLabel(Qt.TextElideMode.ElideRight)
-        labels = self.captions[name], self.values[name], self.gaps[name] = elided, QLabel(), QLabel()
-        labels[0].setText(caption)
-        labels[2].setObjectName("muted")
-        for label in labels:
-            label.setToolTip(f"{tr(TIPS[name])} {tr(BEHIND)}")
-            if label is not labels[0]:
-                label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.captions[name], self.values[name], self.gaps[name] = elided, QLabel(), QLabel()
+        elided.setText(caption)
+        self.gaps[name].setObjectName("muted")
+        for label in (self.values[name], self.gaps[name]):
+            label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 
-    @property
     def column_width(self) -> int:
         """Pixels that one column of rows takes."""
-        widths = [
-            max(label.sizeHint().width() for label in labels.values())
-            for labels in (self.captions, self.values, self.gaps)
-        ]
+        parts = (self.captions, self.values, self.gaps)
+        widths = [max(label.sizeHint().width() for label in labels.values()) for labels in parts]
         return sum(widths) + 2 * self._grid.horizontalSpacing()
 
-    def arrange(self, columns: int) -> None:
-        """Put the rows into so many columns; captions are as wide as the longest, or elided."""
-        if columns == self._columns:
+    def arrange(self, columns: int, gaps: bool) -> None:
+        """Put the rows into so many columns, with differences or without; tooltips have them."""
+        if (columns, gaps) == self._arranged:
             return
-        self._columns = columns
+        self._arranged = columns, gaps
         rows = math.ceil(len(self.values) / columns)
         widest = max(label.sizeHint().width() for label in self.captions.values())
         for place, name in enumerate(self.values):
@@ -215,6 +214,7 @@ class FigureRows(QWidget):
             self.captions[name].setMaximumWidth(widest)
             for part, label in enumerate((self.captions[name], self.values[name], self.gaps[name])):
                 self._grid.addWidget(label, row, 4 * side + part)
+            self.gaps[name].setVisible(gaps)
         self._grid.setColumnMinimumWidth(3, BETWEEN if columns == 2 else 0)
         for column, stretch in ((0, 100), (3, 1), (4, 100 if columns == 2 else 0), (7, 1)):
             self._grid.setColumnStretch(column, stretch)
@@ -398,10 +398,10 @@ class ComparePage(QWidget):
             for place, pane in enumerate(self.panes):
                 self._grid.addWidget(pane, *divmod(place, columns))
             self._columns = columns
-        room = (self.width() + GAP) // columns - GAP - BETWEEN
-        two = all(2 * pane.figures.column_width <= room for pane in self.shown)
+        room = (self.width() + GAP) // columns - GAP
+        widest = max(pane.figures.column_width() for pane in self.shown)
         for pane in self.shown:
-            pane.figures.arrange(2 if two else 1)
+            pane.figures.arrange(2 if 2 * widest + BETWEEN <= room else 1, gaps=widest <= room)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
