@@ -256,6 +256,8 @@ def _plain(value: Any) -> Any:
 def _entry(value: Any) -> Any:
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, Mapping):
+        return {name: _entry(item) for name, item in value.items()}
     return [_entry(item) for item in value] if isinstance(value, tuple) else value
 
 
