@@ -144,7 +144,7 @@ def test_that_the_flat_sheet_is_drawn_with_all_cuts_of_its_plan_and_the_switch_s
     bar.set_phi(math.pi)
     pose, design = view.shown_as_cut, view.design
     assert pose is not None and design is not None and bar.as_cut_button.isVisibleTo(closed)
-    request = closed.controller.cutting.request
+    request = closed.services.cutting.request
     assert request is not None
     plan = planned(request).plan
     mm = design.mm_per_world(plan.size_mm[0])
@@ -161,7 +161,7 @@ def test_that_the_flat_sheet_is_drawn_with_all_cuts_of_its_plan_and_the_switch_s
 
 
 def test_that_the_sheet_as_cut_is_drawn_at_every_angle_up_to_its_jam(jammed: MainWindow) -> None:
-    view, bar, sheet = jammed.stage.view, jammed.stage.deployment, jammed.controller.as_cut.state.sheet
+    view, bar, sheet = jammed.stage.view, jammed.stage.deployment, jammed.services.as_cut.state.sheet
     assert sheet is not None
     jam = sheet.as_cut.reached
     before = None
@@ -186,7 +186,7 @@ def test_that_the_sample_and_a_draft_are_drawn_in_their_ideal_motion(closed: Mai
     view = closed.stage.view
     assert view.shown_as_cut is not None
     closed.commands["hand"].trigger()
-    closed.controller.hand.nudge(frozenset({(1, 1)}), 0.2)
+    closed.services.hand.nudge(frozenset({(1, 1)}), 0.2)
     assert view.shown_as_cut is None
     until(lambda: view.shown_as_cut is not None)
 

@@ -301,7 +301,7 @@ def test_that_the_pictures_of_the_whole_set_are_as_cut_and_the_cut_files_the_sam
         assert code == 0, err
     for name in ("cut.dxf", "cut.svg", "cut.pdf"):
         assert (tmp_path / "plain" / name).read_bytes() == (tmp_path / "cut" / name).read_bytes(), name
-    plain, cut = ((tmp_path / name / "layout.svg").read_text() for name in ("plain", "cut"))
+    plain, cut = ((tmp_path / name / "cut-picture.svg").read_text() for name in ("plain", "cut"))
     assert "Picture, not a cut file. As cut" in cut and "at 60 degrees" in cut
     assert "As cut" not in plain and "at 0 degrees" in plain
 

@@ -131,7 +131,7 @@ def test_that_contacts_of_bows_are_what_a_sheet_jams_by() -> None:
     assert at[0] < 0.01 and min(at[1:]) > 0.25
     found = closing(sheet)
     assert math.radians(2.0) < found.jam_phi() < math.radians(6.0)
-    assert deepest(moved(panels, sheet, found.path.motion[-1])) < 0.25 * max(at)
+    assert deepest(moved(panels, sheet, found.motion_at(found.jam_phi()))) < 0.5 * at[1]
 
 
 @pytest.mark.parametrize("name", ["hexagon", "circle", "house"])
