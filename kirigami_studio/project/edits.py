@@ -59,6 +59,8 @@ class LaidChange(TypedDict, total=False):
     shift: tuple[float, float]
 
 
+#: Settings that change others with them.
+BRINGING_OTHERS = ("machine", "material")
 #: What the Undo menu says of a change to a setting that has no words of its own for it.
 OTHER_CHANGE = mark("Change a setting")
 #: Widths of single connectors are rounded to this many decimals of a millimetre.
@@ -216,9 +218,9 @@ def share_artwork(document: Document, second: ArtPicture | None, stripes: int) -
 
 
 def _label(kind: type, changes: Mapping[str, object]) -> str:
-    """What the Undo menu says of a change; of several at once the first of the settings, which brings the others."""
+    """Entry of the Undo menu for a change; of several at once the one that brings the others."""
     settings = settings_of(kind)
-    name = next(name for name in settings if name in changes)
+    name = next(name for name in (*BRINGING_OTHERS, *settings) if name in changes)
     return tr(settings[name].setting.undo or OTHER_CHANGE)
 
 

@@ -137,6 +137,11 @@ class AsCut:
         return self.outcome is Outcome.CLOSES
 
     @property
+    def nearly_closes(self) -> bool:
+        """Whether it ends within a few degrees of that angle."""
+        return not self.closes and self.jam_phi <= self.phi + ESTIMATE_CLOSES
+
+    @property
     def reached(self) -> float:
         """The angle (radians) nearest to ``phi`` that the sheet comes to."""
         return self.phi if self.closes else max(self.jam_phi, self.phi)
@@ -159,6 +164,8 @@ class AsCut:
     @property
     def word(self) -> str:
         """Whether it comes to its angle, in the words that everything shows."""
+        if self.nearly_closes:
+            return tr("comes to {jam:.0f}°", jam=self.jam_deg)
         if not self.closes:
             return tr("jams at {jam:.0f}°", jam=self.jam_deg)
         return tr("closes") if self.phi < CLOSE_TO else tr("opens to {phi:.0f}°", phi=math.degrees(self.phi))

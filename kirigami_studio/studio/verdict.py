@@ -68,6 +68,9 @@ MATCHES = 0.90
 MATCHES_ROUGHLY = 0.75
 #: A jam that costs no more match (IoU) than this is no more than nearly a jam: being forced shut costs film as much.
 LITTLE_LOST = 0.02
+#: A few degrees at the end that cost no more match than this are told and are no problem: an edge that is 0.25 % of the
+#: radius off all round, 0.13 mm on a disc 100 mm wide, is less than what a cut is off.
+UNSEEN_LOST = 0.005
 #: Share of its way that a thin sheet has to come flat.  Film passes jams by bending out of the plane, as straight
 #: hearts do which jam at 69 to 74 of 180 degrees and match there with 0.87; sheets that jam at 121 to 148 degrees
 #: match with 0.72 to 0.74, and want their connectors stretched by 2 to 5 widths.
@@ -488,7 +491,9 @@ def judge(
         problems.append(Problem.warning("as_cut.not_known", reason=as_cut))
     warned = (note for one in verifications for note in one.warnings)
     notes: list[Note] = [*plan.notes, *_strain_notes(plan, known), *warned]
-    if known is not None and known.closes:
+    if known is not None and _as_good_as_closed(known):
+        notes.append(Note(NEARLY, _angles(known)))
+    if known is not None and (known.closes or _as_good_as_closed(known)):
         notes = [note for note in notes if note.code not in SIGNS_OF_A_JAM]
     told = {problem.text for problem in problems}
     return Verdict(
@@ -608,12 +613,23 @@ def _of_files(verifications: Sequence[Verification], phi: float, as_cut: AsCut |
     return [*found, *jams[:1]]
 
 
+def _angles(as_cut: AsCut) -> dict[str, float]:
+    return {"jam_deg": as_cut.jam_deg, "phi_deg": math.degrees(as_cut.phi)}
+
+
+def _as_good_as_closed(as_cut: AsCut) -> bool:
+    """Whether a sheet ends within a few degrees of its angle, at no loss of match that can be seen."""
+    return as_cut.nearly_closes and as_cut.lost is not None and as_cut.lost <= UNSEEN_LOST
+
+
 def _of_jam(as_cut: AsCut | None) -> list[Problem]:
     """By how far the sheet opens and how much match that costs."""
     if as_cut is None or as_cut.closes:
         return []
-    angles = {"jam_deg": as_cut.jam_deg, "phi_deg": math.degrees(as_cut.phi)}
-    if as_cut.jam_phi <= as_cut.phi + ESTIMATE_CLOSES or (as_cut.lost is not None and as_cut.lost <= LITTLE_LOST):
+    angles = _angles(as_cut)
+    if _as_good_as_closed(as_cut):
+        return []
+    if as_cut.nearly_closes or (as_cut.lost is not None and as_cut.lost <= LITTLE_LOST):
         return [Problem.warning(NEARLY, **angles)]
     if as_cut.figure is StrainFigure.OUT_OF_PLANE:
         share = {"opened_percent": 100.0 * as_cut.opened, "least_percent": 100.0 * HALF_WAY}

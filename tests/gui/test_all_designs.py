@@ -312,13 +312,15 @@ def test_that_badges_say_the_verdict_and_what_keeps_it_from_being_better(designs
     wide, narrow = Ranking(width_mm=100.0), Ranking(width_mm=100.0, least_feature_mm=50.0)
     closing = AsCut(0.0, 0.0, Outcome.CLOSES, 0.1, 0.2, StrainFigure.IN_PLANE, source=Source.ESTIMATE)
     jamming = replace(closing, jam_phi=0.6, outcome=Outcome.STRETCHED)
-    tough, brittle = (replace(default_material(), strain_limit=limit) for limit in (0.45, 0.1))
+    tough = default_material()
+    breaking = replace(closing, strain_limit=0.1)
     fits, about = "fits the material", "\N{ALMOST EQUAL TO} "
     assert texts(candidate, wide, None) == ["Not checked yet", "matches", fits]
     assert texts(candidate, wide, closing, tough) == [f"{about}Ready to cut", "matches", fits, f"{about}closes"]
     misfit = [f"{about}Will not work", "does not fit the material", "matches", f"{about}closes"]
-    assert texts(candidate, wide, closing, brittle) == misfit
-    found = badges_of(expected(candidate, narrow, jamming, brittle))
+    assert texts(candidate, wide, breaking, tough) == misfit
+    jammed = replace(jamming, strain_limit=0.1)
+    found = badges_of(expected(candidate, narrow, jammed, tough))
     assert [badge.text for badge in found][:3] == [misfit[0], misfit[1], f"{about}jams at 34°"]
     assert [badge.state for badge in found] == ["will_not_work", "bad", "bad", "good"]
     assert "50.00 mm" in found[1].tip and [badge.is_level for badge in found] == [True, False, False, False]
@@ -342,7 +344,7 @@ def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns
     until(lambda: bool(services.estimates.known) and not services.estimates.busy)
     rows = [table.table.model_.index(row, 0) for row in range(table.table.model_.rowCount())]
     assert all("fits the material" in row.data(VERDICT_ROLE).summary for row in rows)
-    services.fabrication.change(material="card-co2")
+    services.fabrication.change(material="plywood-co2")
     # What was found in the other material goes at once, not once this one was looked at.
     assert not any(row.data(VERDICT_ROLE).as_cut for row in rows)
     until(lambda: not services.estimates.busy)

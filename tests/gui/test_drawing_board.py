@@ -124,11 +124,11 @@ def test_that_escape_takes_the_move_tool_and_then_leaves_the_editor(board: MainW
 
 
 def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbot: QtBot) -> None:
-    heart.stage.view.setFocus()
+    heart.stage.take_focus()
     heart.commands["edit_target"].trigger()
     assert heart.focusWidget() is heart.target.view
     qtbot.keyClick(heart.focusWidget(), Qt.Key.Key_Escape)
-    assert not heart.target.editing and heart.focusWidget() is heart.stage.view
+    assert not heart.target.editing and heart.focusWidget() is heart.stage.welcome
 
 
 def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: MainWindow, qtbot: QtBot) -> None:

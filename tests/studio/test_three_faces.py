@@ -20,7 +20,7 @@ from kirigami_studio.gui.window.services import Services
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.making import ExportedFiles
 
 #: Voids, designs and seed of every case: panels are small enough for some designs to jam or to be refused as cut.
@@ -51,7 +51,7 @@ def of_window(qtbot: QtBot, target: str, material: str | None, folder: Path) -> 
     services = Services()
     try:
         settings = DesignSettings(GRID, k=DESIGNS, seed=SEED, auto_grid=False)
-        cut = FabricationSettings(**named(material))
+        cut = new_settings(named(material))
         services.session.restart(Document(read_target(target), settings, fabrication=cut), None)
         with qtbot.waitSignal(services.run.completed, timeout=PATIENCE):
             services.generation.generate()

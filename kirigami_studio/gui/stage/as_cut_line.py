@@ -49,6 +49,9 @@ def texts(found: AsCut) -> tuple[str, ...]:
         if found.phi < CLOSED:
             return (tr("Closes as cut: {match:.1f} %", match=100 * match),)
         return (tr("Opens to {phi:.0f}° as cut: {match:.1f} %", phi=phi, match=100 * match),)
+    if found.nearly_closes:
+        near = tr("Comes to {jam:.0f}° as cut", jam=jam)
+        return (near if match is None else tr("Comes to {jam:.0f}° as cut: {match:.1f} %", jam=jam, match=100 * match),)
     short = tr("Jams at {jam:.0f}°", jam=jam)
     if found.outcome is Outcome.TOUCHING:
         return tr("Jams at {jam:.0f}°: panels touch", jam=jam), short

@@ -107,10 +107,11 @@ def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
         Command(
             "as_cut",
             menu,
-            tr("As &cut"),
+            tr("As cut"),
             tr("Show the panels with their bows and connectors, as they are cut"),
             bar.as_cut.trigger,
             shortcuts=("Shift+C",),
+            icon="connector",
             switch=bar.as_cut,
         ),
         Command(

@@ -270,7 +270,7 @@ class WelcomePresenter(QObject):
                 wanted, paper=Paper.LETTER if letter else Paper.A4, size=TypedSize.OPENED, opened_mm=BY_HAND_MM
             )
         else:
-            wanted = replace(wanted, size=TypedSize.OPENED, opened_mm=known.sheet_mm)
+            wanted = replace(wanted, size=TypedSize.FLAT, width_mm=known.sheet_mm)
         preferences.keep(wanted)
         cut = wanted.new_document().fabrication
         changed = replace(session.document, fabrication=cut)

@@ -25,7 +25,7 @@ from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
 from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto, workers
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.errors import ExportError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.outlines.outline import Outline
@@ -57,6 +57,7 @@ def on_targets(suite: str, **renamed: str) -> Command:
     """
 
     def command(arguments: argparse.Namespace) -> int:
+        _check_out(arguments)
         measure = _suite(suite)
         options = _options_of(measure, arguments, renamed)
         line = ProgressLine()
@@ -84,6 +85,7 @@ def alone(suite: str, title: str, **renamed: str) -> Command:
     """
 
     def command(arguments: argparse.Namespace) -> int:
+        _check_out(arguments)
         measure = _suite(suite)
         options = _options_of(measure, arguments, renamed)
         line = ProgressLine()
@@ -99,6 +101,12 @@ def alone(suite: str, title: str, **renamed: str) -> Command:
         return 1 if ok is False else 0
 
     return command
+
+
+def _check_out(arguments: argparse.Namespace) -> None:
+    """Refuse a folder as the file of figures before any work is done."""
+    if arguments.out is not None and Path(arguments.out).is_dir():
+        raise ExportError("file.is_a_folder", path=arguments.out)
 
 
 def _suite(place: str) -> Callable[..., Any]:

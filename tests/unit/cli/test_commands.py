@@ -190,14 +190,15 @@ def test_that_a_saved_project_is_exported_to_every_kind_of_file(
 
 
 @pytest.mark.torch
-def test_that_a_sheet_that_would_fall_apart_is_not_exported(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_that_the_file_of_a_sheet_that_would_fall_apart_is_told_not_to_work(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     answer(capsys, "design", "heart", "--k", 1, "--grid", "4x4", "--out", tmp_path, "--json")
-    code, sentence = refusal(
-        capsys, "export", tmp_path / "design.kiri", "--out", tmp_path / "x.dxf", "--connector-mm", 1e-9, "--json"
-    )
-    assert code == 1
-    assert "piece" in sentence
-    assert not (tmp_path / "x.dxf").exists()
+    words = ["export", tmp_path / "design.kiri", "--out", tmp_path / "x.dxf", "--connector-mm", 1e-9, "--json"]
+    assert main([str(word) for word in words]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert not found["ok"] and found["pieces"] == 17 and found["verdict"]["level"] == "will_not_work"
+    assert found["verdict"]["answers"]["files"]["state"] == "bad" and (tmp_path / "x.dxf").exists()
 
 
 @pytest.mark.torch

@@ -144,9 +144,10 @@ def test_that_design_says_whether_the_material_can_be_cut(capsys: pytest.Capture
     for one in plain["candidates"]:
         assert 0.0 <= one["as_cut"]["jam_deg"] <= 180.0 and one["as_cut"]["jam_from"] in ("estimate", "simulation")
     assert plain["candidates"][0]["as_cut"]["jam_deg"] == plain["jam_deg"]
-    card = answer(capsys, *wish, "--material", "card-co2", "--width-mm", "250", "--json")
+    thin = ("--material", "card-co2", "--width-mm", "250", "--connector-mm", "1")
+    card = answer(capsys, *wish, *thin, "--json")
     assert not card["ok"] and card["verdict"]["level"] == "will_not_work"
     assert not any(entry["cuttable"] for entry in card["candidates"])
-    assert main([*wish, "--material", "card-co2", "--width-mm", "250"]) == 0
+    assert main([*wish, *thin]) == 0
     out = capsys.readouterr().out
     assert "no design can be cut in this material, width and style." in out and "verdict: Will not work" in out

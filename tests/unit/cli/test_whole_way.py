@@ -56,8 +56,8 @@ def test_that_connectors_too_wide_for_trimming_name_the_width_that_serves(capsys
 
 
 def test_that_a_run_whose_budget_ends_before_trimming_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["design", "heart", "--k", "1", "--no-polish", "--trim", "--budget", "0.001"]) == 1
-    assert "The budget ended before" in capsys.readouterr().err
+    assert main(["design", "heart", "--k", "1", "--no-polish", "--trim", "--budget", "0.001"]) == 0
+    assert "The budget ended before" in capsys.readouterr().out
 
 
 def test_that_a_trimmed_design_tells_both_scores_and_writes_a_trimmed_cut_file(

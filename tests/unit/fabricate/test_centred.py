@@ -193,6 +193,7 @@ def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: Make
         make_design(8, 8, seed=4, spread=0.9),
         60.0,
         material=find_material("card-co2"),
+        connector_mm=1.0,
         options=CutOptions(style=ConnectorStyle.CENTRED),
     )
     codes = ("plan.off_centre", "plan.no_room_to_centre", "plan.connectors_narrowed")
@@ -210,7 +211,8 @@ def test_that_crowded_connectors_are_told_and_keep_their_width(make_design: Make
 
 def test_that_slits_turn_tightly_before_connectors_become_narrower(make_design: MakeDesign) -> None:
     design, material = make_design(8, 8, seed=4, spread=0.9), find_material("card-co2")
-    plan = plan_cuts(design, 80.0, material=material, options=CutOptions(style=ConnectorStyle.CENTRED))
+    options = CutOptions(style=ConnectorStyle.CENTRED)
+    plan = plan_cuts(design, 80.0, material=material, connector_mm=1.0, options=options)
     assert not plan.hinges.narrowed.size
     assert check_plan(plan).pieces == 1
 

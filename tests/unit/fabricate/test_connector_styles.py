@@ -150,7 +150,7 @@ def test_that_a_blade_without_relief_radius_is_refused_with_what_to_choose(
 def test_that_a_blade_can_cut_arcs_and_bars(style: ConnectorStyle, make_design: MakeDesign) -> None:
     plan = styled(make_design(3, 4), style, "drag-knife", 150.0)
     assert check_plan(plan).ok
-    np.testing.assert_allclose(plan.hinges.finished_mm, 1.0, atol=1e-3)
+    np.testing.assert_allclose(plan.hinges.finished_mm, plan.material.connector_mm, atol=1e-3)
 
 
 @pytest.mark.parametrize("style", SHAPED)

@@ -94,7 +94,7 @@ def test_that_time_is_at_least_length_over_speed_and_falls_with_acceleration(mak
 
 def test_that_presets_fill_what_is_not_given(make_design: MakeDesign) -> None:
     plan = plan_cuts(make_design(4, 4), material=find_material("pet-co2"))
-    assert (plan.connector_mm, plan.kerf_mm) == (0.6, 0.15)
+    assert (plan.connector_mm, plan.kerf_mm) == (plan.material.connector_mm, plan.material.kerf_mm) == (0.5, 0.15)
     assert any(note.code == "plan.material_uncalibrated" for note in plan.notes)
     own = plan_cuts(make_design(4, 4), material=replace(plan.material, calibrated=True), connector_mm=0.2)
     assert any(note.code == "plan.connectors_may_tear" for note in own.notes)

@@ -151,7 +151,7 @@ def test_that_connectors_ask_for_room_beside_them() -> None:
     # A sheet of 100 mm in film, and wide connectors on it.
     narrow, wide = FabricationSettings(connector_mm=0.2), FabricationSettings(connector_mm=1.0)
     assert room_mm(narrow) == pytest.approx(0.57) and room_mm(wide) == pytest.approx(2.77)
-    assert room_mm(FabricationSettings(material="card-co2", kerf_mm=0.1)) == pytest.approx(2.85)
+    assert room_mm(FabricationSettings(material="card-co2", connector_mm=1.0, kerf_mm=0.1)) == pytest.approx(2.85)
 
 
 def test_that_wide_connectors_keep_their_width_on_a_design_that_was_made_for_them() -> None:

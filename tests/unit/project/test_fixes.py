@@ -117,7 +117,9 @@ def test_that_removed_connectors_are_put_back_first(design: Candidate) -> None:
 
 def test_that_a_material_that_cannot_is_told_one_that_can(design: Candidate) -> None:
     found = advice(design, FabricationSettings(material="acrylic-co2"))
-    assert found.fixes[0].verdict.ok and found.fixes[0].change.text == "Cut PA/PI film 50 \N{MICRO SIGN}m, UV laser."
+    assert (
+        found.fixes[0].verdict.ok and found.fixes[0].change.text == "Cut Polyimide film 50 \N{MICRO SIGN}m, UV laser."
+    )
     assert sum(fix.settings.material != "acrylic-co2" for fix in found.fixes) <= 2
 
 

@@ -220,7 +220,7 @@ def test_that_an_estimate_says_so_and_has_the_same_answers(design: Candidate, re
     assert (told["from"], told["jam_from"], told["jam_deg"]) == ("estimate", "estimate", quick.jam_deg)
     for question in (Question.MATCHES, Question.FITS, Question.CLOSES):
         assert found.answer(question) == ready.verdict.answer(question)
-    refusal = Problem.error("as_cut.breaks", strain_percent=50.0, material="card", limit_percent=3.0)
+    refusal = Problem.error("as_cut.breaks", strain_percent=50.0, material="card", limit_percent=3.0, why="")
     refused_by = Ranking(width_mm=100.0, refusals={design: refusal})
     assert expected(design, refused_by, quick).level is Level.FAILS
     by_estimate = Ranking(width_mm=100.0, refusals={design: Note.of("rank.jams", own=40.0)})

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from kirigami_studio.cli.parser import main
 from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.lab.benchmark import preset_suite
 from kirigami_studio.lab.benchmark.preset_suite import PresetFigures, PresetSheet, measure_presets
 from kirigami_studio.studio.verdict import Level
 
@@ -41,3 +45,11 @@ def test_that_an_unknown_material_is_refused() -> None:
     with pytest.raises(UsageError) as caught:
         measure_presets(["oak"])
     assert caught.value.code == "material.unknown"
+
+
+def test_that_a_folder_as_the_file_of_figures_is_refused_before_any_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(preset_suite, "judged_preset", lambda *_: pytest.fail("work was done"))
+    assert main(["benchmark", "presets", "--materials", "pet-co2", "--k", "1", "--out", str(tmp_path)]) == 1
+    assert str(tmp_path) in capsys.readouterr().err
