@@ -65,9 +65,6 @@ CLOSE_SPANS = 4.0
 UNMET = 300.0
 #: What is not met by less than this, of the most that one variable can do for it, counts as met.
 VIOLATED = 1e-9
-#: Slits share one sheet: all together they are not lengthened by more than this (for random ratios within a factor of
-#: 10 of 1 they have 0.95 to 1.3 times the length of the uniform sheet's).
-MOST_LENGTHENED = 2.0
 #: Right sides that are solved for at once: longer work would hold up the window, which waits for the lock.
 AT_ONCE = 32
 
@@ -103,8 +100,6 @@ def with_room(
     with one_blas_thread():
         programme = _programme(deployment, width_mm, spans, table, removed)
         for share in SHARES:
-            if programme.is_hopeless(share):
-                continue
             found = programme.solve(share, go_on)
             if found is None or programme.changed_share(found) <= CHANGED_SHARE:
                 return deployment if found is None else found
@@ -193,12 +188,6 @@ class _Programme:
             shape = self._design.field.ratio.shape
             design = deploy(self._design.sheet.with_field(RatioField(np.exp(z).reshape(shape))))
         return design
-
-    def is_hopeless(self, share: float) -> bool:
-        """Whether slits would have to be far longer than they are, all together, for this share of the room."""
-        ends = HALF_BOW_SPANS + float(shortest_turn(np.zeros(1))[0])
-        needed = share * float(np.sum(self._facing * self._facing_spans(self._design) + 2.0 * ends * self._spans))
-        return needed > MOST_LENGTHENED * float(np.linalg.norm(self._run(self._design), axis=1).sum())
 
     @property
     def met(self) -> bool:

@@ -81,7 +81,6 @@ TIPS = {
     "roughness": mark("Total variation (TV) of the ratios, lower is smoother."),
     "symmetric": mark("Whether the sheet is its own mirror image, or the same after a turn."),
     "rim": mark("Where cuts meet the sheet's sides: free, or at even distances."),
-    "feasible": mark("Whether the sheet can be built and opens without touching itself."),
 }
 
 
@@ -123,9 +122,10 @@ def figures_of(one: ComparedDesign) -> dict[str, ComparedFigure]:
         "roughness": ComparedFigure(tr("Roughness"), tr("{tv:.2f}", tv=score.tv), score.tv, "+.2f"),
         "symmetric": ComparedFigure(tr("Symmetric"), tr("no") if candidate.symmetry is None else tr("yes")),
         "rim": ComparedFigure(tr("Rim"), tr("even") if even else tr("free")),
-        "feasible": ComparedFigure(tr("Feasible"), tr("yes") if score.feasible else tr("no")),
     }
-    if found is not None:
+    if not score.feasible and candidate.trim is None:
+        rows["as_cut"] = rows["as_cut"]._replace(text=tr("overlaps itself"))
+    elif found is not None:
         about, strain = "" if one.simulated else "\N{ALMOST EQUAL TO} ", 100.0 * found.strain
         text, kind = about + tr("{strain:.0f} %", strain=strain), str(one.simulated)
         rows["as_cut"] = rows["as_cut"]._replace(text=about + found.word)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.cli.parser import main
+from kirigami_studio.cli import main
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lab.benchmark import preset_suite
 from kirigami_studio.lab.benchmark.preset_suite import PresetFigures, PresetSheet, measure_presets
