@@ -73,6 +73,9 @@ class Places:
     def export(self, proposal: str) -> Path | None:
         return self.cut
 
+    def picture(self, proposal: str) -> Path | None:
+        return None
+
     def folder(self) -> Path | None:
         self.everything.mkdir(exist_ok=True)
         return self.everything
