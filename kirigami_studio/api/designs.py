@@ -178,7 +178,7 @@ def material_names() -> tuple[str, ...]:
     >>> "card-co2" in ks.material_names()
     True
     """
-    return tuple(library().materials)
+    return tuple(library().items)
 
 
 def machine_names() -> tuple[str, ...]:

@@ -192,18 +192,18 @@ def _copy(arguments: argparse.Namespace) -> int:
 def _list(arguments: argparse.Namespace) -> int:
     found = library()
     if arguments.machine is not None:
-        found = replace(found, materials=cuttable(find_machine(arguments.machine)))
+        found = replace(found, items=cuttable(find_machine(arguments.machine)))
     if arguments.json:
         print_json(
             {
-                "materials": list(found.materials),
+                "materials": list(found.items),
                 "own": sorted(found.own),
-                "calibrated": [key for key, material in found.materials.items() if material.calibrated],
+                "calibrated": [key for key, material in found.items.items() if material.calibrated],
                 "faults": [fault.text for fault in found.faults],
             }
         )
         return 0
-    for key, material in found.materials.items():
+    for key, material in found.items.items():
         say(_row(material, key in found.own))
     for fault in found.faults:
         say(tr("Left out: {fault}", fault=fault.text))

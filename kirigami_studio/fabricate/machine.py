@@ -328,7 +328,7 @@ def material_on(material: Material, machine: Machine) -> Material:
 
 def usual_material(machine: Machine, taken: Mapping[str, Material]) -> str:
     """Key of the material to begin with, of those that a machine takes."""
-    known = library().materials
+    known = library().items
 
     def order(key: str) -> tuple[bool, bool, bool]:
         made_for = MachineKind.of(known[key].machine) is machine.kind
@@ -339,6 +339,6 @@ def usual_material(machine: Machine, taken: Mapping[str, Material]) -> str:
 
 def cuttable(machine: Machine) -> dict[str, Material]:
     """The materials that a machine cuts, by key, with their figures on it, sorted by name."""
-    found = {key: material_on(material, machine) for key, material in library().materials.items()}
+    found = {key: material_on(material, machine) for key, material in library().items.items()}
     taken = {key: material for key, material in found.items() if machine.takes(material)}
     return dict(sorted(taken.items(), key=lambda item: item[1].name.casefold()))

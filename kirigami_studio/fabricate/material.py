@@ -15,7 +15,7 @@ from typing import Any
 
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.fabricate.shelf import Shelf
+from kirigami_studio.fabricate.shelf import Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line, plain_lines
@@ -295,25 +295,6 @@ class Material:
             raise FabricationError("material.not_a_day", key=self.key, value=self.measured_on) from None
 
 
-@dataclass(frozen=True, slots=True)
-class Library:
-    """All materials that there are.
-
-    Attributes
-    ----------
-    materials : mapping of str to Material
-        By key: the default preset, the other presets in alphabetical order, then own materials with keys of their own.
-    own : frozenset of str
-        Keys of those that are not bundled, or that stand for the bundled ones of the same key.
-    faults : tuple of Note
-        One for each own file that cannot be used.
-    """
-
-    materials: Mapping[str, Material]
-    own: frozenset[str]
-    faults: tuple[Note, ...]
-
-
 def with_entries_of_now(entries: Mapping[str, Any]) -> dict[str, Any]:
     """Entries of a file or of changes, those of older programs under their present names."""
     now = dict(entries)
@@ -360,10 +341,9 @@ def own_folder() -> Path:
     return SHELF.own_folder()
 
 
-def library() -> Library:
+def library() -> Contents[Material]:
     """Read presets and own materials; an own file that cannot be used is noted among the faults."""
-    found = SHELF.contents()
-    return Library(found.items, found.own, found.faults)
+    return SHELF.contents()
 
 
 def default_material() -> Material:

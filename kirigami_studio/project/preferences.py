@@ -104,7 +104,7 @@ class Preferences:
         empty = Document()
         machine = replace(
             empty.fabrication,
-            material=self.material if self.material in library().materials else DEFAULT_PRESET,
+            material=self.material if self.material in library().items else DEFAULT_PRESET,
             machine=self.machine if self.machine in machines().items else "",
             profile=self.profile,
             dxf_version=self.dxf_version,

@@ -82,8 +82,8 @@ def with_stored_material(document: Document) -> Document:
     """The document as it is saved: with the numbers of its material, if that is the user's own."""
     settings, known = document.fabrication, library()
     numbers = stored_material(settings)
-    if settings.material in known.materials:
-        numbers = known.materials[settings.material] if settings.material in known.own else None
+    if settings.material in known.items:
+        numbers = known.items[settings.material] if settings.material in known.own else None
     if numbers == settings.own:
         return document
     return replace(document, fabrication=replace(settings, own=numbers))

@@ -301,7 +301,7 @@ def material_for(settings: FabricationSettings) -> Material:
         Neither has it; the sentence lists the library.
     """
     stored = stored_material(settings)
-    own = stored is not None and stored.key not in library().materials
+    own = stored is not None and stored.key not in library().items
     material = stored if stored is not None and own else find_material(settings.material)
     machine = named_machine(settings)
     return material if machine is None else material_on(material, machine)

@@ -190,7 +190,7 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
 
 def _own_material(key: str, path: Path, saved: FabricationSettings) -> Material | None:
     """Numbers of a material that is no preset: the project's, else the file's."""
-    if key in library().materials:
+    if key in library().items:
         return None
     stored = stored_material(saved)
     if stored is not None and stored.key == key:

@@ -439,7 +439,7 @@ def _combinations(candidate: Candidate, settings: FabricationSettings, material:
 def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
     """All other materials with centred connectors; of a chosen machine, those that it cuts."""
     machine = named_machine(settings)
-    for key, material in (library().materials if machine is None else cuttable(machine)).items():
+    for key, material in (library().items if machine is None else cuttable(machine)).items():
         if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
             other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)

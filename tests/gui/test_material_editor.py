@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.coupon import kerf_from_gaps
 from kirigami_studio.fabricate.material import library, presets
-from kirigami_studio.gui.make.material_editor import MaterialEditor
+from kirigami_studio.gui.make.library_editors import MaterialEditor
 from kirigami_studio.gui.make.material_form import NUMBERS, MaterialForm
 from kirigami_studio.gui.window.main_window import MainWindow
 
@@ -41,7 +41,7 @@ def test_that_a_preset_can_be_copied_but_not_changed(editor: MaterialEditor, qtb
     press(editor, qtbot, "copy")
     assert editor.chosen.key == "film-uv-2" and editor.form.numbers["kerf_mm"].isEnabled()
     assert [path.name for path in own_materials.iterdir()] == ["film-uv-2.toml"]
-    assert presets()["film-uv"] == library().materials["film-uv"]
+    assert presets()["film-uv"] == library().items["film-uv"]
 
 
 @pytest.mark.usefixtures("german")
@@ -59,7 +59,7 @@ def test_that_saved_numbers_reach_the_plan(
     designed.services.fabrication.change(material="film-uv-2", connector_mm=None, kerf_mm=None)
     editor.form.numbers["connector_mm"].setValue(0.44)
     press(editor, qtbot, "save")
-    assert library().materials["film-uv-2"].connector_mm == 0.44 and not editor.buttons["save"].isEnabled()
+    assert library().items["film-uv-2"].connector_mm == 0.44 and not editor.buttons["save"].isEnabled()
     until(lambda: designed.fabrication.numbers["ligament"].text() == "0.44 mm")
     assert designed.fabrication.lengths["connector_mm"].value() == 0.44
     assert designed.fabrication.material.currentText().endswith("(copy)")
@@ -73,16 +73,16 @@ def test_that_a_material_is_calibrated_by_somebody_and_uncalibrated_by_new_numbe
     editor.author.setText("Ada")
     editor.form.numbers["kerf_mm"].setValue(0.031)
     press(editor, qtbot, "calibrate")
-    kept = library().materials["film-uv-2"]
+    kept = library().items["film-uv-2"]
     assert kept.calibrated and kept.kerf_mm == 0.031 and kept.measured_by == "Ada"
-    assert kept.measured_on == date.today().isoformat() and "Calibrated on" in editor.state.text()
+    assert kept.measured_on == date.today().isoformat() and "Calibrated on" in editor.about.text()
     editor.form.texts["name"].setText("My film")
     editor.form.texts["name"].textEdited.emit("My film")
     press(editor, qtbot, "save")
-    assert library().materials["film-uv-2"].calibrated and library().materials["film-uv-2"].name == "My film"
+    assert library().items["film-uv-2"].calibrated and library().items["film-uv-2"].name == "My film"
     editor.form.numbers["kerf_mm"].setValue(0.05)
     press(editor, qtbot, "save")
-    assert not library().materials["film-uv-2"].calibrated
+    assert not library().items["film-uv-2"].calibrated
 
 
 def test_that_a_deleted_material_that_is_in_use_is_told(
@@ -101,7 +101,7 @@ def test_that_what_the_library_refuses_is_said_in_the_editor(editor: MaterialEdi
     press(editor, qtbot, "copy")
     editor.form.texts["name"].setText("x")
     editor.author.setText("   ")
-    editor._try(editor.calibrate)
+    editor.attempt(editor.calibrate)
     assert "author" in editor.status.text()
 
 
@@ -141,7 +141,7 @@ def test_that_a_measured_coupon_sets_the_kerf(editor: MaterialEditor, qtbot: QtB
     expected = kerf_from_gaps([0.29, 0.31])
     assert f"{expected.kerf_mm:.3f}" in editor.status.text() and f"{expected.doubt_mm:.3f}" in editor.status.text()
     press(editor, qtbot, "save")
-    assert library().materials[editor.chosen.key].kerf_mm == pytest.approx(expected.kerf_mm, abs=5e-4)
+    assert library().items[editor.chosen.key].kerf_mm == pytest.approx(expected.kerf_mm, abs=5e-4)
 
 
 @pytest.mark.parametrize(("typed", "said"), [("wide", "gaps in mm"), ("-1", "gap beside the comb")])

@@ -17,7 +17,7 @@ from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.studio.as_cut import Source
-from kirigami_studio.studio.verdict import Level
+from kirigami_studio.studio.verdict import AnswerState, Level, Question
 
 LEFT = Qt.MouseButton.LeftButton
 STAR = Path(__file__).parents[1] / "data" / "projects" / "star_jams_at_143.kiri"
@@ -137,6 +137,23 @@ def test_that_a_ready_sheet_is_reported_as_verified(ready: MainWindow, until: Un
     assert report is not None and report.judged is not None and report.judged.ok
     assert report.verdict.text().startswith("Verified")
     assert ready.messages.messages[-1].tone is Tone.DONE
+
+
+def test_that_banner_and_card_answer_for_exported_files_until_the_cut_changes(
+    ready: MainWindow, until: Until, tmp_path: Path
+) -> None:
+    services, model = ready.services, ready.gallery.view.model_
+    verdict, chosen = services.verdict.state.verdict, services.session.document.candidate
+    assert verdict is not None and not verdict.read and chosen is not None
+    services.exporter.export(tmp_path / "cut.dxf")
+    until(lambda: ready.dialogs.report is not None)
+    told = services.verdict.state.verdict
+    assert told is not None and told.read and told.answer(Question.FILES).state is AnswerState.GOOD
+    assert told.answer(Question.FILES).word in ready.stage.verdict.sentence.text()
+    assert model.verdict_of(chosen) == told
+    services.fabrication.change(connector_mm=0.3)
+    until(lambda: judged(ready))
+    assert services.verdict.state.verdict is not None and not services.verdict.state.verdict.read
 
 
 def test_that_card_table_stage_panel_report_and_record_tell_the_same_of_a_star_that_jams(

@@ -49,7 +49,7 @@ def own_project(designs: Document, own_materials: Path, tmp_path: Path) -> Path:
     store.save(document, path)
     assert store.load(path) == document
     delete_copy("my-film")
-    assert "my-film" not in library().materials
+    assert "my-film" not in library().items
     return path
 
 
@@ -70,7 +70,7 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
     carried = store.load(tmp_path / "again.kiri").fabrication.own
     assert carried is not None and (carried.key, carried.kerf_mm) == ("my-film", 0.07)
     dict(message.actions)["Add to my materials"]()
-    assert library().materials["my-film"] == carried
+    assert library().items["my-film"] == carried
     assert fabrication.material.findData("my-film") >= 0 and fabrication.material.currentText() == "My film"
 
 

@@ -128,7 +128,7 @@ def test_that_an_error_in_the_verdict_is_shown_and_never_leaves_it_checking(
 
 
 def test_that_no_coupon_warns_of_a_jam_or_has_a_verdict(tmp_path: Path) -> None:
-    for material in library().materials.values():
+    for material in library().items.values():
         (found,) = exporting_coupon(material, tmp_path / f"{material.key}.dxf", FabricationSettings(), never)
         (read,) = found.verifications
         said = [*read.findings, *read.warnings, *found.planned.plan.notes, *found.planned.report.problems]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
@@ -61,11 +61,11 @@ def of_window(qtbot: QtBot, target: str, material: str | None, folder: Path) -> 
         qtbot.waitUntil(lambda: bool(exported), timeout=PATIENCE)
         document, verdict = services.session.document, exported[0].verdict
         assert document.candidate is document.candidates[0] and verdict is not None
-        # Card, table and banner have the verdict of the file, but for the file itself.
+        # Card, table and banner have the verdict of the file.
         qtbot.waitUntil(lambda: not services.verdict.state.pending, timeout=PATIENCE)
         shown = services.estimates.verdicts[document.candidates[0]]
-        assert services.verdict.state.verdict == shown and not shown.read and verdict.read
-        assert replace(shown, read=True).to_json() == verdict.to_json()
+        assert services.verdict.state.verdict == shown and shown.read
+        assert shown.to_json() == verdict.to_json()
         order = tuple(one.index for one in document.candidates)
         best = document.candidates[0].sheet.field.ratio.tolist()
         return Answer(order, best, verdict.to_json(), (folder / "window.dxf").read_bytes())

@@ -37,6 +37,8 @@ class AllDesignsPresenter(QObject):
         Puts a design on the stage.
     compare : callable
         Shows designs beside each other, and has another callable that leads back here.
+    expect : callable
+        Gets ready to compare designs.
     """
 
     shown_changed = Signal(bool)  #: told before the table is shown, and after it is gone
@@ -52,10 +54,12 @@ class AllDesignsPresenter(QObject):
         marks: DesignMarks,
         choose: Callable[[Candidate], None],
         compare: Callable[[tuple[Candidate, ...], Callable[[], None]], None],
+        expect: Callable[[tuple[Candidate, ...]], None],
     ) -> None:
         super().__init__(pages)
         self._pages, self._panel, self._designs, self._session = pages, panel, designs, session
-        self._generation, self._marks, self._choose, self._compare = generation, marks, choose, compare
+        self._generation, self._marks, self._choose = generation, marks, choose
+        self._compare, self._expect = compare, expect
         self.page: AllDesigns | None = None
         panel.bar.all.clicked.connect(lambda: self.show(True))
 
@@ -101,6 +105,7 @@ class AllDesignsPresenter(QObject):
         page = AllDesigns(view.model_)
         self._pages.addWidget(page)
         self._colour(page)
+        page.table.compared_changed.connect(lambda: self._expect(page.table.compared))
         page.compare_wanted.connect(lambda: self._compare(page.table.compared, lambda: self.show(True)))
         page.closed.connect(lambda: self.show(False))
         page.selection_changed.connect(bar.take)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
 
@@ -175,6 +175,7 @@ class FigureRows(QWidget):
         self.values: dict[str, QLabel] = {}
         self.gaps: dict[str, QLabel] = {}
         self._arranged = 0, True
+        self._width = 0  #: pixels of one column, 0 while it is not measured
 
     def show_figures(self, figures: Mapping[str, ComparedFigure], first: Mapping[str, ComparedFigure] | None) -> None:
         """Show the rows of a design, and how far its numbers are from those of the first one."""
@@ -182,8 +183,10 @@ class FigureRows(QWidget):
             if name not in self.values:
                 self._add(name, figure.caption)
             gap = "" if first is None else figure.apart(first[name])
-            self.values[name].setText(figure.text)
-            self.gaps[name].setText(gap)
+            if (self.values[name].text(), self.gaps[name].text()) != (figure.text, gap):
+                self._width = 0
+                self.values[name].setText(figure.text)
+                self.gaps[name].setText(gap)
             tip = f"{tr(TIPS[name])} {tr(APART, gap=gap)}" if gap else tr(TIPS[name])
             for label in (self.captions[name], self.values[name], self.gaps[name]):
                 label.setToolTip(tip)
@@ -198,9 +201,11 @@ class FigureRows(QWidget):
 
     def column_width(self) -> int:
         """Pixels that one column of rows takes."""
-        parts = (self.captions, self.values, self.gaps)
-        widths = [max(label.sizeHint().width() for label in labels.values()) for labels in parts]
-        return sum(widths) + 2 * self._grid.horizontalSpacing()
+        if not self._width:
+            parts = (self.captions, self.values, self.gaps)
+            widths = [max(label.sizeHint().width() for label in labels.values()) for labels in parts]
+            self._width = sum(widths) + 2 * self._grid.horizontalSpacing()
+        return self._width
 
     def arrange(self, columns: int, gaps: bool) -> None:
         """Put the rows into so many columns, with differences or without; tooltips have them."""
@@ -232,6 +237,7 @@ class Pane(QWidget):
         self.view.setObjectName(f"compared{place + 1}")
         self.view.setAccessibleName(tr("Layout of design {number}", number=place + 1))
         self.figures = FigureRows()
+        self._shown: tuple[Entry, Outline | None] | None = None
         head = QHBoxLayout()
         head.addWidget(self.title, 1)
         head.addWidget(self.use)
@@ -243,7 +249,10 @@ class Pane(QWidget):
         column.addWidget(self.figures)
 
     def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
-        """Show the layout of a design over the target."""
+        """Show the layout of a design over the target, unless it is there already."""
+        if self._shown is not None and self._shown[0] is one.entry and self._shown[1] == target:
+            return
+        self._shown = one.entry, target
         candidate = one.entry.candidate
         # Contacts and the second target's pose are known of the sheet that was scored.
         scored = candidate.final_sheet == candidate.sheet
@@ -251,11 +260,16 @@ class Pane(QWidget):
         self.view.set_sheet_width(one.width_mm)
         self.view.show_design(one.entry.design, known[0], target, known[1])
 
+    def empty(self) -> None:
+        """Show no design."""
+        self._shown = None
+        self.view.show_design(None, None, None)
+
 
 class ComparePage(QWidget):
     """Designs at one angle, zoom and place, their figures compared with those of the first.
 
-    Panes are made when they are first wanted: their drawings take longer than all the rest.
+    Panes are made when designs are marked to be compared, or first shown: each takes as long as all the rest.
     """
 
     taken = Signal(Candidate)
@@ -267,7 +281,6 @@ class ComparePage(QWidget):
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._designs: tuple[ComparedDesign, ...] = ()
-        self._target: Outline | None = None
         self._overlays: frozenset[Overlay] | None = None
         self._palette: Palette = LIGHT
         self._view = 1.0, QPointF()
@@ -325,10 +338,22 @@ class ComparePage(QWidget):
         """Give later panes other colours; those that are there have their own call."""
         self._palette = palette
 
+    def expect(self, designs: Sequence[ComparedDesign], target: Outline | None) -> None:
+        """Make the panes of designs that may be compared soon, one in each turn of the event loop."""
+        place = len(self.panes)
+        if place < min(len(designs), MOST):
+            self._add_pane()
+            pane = self.panes[place]
+            pane.figures.show_figures(figures_of(designs[place]), None)
+            pane.show_design(designs[place], target)
+            pane.view.compare_ideal()
+            for part in pane.findChildren(QWidget):
+                part.ensurePolished()
+            QTimer.singleShot(0, self, lambda: self.expect(designs, target))
+
     def show_designs(self, designs: Sequence[ComparedDesign], target: Outline | None) -> None:
         """Show these designs, at most :data:`MOST`; angle, zoom and place stay."""
-        before, self._designs = self._designs, tuple(designs[:MOST])
-        same_target, self._target = target == self._target, target
+        self._designs = tuple(designs[:MOST])
         while len(self.panes) < len(self._designs):
             self._add_pane()
         first = figures_of(self._designs[0]) if self._designs else {}
@@ -336,11 +361,10 @@ class ComparePage(QWidget):
             one = self._designs[place] if place < len(self._designs) else None
             if one is None:
                 pane.hide()
-                pane.view.show_design(None, None, None)
+                pane.empty()
                 continue
             pane.title.setText(*_titles(place + 1, one))
-            if not (same_target and place < len(before) and before[place].entry is one.entry):
-                pane.show_design(one, target)
+            pane.show_design(one, target)
             pane.view.set_sheet_width(one.width_mm)
             pane.figures.show_figures(figures_of(one), first if place else None)
             pane.show()

@@ -88,6 +88,10 @@ class Comparison(QObject):
             return
         self.compare((stage.candidate, candidate))
 
+    def expect(self, candidates: Sequence[Candidate]) -> None:
+        """Get ready for designs that are marked to be compared."""
+        self._page.expect(tuple(map(self._known, candidates)), self._session.document.target)
+
     def compare(self, candidates: Sequence[Candidate], back: Callable[[], None] | None = None) -> None:
         """Show designs beside each other; closing the comparison leads ``back``."""
         self._compared = self._in_order(candidates[:MOST])

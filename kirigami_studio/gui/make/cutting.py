@@ -362,7 +362,7 @@ class MaterialStore(QObject):
         material = stored_material(document.fabrication)
         if material is None:
             return
-        known = library().materials.get(material.key)
+        known = library().items.get(material.key)
         if known is None:
             sentence = tr(
                 "You don't have the material {name}; the project's own values are used.",

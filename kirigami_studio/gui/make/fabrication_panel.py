@@ -45,7 +45,7 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
-    from kirigami_studio.gui.make.machine_editor import MachineEditor
+    from kirigami_studio.gui.make.library_editors import MachineEditor
     from kirigami_studio.studio.making import Planned
 
 #: Settings that are shown at once.
@@ -202,11 +202,11 @@ class FabricationPanel(Card):
 
     def _edit_machines(self) -> None:
         """Open the machine editor, or bring it to the front."""
-        from kirigami_studio.gui.make.machine_editor import MachineEditor
+        from kirigami_studio.gui.make.library_editors import MachineEditor
 
         if self._machine_editor is None:
             self._machine_editor = MachineEditor(self.window(), self.machine.currentData())
-            self._machine_editor.machines_changed.connect(self._reload_machines)
+            self._machine_editor.contents_changed.connect(self._reload_machines)
         self._machine_editor.choose(self.machine.currentData() or USUAL[MachineKind.CO2])
         leave_wheel(self._machine_editor)
         self._machine_editor.show()

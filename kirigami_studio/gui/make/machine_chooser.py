@@ -42,7 +42,7 @@ class MachineChooser(QObject):
 
     def reload(self) -> None:
         """Read machines and materials again."""
-        self._machines, self._library = machines().items, library().materials
+        self._machines, self._library = machines().items, library().items
         with QSignalBlocker(self.machine):
             self.machine.clear()
             self.machine.addItem(tr(USUAL), "")

@@ -19,9 +19,10 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
-from kirigami_studio.studio.making import CutRequest, Planned, fixing, judging
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, Planned, fixing, judging
 
 if TYPE_CHECKING:
+    from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.studio.fixes import Advice
     from kirigami_studio.studio.verdict import Verdict
@@ -83,6 +84,7 @@ class VerdictKeeper(QObject):
         self._job = LatestJob["Verdict | Advice | None"](session.queue)
         self._known: OrderedDict[tuple[Candidate, FabricationSettings], Advice] = OrderedDict()
         self._planned: tuple[CutRequest, Planned] | None = None
+        self._exported: tuple[CutPlan, Verdict] | None = None  #: the last plan whose files were read back
         self.state = UNKNOWN
         session.display.stage_changed.connect(self.forget)
         session.display.settled.connect(self._wait)
@@ -118,6 +120,22 @@ class VerdictKeeper(QObject):
         if stage is not None and stage.candidate == request.candidate:
             self._planned = request, made
             self._judge()
+
+    def take_export(self, exported: ExportedFiles) -> None:
+        """Files were written and read back: the verdict answers for them, too."""
+        if exported.planned is None or exported.verdict is None:
+            return
+        self._exported = exported.planned.plan, exported.verdict
+        found = self._of_files()
+        if found is not None and self._planned is not None and not self.state.pending:
+            self.judged.emit(self._planned[0], found)
+            self._say(replace(self.state, verdict=found))
+
+    def _of_files(self) -> Verdict | None:
+        """The verdict with what was read back from files of the present plan."""
+        if self._exported is None or self._planned is None or self._exported[0] is not self._planned[1].plan:
+            return None
+        return self._exported[1]
 
     def take_refusal(self, request: CutRequest, sentence: str) -> None:
         """The cuts of a design cannot be planned, for this reason."""
@@ -168,6 +186,7 @@ class VerdictKeeper(QObject):
                 self._known.popitem(last=False)
             self._say(VerdictState(self.state.verdict, advice=report))
             return
+        report = self._of_files() or report
         self.judged.emit(request, report)
         if report.ok:
             self._say(VerdictState(report))

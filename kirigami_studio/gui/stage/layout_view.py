@@ -172,6 +172,7 @@ class LayoutView(Canvas):
         self._grips = GRIPS_UNKNOWN
         self._overstretched = 0
         self._areas: Mismatch | None = None
+        self._ideal_areas: tuple[float, Mismatch] | None = None  #: angle, and areas of the ideal motion there
         self._faults: tuple[Fault, ...] = ()
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
         self._caption = ""
@@ -227,7 +228,7 @@ class LayoutView(Canvas):
         ``second`` is how this very sheet shows a second target.
         """
         self._design, self._target, self._cut, self._second = design, target, None, None
-        self._areas, self._faults = None, ()
+        self._areas, self._ideal_areas, self._faults = None, None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
             self._rigid = RigidFacts.of(design)
@@ -250,7 +251,7 @@ class LayoutView(Canvas):
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
         self._design, self._cut, self._second = design, None, None
-        self._areas, self._faults, self._contact = None, (), None
+        self._areas, self._ideal_areas, self._faults, self._contact = None, None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
 
@@ -565,19 +566,35 @@ class LayoutView(Canvas):
                 occupied,
             )
 
+    @property
+    def _nearness(self) -> float:
+        """Opacity of the comparison with the target: 1 at the target's angle, none far from it."""
+        return 0.0 if self._design is None else 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
+
+    def compare_ideal(self) -> Mismatch | None:
+        """Find the areas of the ideal motion at this angle, once for a design and an angle."""
+        if self._design is None or self._target is None or Overlay.MISMATCH not in self._overlays:
+            return None
+        if self._nearness <= 0.0:
+            return None
+        if self._ideal_areas is None or self._ideal_areas[0] != self._phi:
+            self._ideal_areas = self._phi, design_mismatch(self._design, self._target, self._phi)
+        return self._ideal_areas[1]
+
     def _paint_comparison(self, painter: QPainter, transform: ViewTransform, pose: CutPose | None) -> None:
         """Sheet against target, as it is cut or in its ideal motion."""
         self._areas = None
         if self._design is None or self._target is None:
             return
-        nearness = 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
+        nearness = self._nearness
         if Overlay.MISMATCH in self._overlays and nearness > 0.0:
             if pose is None:
-                self._areas = design_mismatch(self._design, self._target, self._phi)
+                self._areas = self.compare_ideal()
             else:
                 self._areas = mismatch_of_nodes(self._design, self._target, pose.phi, pose.nodes)
-            painter.setOpacity(min(1.0, 2.0 * nearness))
-            paint_mismatch(painter, self._areas, transform, self.palette_)
+            if self._areas is not None:
+                painter.setOpacity(min(1.0, 2.0 * nearness))
+                paint_mismatch(painter, self._areas, transform, self.palette_)
             painter.setOpacity(1.0)
         if Overlay.TARGET in self._overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))

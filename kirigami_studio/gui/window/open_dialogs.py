@@ -23,7 +23,7 @@ from kirigami_studio.studio.making import ExportedFiles
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
     from kirigami_studio.gui.make.export_report import ExportReport
-    from kirigami_studio.gui.make.material_editor import MaterialEditor
+    from kirigami_studio.gui.make.library_editors import MaterialEditor
     from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.target.outline_board import OutlineBoard
     from kirigami_studio.gui.target.part_picker import PartPicker
@@ -86,12 +86,12 @@ class Dialogs(QObject):
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
-        from kirigami_studio.gui.make.material_editor import MaterialEditor
+        from kirigami_studio.gui.make.library_editors import MaterialEditor
 
         key = self._services.session.document.fabrication.material
         if self.materials is None:
             self.materials = MaterialEditor(self._window, key)
-            self.materials.materials_changed.connect(self.materials_changed)
+            self.materials.contents_changed.connect(self.materials_changed)
             self.materials.coupon_wanted.connect(self._files.export_coupon)
         self.materials.choose(key)
         bring_to_front(self.materials)

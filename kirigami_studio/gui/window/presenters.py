@@ -89,6 +89,7 @@ class Presenters(QObject):
             marks=services.marks,
             choose=chosen.choose,
             compare=self.comparison.compare,
+            expect=self.comparison.expect,
         )
         self.target = TargetPresenter(
             target,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -76,12 +76,7 @@ class MethodRow(MatchRow):
         Bootstrap 95 % interval over targets.
     """
 
-    HEADING: ClassVar[str]
     iou_exact_interval: tuple[float, float]
-
-    def sentences(self, name: str) -> Iterator[str]:
-        """The row for people: percentages, the paper's number in brackets."""
-        raise NotImplementedError
 
 
 def method_figures(records: Sequence[Record], numbers: Sequence[int], seeds: Sequence[int]) -> dict[str, Any]:
@@ -90,7 +85,16 @@ def method_figures(records: Sequence[Record], numbers: Sequence[int], seeds: Seq
     return {**match_figures(records, numbers, seeds), "iou_exact_interval": bootstrap_interval(exact)}
 
 
-RowT = TypeVar("RowT", bound=MethodRow)
+class TableRow(Protocol):
+    """A row that a table prints below its heading."""
+
+    HEADING: ClassVar[str]
+
+    def sentences(self, name: str) -> Iterator[str]:
+        """The row for people: percentages, the paper's number in brackets."""
+
+
+RowT = TypeVar("RowT", bound=TableRow)
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,11 +43,11 @@ def test_that_a_copy_is_typed_toml_and_comes_back_equal(own_materials: Path) -> 
 
 def test_that_the_library_holds_presets_and_own_materials() -> None:
     before = library()
-    assert list(before.materials) == list(presets())
+    assert list(before.items) == list(presets())
     assert (before.own, before.faults) == (frozenset(), ())
     save_copy(changed_copy("pet-co2", "a-pet", {}))
     after = library()
-    assert list(after.materials) == [*presets(), "a-pet"]
+    assert list(after.items) == [*presets(), "a-pet"]
     assert after.own == {"a-pet"}
 
 
@@ -55,7 +55,7 @@ def test_that_a_copy_with_the_key_of_a_preset_wins_until_it_is_deleted() -> None
     before = bundled_bytes()
     save_copy(changed_copy("film-uv", "film-uv", {"kerf_mm": 0.033}))
     assert find_material("film-uv").kerf_mm == default_material().kerf_mm == 0.033
-    assert list(library().materials) == list(presets())
+    assert list(library().items) == list(presets())
     assert presets()["film-uv"].kerf_mm == 0.02
     delete_copy("film-uv")
     assert find_material("film-uv").kerf_mm == 0.02

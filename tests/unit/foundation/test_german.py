@@ -89,7 +89,7 @@ def test_that_the_compiled_catalogue_says_what_the_source_says() -> None:
 
 def test_that_bundled_silhouettes_materials_and_profiles_have_german_names_and_notes() -> None:
     shown = [entry for name in silhouettes.names() for entry in (name, *titles(name))]
-    shown += [words for one in library().materials.values() for words in (one.name, one.machine, one.note)]
+    shown += [words for one in library().items.values() for words in (one.name, one.machine, one.note)]
     shown += [profile.name for profile in PROFILES.values()]
     for machine in machines().items.values():
         shown += [machine.name, machine.note, machine.kind.words]
