@@ -364,6 +364,8 @@ def estimate(
         No such material, or widths that make no sense.
     """
     chosen = material_for(settings) if material is None else material
+    if construction_for(settings) is Construction.PINNED:
+        return motion_on_pins(phi)
     sheet = _unplanned_sheet(deployment, settings, chosen)
     found = estimate_stretch(deployment, sheet, settings.width_mm)
     jam = estimated_jam(found)
@@ -373,6 +375,15 @@ def estimate(
     figures = _both_figures(sheet, phi if outcome is Outcome.CLOSES else max(jam, phi))
     judged = survival(chosen, sheet.connectors.width_mm, *figures)
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
+
+
+def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
+    """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
+
+    ``iou`` is that of its checked pieces with the target; without it the motion counts as estimated.
+    """
+    source = Source.ESTIMATE if iou is None else Source.SIMULATION
+    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source)
 
 
 def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:

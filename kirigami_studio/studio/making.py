@@ -26,7 +26,14 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for
+from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    construction_for,
+    machine_for,
+    material_for,
+    pin_sizes,
+)
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.file_kinds import kind_of
@@ -146,6 +153,8 @@ class ExportedFiles:
         On the sheet that a cut file holds; coupons and pictures have none.
     files : tuple of Path
         All of them, in the order of writing.
+    pieces : MadePieces or None
+        Of a pinned design, which has no plan.
     """
 
     path: Path
@@ -157,6 +166,7 @@ class ExportedFiles:
     removed: tuple[str, ...] = ()
     verdict: Verdict | None = None
     files: tuple[Path, ...] = ()
+    pieces: MadePieces | None = None
 
     @property
     def ok(self) -> bool:
@@ -227,6 +237,11 @@ class CutRequest:
         return "" if self.document is None else self.document.name_of(self.candidate)
 
     @property
+    def is_pinned(self) -> bool:
+        """Whether it is made of pieces on pins."""
+        return construction_for(self.settings) is Construction.PINNED
+
+    @property
     def facts(self) -> Mapping[str, str]:
         """Where the design comes from."""
         return {} if self.document is None else design_facts(self.document, self.candidate)
@@ -279,10 +294,99 @@ def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | 
 # from a design to its files -------------------------------------------------------------------------------------------
 
 
-def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned]:
-    """Plan the cuts and check them."""
+def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePieces]:
+    """Plan the cuts, or the pieces of a pinned design, and check them."""
     importing.import_as_cut()
-    yield planned(request, cancel)
+    yield pieces_of(request) if request.is_pinned else planned(request, cancel)
+
+
+@dataclass(frozen=True, eq=False)
+class MadePieces:
+    """The pieces of a pinned design, laid on the beds of its machine, and judged.
+
+    Attributes
+    ----------
+    made : Assembled
+    job : AssemblyJob
+    verdict : Verdict
+    """
+
+    made: Assembled
+    job: AssemblyJob
+    verdict: Verdict
+
+    @cached_property
+    def times(self) -> CutTimes:
+        """Time of cutting all beds, one after the other."""
+        return total_times(self.job.work(bed).times for bed in self.job.beds)
+
+    @cached_property
+    def cut_length_mm(self) -> float:
+        """Of all beds."""
+        return sum(self.job.work(bed).cut_length_mm for bed in self.job.beds)
+
+
+def pieces_of(request: CutRequest, verifications: Sequence[Verification] = ()) -> MadePieces:
+    """Make, check and judge the pieces of a pinned design.
+
+    Raises
+    ------
+    FabricationError, UsageError
+        No such material, or sizes that do not go together.
+    """
+    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.project.store import packed_design
+    from kirigami_studio.studio.assembling import assembled
+    from kirigami_studio.studio.verdict import judge_assembled
+
+    settings, target = request.settings, request.target
+    if target is None:
+        raise ProjectError("export.no_chosen_design")
+    made, material, sizes = assembled(request.candidate, settings, target), material_for(settings), pin_sizes(settings)
+    job = AssemblyJob(
+        made.assembly,
+        material,
+        machine_for(settings),
+        settings.fastener,
+        material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm,
+        sizes.hole_mm,
+        sizes.ear_mm,
+        sizes.clearance_mm,
+        name=request.name,
+        profile=settings.profile,
+        dxf_version=settings.dxf_version,
+        paper=settings.paper,
+        order=settings.options.order,
+        target=as_points(made.plan.opened),
+        provenance=request.facts,
+        record=b"" if request.document is None else packed_design(request.document, request.candidate),
+    )
+    return MadePieces(made, job, judge_assembled(request.candidate, made, verifications))
+
+
+def written_pieces(request: CutRequest, output: Output) -> ExportedFiles:
+    """Write the folder of a pinned design, read its files back, and judge it.
+
+    A file's name stands for the folder without its extension, which gets cut files of that kind alone.
+
+    Raises
+    ------
+    ExportError
+        An unwritable place, or a file that did not pass its own re-reading.
+    """
+    from kirigami_studio.export.assembly_files import KINDS, write_assembly
+    from kirigami_studio.studio.verdict import judge_assembled
+
+    pieces, kind = pieces_of(request), output.path.suffix.lower()
+    one = output.name is None and kind in KINDS
+    folder = output.path.with_suffix("") if output.name is None else output.path
+
+    def level(verifications: Sequence[Verification]) -> str:
+        return judge_assembled(request.candidate, pieces.made, verifications).level.value
+
+    found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
+    verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
+    return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 
 _PLANS: OrderedDict[tuple[object, ...], Planned] = OrderedDict()
@@ -448,6 +552,9 @@ def exporting(
     from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
+    if request.is_pinned and (output.name is not None or kind_of(path.suffix).cuts or not path.suffix):
+        yield written_pieces(request, output)
+        return
     if output.name is None:
         find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:

@@ -35,6 +35,7 @@ from kirigami_studio.studio.as_cut import (
     jam_json,
     simulate,
 )
+from kirigami_studio.studio.assembling import Assembled, assembled, is_pinned
 from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:
@@ -433,6 +434,8 @@ def looking(
     Cancelled
         ``cancel`` returned true.
     """
+    if target is not None and is_pinned(settings):
+        return _look_at_pieces(candidate, settings, target)
     try:
         motion = deploy(candidate.final_sheet)
         plan = plan_of(candidate, settings, motion, cancel)
@@ -450,6 +453,15 @@ def looking(
     new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
     refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
+
+
+def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target: Outline) -> CloseLook:
+    try:
+        made = assembled(candidate, settings, target)
+    except KirigamiError as error:
+        return CloseLook(Note(error.code, error.fields))
+    found = judge_assembled(candidate, made)
+    return CloseLook(found.problems[0] if found.level is Level.FAILS else None, made.as_cut)
 
 
 def refused(error: KirigamiError) -> Verdict:
@@ -502,6 +514,25 @@ def judge(
         None if isinstance(as_cut, str) else Source.ESTIMATE if known is None else known.source,
         known,
         match_of(candidate, known),
+        bool(verifications),
+    )
+
+
+def judge_assembled(candidate: Candidate, made: Assembled, verifications: Sequence[Verification] = ()) -> Verdict:
+    """Judge the pieces of a pinned design; its motion is exact."""
+    problems = [
+        *_of_files(verifications, candidate.final_phi, made.as_cut),
+        *_of_design(candidate),
+        *made.report.problems,
+    ]
+    notes = [note for one in verifications for note in one.warnings]
+    told = {problem.text for problem in problems}
+    return Verdict(
+        _worst_first(problems),
+        tuple(note for note in _once([*made.report.notes, *notes]) if note.text not in told),
+        Source.SIMULATION,
+        made.as_cut,
+        made.as_cut.iou,
         bool(verifications),
     )
 

@@ -1,0 +1,101 @@
+"""Pinned designs as they are made: pieces in two layers, checked, and closed by their exact motion."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+
+from kirigami_studio.assembly.options import PinOptions
+from kirigami_studio.assembly.pieces import Assembly
+from kirigami_studio.assembly.pinned import PinnedPlan, PinnedReport, check_pinned, pinned
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, machine_for, material_for, pin_sizes
+from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+
+#: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
+MOST_KEPT = 16
+
+
+def is_pinned(settings: FabricationSettings) -> bool:
+    """Whether a sheet of these settings is made of pieces on pins."""
+    return construction_for(settings) is Construction.PINNED
+
+
+def pin_options(settings: FabricationSettings) -> PinOptions:
+    """Sizes for the pieces of a pinned sheet; a piece is nowhere narrower than its material allows.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    UsageError
+        An ear that is no wider than its hole.
+    """
+    sizes, material = pin_sizes(settings), material_for(settings)
+    return PinOptions(
+        pin_mm=sizes.hole_mm,
+        ear_mm=sizes.ear_mm,
+        clearance_mm=sizes.clearance_mm,
+        neck_mm=max(material.min_ligament_mm, material.min_panel_mm),
+        head_mm=sizes.head_mm,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Assembled:
+    """The pieces of a design, and what their check found.
+
+    Attributes
+    ----------
+    plan : PinnedPlan
+    report : PinnedReport
+    as_cut : AsCut
+        Its motion: exact, on pins that bend nothing.
+    """
+
+    plan: PinnedPlan
+    report: PinnedReport
+    as_cut: AsCut
+
+    @property
+    def assembly(self) -> Assembly:
+        """Pieces, pins and their motion."""
+        return self.plan.assembly
+
+
+_KEPT: OrderedDict[tuple[object, ...], Assembled] = OrderedDict()
+
+
+def assembled(candidate: Candidate, settings: FabricationSettings, target: Outline) -> Assembled:
+    """Make and check the pieces of a design; what was made lately is not made again.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        What trimming took of it is not looked at: pieces are trimmed by rules of their own.
+    settings : FabricationSettings
+    target : Outline
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    UsageError
+        An ear that is no wider than its hole.
+    """
+    options = pin_options(settings)
+    key = (candidate, target, settings.width_mm, options)
+    made = _KEPT.pop(key, None)
+    if made is None:
+        design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
+        plan = pinned(design, target, settings.width_mm, options)
+        report = check_pinned(plan)
+        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.opened_iou))
+    _KEPT[key] = made
+    while len(_KEPT) > MOST_KEPT:
+        _KEPT.popitem(last=False)
+    return made
