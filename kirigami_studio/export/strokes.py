@@ -46,6 +46,8 @@ class Stroke:
         AutoCAD colour index.
     bulges : (P,) float or None
         Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
+    circle : bool
+        A full circle of two half arcs, counter-clockwise from its rightmost point: files that know circles have one.
     """
 
     points: FloatArray
@@ -53,6 +55,13 @@ class Stroke:
     layer: str
     colour: int
     bulges: FloatArray | None = None
+    circle: bool = False
+
+    @classmethod
+    def round(cls, centre: FloatArray, diameter_mm: float, layer: str, colour: int) -> Stroke:
+        """The circle about a centre (2,), mm."""
+        arm = np.array([0.5 * diameter_mm, 0.0])
+        return cls(np.array([centre + arm, centre - arm]), True, layer, colour, np.ones(2), circle=True)
 
     def travelled(self, chord_mm: float = CHORD_MM) -> FloatArray:
         """Points (V, 2) from start to end with chords for arcs; a closed stroke comes back to its first point."""
