@@ -164,6 +164,10 @@ def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
         rows = stroke.points if stroke.bulges is None else np.column_stack([stroke.points, stroke.bulges])
         points = [tuple(float(value) for value in row) for row in rows]
         attributes = {"layer": stroke.layer, "color": stroke.colour}
+        if stroke.circle:
+            right, left = stroke.points.tolist()
+            modelspace.add_circle((0.5 * (right[0] + left[0]), right[1]), 0.5 * (right[0] - left[0]), attributes)
+            continue
         form = "xyb" if bent else "xy"
         if version == "R12":
             modelspace.add_polyline2d(points, format=form, close=stroke.closed, dxfattribs=attributes)
@@ -244,7 +248,7 @@ def _stroke_difference(found: Stroke, meant: Stroke, number: int) -> ExportError
         return ExportError("dxf.entity_closed" if found.closed else "dxf.entity_open", number=number)
     if found.points.shape != meant.points.shape or not np.all(np.abs(found.points - meant.points) <= SAME_MM):
         return ExportError("dxf.entity_moved", number=number)
-    if bent_otherwise([found], [meant], SAME_MM):
+    if found.circle != meant.circle or bent_otherwise([found], [meant], SAME_MM):
         return ExportError("dxf.entity_bent", number=number)
     return None
 
@@ -296,6 +300,8 @@ def check_marked(path: Path, strokes: Sequence[Stroke], marks: Mapping[str, int]
         With the first difference.
     """
     content = read_with_ezdxf(path)
-    wrong = [kind for kind, count in marks.items() if content.others.count(kind) != count]
-    if wrong or len(content.strokes) != len(strokes) or any(map(_stroke_difference, content.strokes, strokes, count())):
+    kinds = [*content.others, *("CIRCLE" for stroke in content.strokes if stroke.circle)]
+    wrong = [kind for kind, number in marks.items() if kinds.count(kind) != number]
+    drawn = [stroke for stroke in content.strokes if not stroke.circle]
+    if wrong or len(drawn) != len(strokes) or any(map(_stroke_difference, drawn, strokes, count())):
         raise ExportError("dxf.drawing_differs")

@@ -12,6 +12,7 @@ from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
 from itertools import takewhile
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from ezdxf import units
@@ -122,6 +123,11 @@ def _content(document: Drawing) -> FileContent:
             rows = [(v.dxf.location.x, v.dxf.location.y, v.dxf.bulge) for v in entity.vertices]
             table = np.array(rows, dtype=np.float64).reshape(-1, 3)
             closed = bool(entity.is_closed)
+        elif entity.dxftype() == "CIRCLE":
+            circle = cast(Circle, entity).dxf
+            place = np.array([circle.center.x, circle.center.y])
+            strokes.append(Stroke.round(place, 2.0 * circle.radius, circle.layer, circle.color))
+            continue
         else:
             others.append(entity.dxftype())
             continue

@@ -20,6 +20,8 @@ from kirigami_studio.foundation.files import read_at_most
 
 Pair = tuple[int, str]
 CLOSED_FLAG = 1
+#: Kinds of entities that a cut file consists of.
+STROKES = ("LWPOLYLINE", "POLYLINE", "CIRCLE")
 
 
 @dataclass(slots=True)
@@ -51,15 +53,14 @@ def read_group_codes(path: Path) -> FileContent:
             if entity.kind == "LAYER"
         }
         entities = _with_vertices(_entities(sections.get("ENTITIES", [])))
-        polylines = [entity for entity in entities if entity.kind in ("LWPOLYLINE", "POLYLINE")]
-        strokes = tuple(_stroke(entity) for entity in polylines)
+        strokes = tuple(_stroke(entity) for entity in entities if entity.kind in STROKES)
         unit = header.get("$INSUNITS", {}).get(70)
         code = None if unit is None else int(unit)
         corner = header.get("$EXTMAX", {})
         size = (float(corner[10]), float(corner[20])) if 10 in corner and 20 in corner else None
     except (ValueError, ArithmeticError, LookupError, OSError) as error:
         raise ExportError("dxf.not_readable", path=path, reason=str(error)) from error
-    others = tuple(entity.kind for entity in entities if entity.kind not in ("LWPOLYLINE", "POLYLINE"))
+    others = tuple(entity.kind for entity in entities if entity.kind not in STROKES)
     return FileContent(
         reader="the group-code reader",
         strokes=strokes,
@@ -126,6 +127,10 @@ def _with_vertices(entities: list[_Entity]) -> list[_Entity]:
 
 
 def _stroke(entity: _Entity) -> Stroke:
+    layer, colour = entity.first(8, ""), int(entity.first(62, "256"))
+    if entity.kind == "CIRCLE":
+        x, y, radius = (float(entity.first(code, "nan")) for code in (10, 20, 40))
+        return Stroke.round(np.array([x, y]), 2.0 * radius, layer, colour)
     rows: list[list[float]] = []
     if entity.kind == "POLYLINE":
         rows = [[float(vertex.first(code, "0")) for code in (10, 20, 42)] for vertex in entity.vertices]
@@ -141,7 +146,7 @@ def _stroke(entity: _Entity) -> Stroke:
     return Stroke(
         points=table[:, :2],
         closed=bool(int(entity.first(70, "0")) & CLOSED_FLAG),
-        layer=entity.first(8, ""),
-        colour=int(entity.first(62, "256")),
+        layer=layer,
+        colour=colour,
         bulges=table[:, 2] if table[:, 2].any() else None,
     )

@@ -11,7 +11,7 @@ import contextlib
 import re
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -62,28 +62,62 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
     """
     folder = layer_folder(Path(path))
     _refuse_strange_content(folder)
-    strokes = file_strokes(plan, profile)
-    marks, facts = registration_marks(extent(strokes)), facts_of(plan, profile)
+    with whole_folder(folder, OWN_NAME) as fresh:
+        fill_layer_folder(fresh, file_strokes(plan, profile), version, facts_of(plan, profile), record)
+    return folder
+
+
+def fill_layer_folder(
+    folder: Path, strokes: Sequence[Stroke], version: str, facts: dict[str, str], record: bytes = b""
+) -> None:
+    """Write a file for each layer of any strokes into a folder; arguments as for :func:`strokes_dxf`.
+
+    Raises
+    ------
+    ExportError
+        As :func:`write_layer_files`.
+    """
+    marks = registration_marks(extent(strokes))
     size, parts = extent(marks), by_layer(strokes)
+    for number, (name, part) in enumerate(parts.items(), start=1):
+        drawn = [*marks, *(_moved(stroke, MARK_GAP_MM) for stroke in part)]
+        said = facts | {"PART": f"{number} of {len(parts)}"}
+        verify = partial(check_written, strokes=drawn, size=size, version=version)
+        enclosed = record if number == 1 else b""
+        write_atomically(folder / name, strokes_dxf(drawn, size, version, said, record=enclosed), verify)
+
+
+@contextlib.contextmanager
+def whole_folder(folder: Path, own: re.Pattern[str]) -> Iterator[Path]:
+    """Yield an empty folder aside whose content appears in another, whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        What it has under names of ``own`` is replaced; all else stays.
+    own : regular expression
+
+    Raises
+    ------
+    ExportError
+        A place that cannot be written.
+    """
     fresh: Path | None = None
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.", dir=folder.parent))
-        for number, (name, part) in enumerate(parts.items(), start=1):
-            drawn = [*marks, *(_moved(stroke, MARK_GAP_MM) for stroke in part)]
-            said = facts | {"PART": f"{number} of {len(parts)}"}
-            verify = partial(check_written, strokes=drawn, size=size, version=version)
-            enclosed = record if number == 1 else b""
-            write_atomically(fresh / name, strokes_dxf(drawn, size, version, said, record=enclosed), verify)
+        yield fresh
         fresh.chmod(0o755)
-        _put_in_place(fresh, folder)
-        fresh = None
+        if folder.exists() and any(not own.fullmatch(entry.name) for entry in folder.iterdir()):
+            _exchange_content(fresh, folder, own)
+        else:
+            _put_in_place(fresh, folder)
+            fresh = None
     except OSError as error:
         raise ExportError("file.not_written", path=folder, reason=error.strerror or str(error)) from error
     finally:
         if fresh is not None:
             shutil.rmtree(fresh, ignore_errors=True)
-    return folder
 
 
 def layer_paths(folder: Path) -> list[Path]:
@@ -159,6 +193,25 @@ def _refuse_strange_content(folder: Path) -> None:
     strange = sorted(entry.name for entry in folder.iterdir() if not OWN_NAME.fullmatch(entry.name))
     if strange:
         raise ExportError("layers.other_files", folder=folder, name=strange[0])
+
+
+def _exchange_content(fresh: Path, folder: Path, own: re.Pattern[str]) -> None:
+    """Put the entries of one folder among those of another; older ones of ours come back if that fails."""
+    names = [entry.name for entry in fresh.iterdir()]
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.old.", dir=folder.parent))
+    moved: list[tuple[Path, Path]] = []
+    try:
+        for entry in sorted(folder.iterdir()):
+            if own.fullmatch(entry.name):
+                moved.append((entry, entry.replace(old / entry.name)))
+        for name in names:
+            moved.append((fresh / name, (fresh / name).replace(folder / name)))
+    except OSError:
+        for before, now in reversed(moved):
+            now.replace(before)
+        old.rmdir()
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def _put_in_place(fresh: Path, folder: Path) -> None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -26,13 +26,14 @@ from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, 
 from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
 #: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
-PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
+PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.HOLES: 2, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
 #: Number of the name in the palette: black.
 NAME_NUMBER = 0
 #: Share of the material's power that the name is engraved with.
@@ -52,6 +53,7 @@ CURVE_CHORDS = 24
 Curve = tuple[float, ...]
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _VERTEX = re.compile(rf"V{_NUMBER} {_NUMBER}(?:c0x{_NUMBER}(?:c0y{_NUMBER})?)?(?:c1x{_NUMBER}(?:c1y{_NUMBER})?)?")
+_PLACE = re.compile(rf"1 0 0 1 {_NUMBER} {_NUMBER}")
 _FACT = re.compile(r"([A-Z][A-Z0-9_]{1,60}) (.{1,255})")
 _PRIMITIVE = re.compile(r"([LB])(\d+) (\d+)")
 
@@ -71,8 +73,17 @@ def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> N
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    content = lightburn_bytes(plan, markers)
-    strokes = file_strokes(plan, find_profile("any"))
+    write_project(lightburn_bytes(plan, markers), file_strokes(plan, find_profile("any")), Path(path))
+
+
+def write_project(content: bytes, strokes: Sequence[Stroke], path: Path) -> None:
+    """Write a project of these strokes, and compare the length on each layer as it is read back.
+
+    Raises
+    ------
+    ExportError
+        As :func:`write_lightburn`.
+    """
     meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
 
     def verify(written: Path) -> None:
@@ -83,32 +94,13 @@ def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> N
                     "lightburn.other_length", found_mm=found.get(name, 0.0), planned_mm=length, layer=name
                 )
 
-    write_atomically(Path(path), content, verify)
+    write_atomically(path, content, verify)
 
 
 def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
     """Return the project's XML; ``markers`` as for :func:`write_lightburn`."""
-    # Mirrored in y means that y counts upwards.
-    root = ElementTree.Element(
-        "LightBurnProject",
-        {"AppVersion": "1.0.00", "FormatVersion": "1", "MaterialHeight": "0", "MirrorX": "False", "MirrorY": "True"},
-    )
-    material = plan.material
-    power = f"{material.power_percent:g}"
-    work = {
-        "speed": f"{plan.machine.speed_mm_s(material):g}",
-        "minPower": power,
-        "maxPower": power,
-        "numPasses": f"{material.passes}",
-        "kerf": "0",
-    }
     names = name_strokes(plan, find_profile("any"))
-    if names:
-        faint = f"{NAME_POWER * material.power_percent:g}"
-        light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
-        _add_setting(root, "Cut", NAME_NUMBER, NAME_LAYER, 0, light)
-    for priority, layer in enumerate(plan.layers, start=1 if names else 0):
-        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
+    root = _project(plan.material, plan.machine, plan.layers, bool(names))
     if markers:
         _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers) + (1 if names else 0), {})
     for stroke in names:
@@ -117,16 +109,54 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
         _add_path(root, path, PALETTE_NUMBER[path.layer])
     marked = (plan.copies.places[:, None] + plan.hinges.position).reshape(-1, 2)
     for x, y in marked.tolist() if markers else []:
-        size = f"{MARKER_RADIUS_MM:g}"
-        marker = ElementTree.SubElement(
-            root, "Shape", {"Type": "Ellipse", "CutIndex": str(TOOL_LAYER), "Rx": size, "Ry": size}
-        )
-        ElementTree.SubElement(marker, "XForm").text = f"1 0 0 1 {x:.4f} {y:.4f}"
-    notes = [f"{key} {value}" for key, value in facts_of(plan, find_profile("lightburn")).items()]
-    about_name = (
-        [Note.of("lightburn.name_power", percent=100.0 * NAME_POWER)] if names and material.power_percent else []
+        _add_circle(root, (x, y), MARKER_RADIUS_MM, TOOL_LAYER)
+    return _with_notes(root, plan.material, facts_of(plan, find_profile("lightburn")), plan.notes, bool(names))
+
+
+def strokes_lightburn(
+    strokes: Sequence[Stroke], material: Material, machine: Machine, facts: Mapping[str, str]
+) -> bytes:
+    """Return the project of any strokes, whose layers have the names of :class:`Layer`, the engraved ones first."""
+    names = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
+    cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer != NAME_LAYER]
+    root = _project(material, machine, tuple(dict.fromkeys(layer for _, layer in cuts)), bool(names))
+    numbers = [*((stroke, NAME_NUMBER) for stroke in names), *((stroke, PALETTE_NUMBER[layer]) for stroke, layer in cuts)]
+    for stroke, number in numbers:
+        _add_path(root, stroke, number)
+    return _with_notes(root, material, facts, (), bool(names))
+
+
+def _project(material: Material, machine: Machine, layers: Sequence[Layer], named: bool) -> ElementTree.Element:
+    """A project with its settings and nothing drawn."""
+    # Mirrored in y means that y counts upwards.
+    root = ElementTree.Element(
+        "LightBurnProject",
+        {"AppVersion": "1.0.00", "FormatVersion": "1", "MaterialHeight": "0", "MirrorX": "False", "MirrorY": "True"},
     )
-    notes += [note.text for note in (*plan.notes, *power_notes(material), *about_name)]
+    power = f"{material.power_percent:g}"
+    work = {
+        "speed": f"{machine.speed_mm_s(material):g}",
+        "minPower": power,
+        "maxPower": power,
+        "numPasses": f"{material.passes}",
+        "kerf": "0",
+    }
+    if named:
+        faint = f"{NAME_POWER * material.power_percent:g}"
+        light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
+        _add_setting(root, "Cut", NAME_NUMBER, NAME_LAYER, 0, light)
+    for priority, layer in enumerate(layers, start=1 if named else 0):
+        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
+    return root
+
+
+def _with_notes(
+    root: ElementTree.Element, material: Material, facts: Mapping[str, str], about: Sequence[Note], named: bool
+) -> bytes:
+    """The bytes of a project that says how it was made, and what to know of it."""
+    about_name = (Note.of("lightburn.name_power", percent=100.0 * NAME_POWER),)
+    told = (*about, *power_notes(material), *(about_name if named and material.power_percent else ()))
+    notes = [*(f"{key} {value}" for key, value in facts.items()), *(note.text for note in told)]
     ElementTree.SubElement(root, "Notes", {"ShowOnLoad": "0", "Notes": "\n".join(notes)})
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
@@ -147,11 +177,22 @@ def _add_setting(
 
 
 def _add_path(root: ElementTree.Element, path: CutPath | Stroke, number: int) -> None:
+    if isinstance(path, Stroke) and path.circle:
+        right, left = path.points.tolist()
+        _add_circle(root, (0.5 * (right[0] + left[0]), right[1]), 0.5 * (right[0] - left[0]), number)
+        return
     shape = ElementTree.SubElement(root, "Shape", {"Type": "Path", "CutIndex": str(number)})
     ElementTree.SubElement(shape, "XForm").text = "1 0 0 1 0 0"
     vertices, primitives = _vertices(path)
     ElementTree.SubElement(shape, "VertList").text = "".join(vertices)
     ElementTree.SubElement(shape, "PrimList").text = "".join(primitives)
+
+
+def _add_circle(root: ElementTree.Element, centre: tuple[float, float], radius: float, number: int) -> None:
+    size = f"{radius:.4f}".rstrip("0").rstrip(".")
+    look = {"Type": "Ellipse", "CutIndex": str(number), "Rx": size, "Ry": size}
+    shape = ElementTree.SubElement(root, "Shape", look)
+    ElementTree.SubElement(shape, "XForm").text = f"1 0 0 1 {centre[0]:.4f} {centre[1]:.4f}"
 
 
 def _vertices(path: CutPath | Stroke) -> tuple[list[str], list[str]]:
@@ -313,6 +354,8 @@ def _value(setting: ElementTree.Element, name: str) -> str:
 
 def _control_points(shape: ElementTree.Element) -> list[Curve]:
     """Curves that a shape consists of; the inner control points of a straight edge are its ends."""
+    if shape.get("Type") == "Ellipse":
+        return _circle_curves(shape)
     if shape.get("Type") != "Path" or shape.findtext("XForm") != "1 0 0 1 0 0":
         raise ValueError(f"a {shape.get('Type')} lies on a layer that is cut")
     vertices = [
@@ -323,6 +366,23 @@ def _control_points(shape: ElementTree.Element) -> list[Curve]:
         start, stop = vertices[int(one)], vertices[int(other)]
         inner = start[:2] + stop[:2] if kind == "L" else start[2:4] + stop[4:6]
         found.append((*start[:2], *inner, *stop[:2]))
+    return found
+
+
+def _circle_curves(shape: ElementTree.Element) -> list[Curve]:
+    """Curves of a circle, counter-clockwise from its rightmost point."""
+    place = _PLACE.fullmatch(shape.findtext("XForm", ""))
+    radius = float(str(shape.get("Rx")))
+    if place is None or shape.get("Rx") != shape.get("Ry") or not radius > 0.0:
+        raise ValueError("an ellipse that is no circle lies on a layer that is cut")
+    centre = np.array([float(place[1]), float(place[2])])
+    right, left = centre + (radius, 0.0), centre - (radius, 0.0)
+    found: list[Curve] = []
+    for start, stop in ((right, left), (left, right)):
+        here = start
+        for first, second, goal in _curves(start, stop, 1.0):
+            found.append((*here.tolist(), *first.tolist(), *second.tolist(), *goal.tolist()))
+            here = goal
     return found
 
 

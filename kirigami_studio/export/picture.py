@@ -34,7 +34,13 @@ TARGET_FILL: Colour = (255, 232, 204)
 TARGET_EDGE: Colour = (217, 95, 2)
 INK: Colour = (40, 40, 40)
 LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
-    {Layer.RELIEF: (220, 120, 0), Layer.SLITS: (255, 0, 0), Layer.EDGE_SLITS: (0, 160, 0), Layer.OUTLINE: (0, 0, 255)}
+    {
+        Layer.RELIEF: (220, 120, 0),
+        Layer.HOLES: (255, 0, 0),
+        Layer.SLITS: (255, 0, 0),
+        Layer.EDGE_SLITS: (0, 160, 0),
+        Layer.OUTLINE: (0, 0, 255),
+    }
 )
 #: A name that is engraved.
 NAME_COLOUR: Colour = (150, 0, 140)

@@ -80,11 +80,19 @@ class Profile:
         """Name of a layer in files of this profile."""
         if self.one_layer:
             return ONE_LAYER
-        return SLOT_LAYER if self.slots and layer is not Layer.OUTLINE else layer.value
+        return SLOT_LAYER if self.slots and layer not in (Layer.HOLES, Layer.OUTLINE) else layer.value
 
 
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
-_BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
+_BY_LAYER = MappingProxyType(
+    {
+        Layer.RELIEF: MAGENTA,
+        Layer.HOLES: RED,
+        Layer.SLITS: RED,
+        Layer.EDGE_SLITS: GREEN,
+        Layer.OUTLINE: BLUE,
+    }
+)
 _TABLE = (
     Profile("any", "Any machine: everything red, cut in file order", _ALL_RED),
     Profile(

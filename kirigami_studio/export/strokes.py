@@ -20,6 +20,8 @@ from kirigami_studio.fabricate.copies import moved
 from kirigami_studio.fabricate.cut_path import CHORD_MM, edge_lengths, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.finished_sheet import DUST_MM2
+from kirigami_studio.fabricate.machine import Machine
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.timing import CutTimes, cut_times, travel_lengths
 from kirigami_studio.foundation.arrays import FloatArray
@@ -46,6 +48,8 @@ class Stroke:
         AutoCAD colour index.
     bulges : (P,) float or None
         Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
+    circle : bool
+        A full circle of two half arcs, counter-clockwise from its rightmost point: files that know circles have one.
     """
 
     points: FloatArray
@@ -53,6 +57,13 @@ class Stroke:
     layer: str
     colour: int
     bulges: FloatArray | None = None
+    circle: bool = False
+
+    @classmethod
+    def round(cls, centre: FloatArray, diameter_mm: float, layer: str, colour: int) -> Stroke:
+        """The circle about a centre (2,), mm."""
+        arm = np.array([0.5 * diameter_mm, 0.0])
+        return cls(np.array([centre + arm, centre - arm]), True, layer, colour, np.ones(2), circle=True)
 
     def travelled(self, chord_mm: float = CHORD_MM) -> FloatArray:
         """Points (V, 2) from start to end with chords for arcs; a closed stroke comes back to its first point."""
@@ -157,10 +168,15 @@ class Work:
 
 def work_of(strokes: Sequence[Stroke], plan: CutPlan) -> Work:
     """Time and lengths of the strokes of a plan's file."""
+    return cutting_work(strokes, plan.material, plan.machine)
+
+
+def cutting_work(strokes: Sequence[Stroke], material: Material, machine: Machine) -> Work:
+    """Time and lengths of strokes that are cut out of a material on a machine."""
     # Strokes know no layer of a plan; lengths and times do not depend on it.
     paths = [CutPath(stroke.points, Layer.SLITS, stroke.closed, bulges=stroke.bulges) for stroke in strokes]
     length, travel = sum(path.length for path in paths), float(travel_lengths(paths).sum())
-    return Work(length, travel, cut_times(paths, plan.material, plan.machine))
+    return Work(length, travel, cut_times(paths, material, machine))
 
 
 def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
@@ -47,8 +47,8 @@ def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: byt
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    root, count, size = _cut_drawing(plan, profile, record)
-    _write(root, Path(path), count, size)
+    strokes = file_strokes(plan, profile)
+    write_svg(_cut_drawing(plan, profile, record), Path(path), len(strokes), extent(strokes))
 
 
 def cut_svg_bytes(job: ExportJob) -> bytes:
@@ -59,19 +59,33 @@ def cut_svg_bytes(job: ExportJob) -> bytes:
     ExportError
         The job has no plan, or names an unknown profile.
     """
-    root, _, _ = _cut_drawing(job.required_plan, find_profile(job.profile), job.record)
-    return svg_content(root)
+    return svg_content(_cut_drawing(job.required_plan, find_profile(job.profile), job.record))
 
 
-def _cut_drawing(
-    plan: CutPlan, profile: Profile, record: bytes
-) -> tuple[ElementTree.Element, int, tuple[float, float]]:
-    """The drawing, the number of its paths and its size (mm)."""
-    strokes = file_strokes(plan, profile)
+def _cut_drawing(plan: CutPlan, profile: Profile, record: bytes) -> ElementTree.Element:
+    title = f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm"
+    return strokes_svg(file_strokes(plan, profile), title, facts_of(plan, profile), profile.svg_dpi, record)
+
+
+def strokes_svg(
+    strokes: Sequence[Stroke], title: str, facts: Mapping[str, str], dpi: float = MM_DPI, record: bytes = b""
+) -> ElementTree.Element:
+    """Return the drawing of any strokes.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+    title : str
+    facts : mapping of str to str
+        About the making of the file.
+    dpi : float
+        Units to the inch, see :class:`~kirigami_studio.export.profile.Profile`.
+    record : bytes
+        The design, see ``design_record``.
+    """
     width, height = extent(strokes)
-    root = root_element(width, height, f"Kirigami cut plan, sheet {plan.size_mm[0]:g} x {plan.size_mm[1]:g} mm")
-    turned = _counted_at(root, width, height, profile.svg_dpi)
-    facts = facts_of(plan, profile)
+    root = root_element(width, height, title)
+    turned = _counted_at(root, width, height, dpi)
     _describe(root, facts)
     if record:
         ElementTree.SubElement(root, "metadata", {"id": NAME}).text = record_text(record)
@@ -83,7 +97,7 @@ def _cut_drawing(
         look = {"fill": "none", "stroke": hexadecimal(ACI_COLOUR[colour]), "stroke-width": f"{CUT_LINE_MM:g}"}
         for stroke in run:
             ElementTree.SubElement(group, "path", {"d": _stroke_data(stroke, height), **look})
-    return root, len(strokes), (width, height)
+    return root
 
 
 def _counted_at(root: ElementTree.Element, width: float, height: float, dpi: float) -> dict[str, str]:
@@ -163,7 +177,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
         "fill": hexadecimal(picture.INK),
     }
     ElementTree.SubElement(root, "text", {**place, **look}).text = said
-    _write(root, Path(path), count, (width, height))
+    write_svg(root, Path(path), count, (width, height))
 
 
 def _band(line: FloatArray, width_mm: float) -> list[FloatArray]:
@@ -199,7 +213,14 @@ def path_data(points: FloatArray, height: float, closed: bool) -> str:
     return "M " + " L ".join(pairs) + (" Z" if closed else "")
 
 
-def _write(root: ElementTree.Element, path: Path, paths: int, size: tuple[float, float]) -> None:
+def write_svg(root: ElementTree.Element, path: Path, paths: int, size: tuple[float, float]) -> None:
+    """Write a drawing of so many paths and this size (mm), and read it back.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
     content = svg_content(root)
 
     def verify(written: Path) -> None:

@@ -215,15 +215,15 @@ def _judged(
     sheets = _copies_read(contents[-1].strokes, plan)
     physics = file_physics(sheets[0], plan, profile)
     voids = file_voids(sheets[0], plan, profile)
-    by_reader = [_reader_findings(content, strokes, version, kind) for content in contents]
+    by_reader = [reader_findings(content, strokes, version, kind) for content in contents]
     as_simulated = simulated_jam is not None and all(finding.ok for found in by_reader for finding in found)
     jam = simulated_jam if as_simulated else None
     if not as_simulated and deployment is not None:
         jam = jam_angle_of_file(voids, plan, deployment)
     times = work_of(strokes, plan).times
     findings = [
-        *_agreed(contents, by_reader),
-        *_agreed(contents, _name_findings(written, plan, profile, kind)),
+        *agreed(contents, by_reader),
+        *agreed(contents, _name_findings(written, plan, profile, kind)),
         *_physics_findings(physics, plan),
         *_copies_findings(sheets, physics, plan, kind),
         *void_findings(voids, plan),
@@ -280,7 +280,7 @@ def _bytes_of(path: Path) -> bytes:
         raise ExportError("dxf.cannot_open", path=path, reason=error.strerror or str(error)) from error
 
 
-def _agreed(contents: Sequence[FileContent], by_reader: Sequence[Sequence[Finding]]) -> list[Finding]:
+def agreed(contents: Sequence[FileContent], by_reader: Sequence[Sequence[Finding]]) -> list[Finding]:
     """Each finding once where all readers agree to the last digit, else once for each reader by its name."""
     found: list[Finding] = []
     for first, *others in zip(*by_reader, strict=True):
@@ -325,7 +325,7 @@ def _name_finding(content: FileContent, meant: Sequence[Stroke], plan: CutPlan, 
     return Finding.judged(True, "verify.name", **told, clear_mm=round(clear, 2))
 
 
-def _reader_findings(content: FileContent, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
+def reader_findings(content: FileContent, strokes: Sequence[Stroke], version: str, kind: Format) -> list[Finding]:
     """Everything that one reader can compare."""
     return [
         _unit_finding(content, version),

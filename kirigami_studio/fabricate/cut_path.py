@@ -28,6 +28,7 @@ class Layer(Enum):
     """Groups of paths that a machine may treat differently, in the order of cutting; the values are names in files."""
 
     RELIEF = "RELIEF"
+    HOLES = "HOLES"  #: and openings in the pieces of an assembly
     SLITS = "SLITS"
     EDGE_SLITS = "EDGE_SLITS"
     OUTLINE = "OUTLINE"

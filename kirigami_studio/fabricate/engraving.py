@@ -28,6 +28,8 @@ from kirigami_studio.foundation.arrays import FloatArray
 LARGEST_MM, LEAST_MM, STEP_MM = 4.0, 1.0, 0.05
 #: Material (mm) that stays between what the name and what a cut burns, a kerf wide each.
 MARGIN_MM = 0.4
+#: Distance of the line under a number from its foot, in heights of a capital.
+UNDERLINE = 0.35
 #: Panels that are tried.
 MOST_PANELS = 16
 #: Panels whose areas differ by less than this share of the largest one count as equally large.
@@ -80,6 +82,19 @@ def engraved(plan: CutPlan, text: str) -> CutPlan:
     return replace(plan, engraving=found, notes=(*plan.notes, *notes))
 
 
+def written_in(area: Polygon, text: str) -> tuple[FloatArray, ...]:
+    """Strokes (P, 2), mm, of an upright underlined text as high as it fits into an area; none where it does not.
+
+    The line under it says which side is down, so that 6 and 9 differ.
+    """
+    written = lettered(text)
+    x = np.concatenate(written.lines)[:, 0]
+    bar = np.array([[x.min(), -UNDERLINE], [x.max(), -UNDERLINE]])
+    underlined = replace(written, lines=(*written.lines, bar))
+    place = None if area.is_empty else _highest(0, area, _size(underlined), 0.0)
+    return () if place is None else _laid(underlined, place)
+
+
 def clearance_mm(kerf_mm: float) -> float:
     """Distance (mm) that strokes of a name keep from centre lines of cuts: half a kerf for either, and a margin."""
     return kerf_mm + MARGIN_MM
@@ -114,10 +129,7 @@ def nearest_cut(names: Sequence[FloatArray], cuts: Sequence[FloatArray]) -> Clea
 
 def _places(plan: CutPlan, written: Lettering) -> Iterator[_Place]:
     """The highest place in each of the largest whole panels."""
-    points = np.concatenate(written.lines)
-    # A text that is a line by itself ("-") is taken as high as it is wide, at most as high as a capital.
-    width, height = np.ptp(points, axis=0)
-    size = np.maximum((width, height), min(max(width, height), 1.0))
+    size = _size(written)
     clear = clearance_mm(plan.kerf_mm)
     cuts = np.array([LineString(path.travelled) for path in plan.paths])
     tree = shapely.STRtree(cuts)
@@ -132,6 +144,14 @@ def _places(plan: CutPlan, written: Lettering) -> Iterator[_Place]:
         if free is None or free.is_empty:
             continue
         yield from (place for turn in _directions(panel) if (place := _highest(number, free, size, turn)) is not None)
+
+
+def _size(written: Lettering) -> FloatArray:
+    """Width and height (2,) that a text takes, in heights of a capital."""
+    width, height = np.ptp(np.concatenate(written.lines), axis=0)
+    # A text that is a line by itself ("-") is taken as high as it is wide, at most as high as a capital.
+    size: FloatArray = np.maximum((width, height), min(max(width, height), 1.0))
+    return size
 
 
 def _largest(plan: CutPlan) -> list[int]:

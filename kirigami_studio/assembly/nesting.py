@@ -1,0 +1,181 @@
+"""Shapes laid on the beds of a machine, as few and as short as rectangles allow.
+
+Every shape lies in the smallest rectangle round it, turned so that its sides are those of the bed; rectpack packs the
+rectangles.  It has no random numbers, so the same shapes always lie in the same places.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import rectpack
+import shapely
+from shapely.geometry import Polygon
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import rotate
+
+#: rectpack counts whole numbers: units to the mm.
+UNITS = 1000
+#: Ways of packing that are tried; the one with the fewest beds and the least of the last one is taken.
+METHODS = (rectpack.MaxRectsBaf, rectpack.MaxRectsBssf, rectpack.MaxRectsBl, rectpack.SkylineBlWm)
+ORDERS = (rectpack.SORT_AREA, rectpack.SORT_LSIDE, rectpack.SORT_SSIDE)
+#: By how much a bed without an end is made larger until it holds everything, and where it begins: share of the area
+#: of all rectangles.
+GROWTH, BEGIN = 1.04, 1.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placement:
+    """Where a shape lies on its bed.
+
+    Attributes
+    ----------
+    shape : int
+        Its place among the shapes.
+    shift : (2,) float, mm
+    turn : float, radians
+        About its origin, before it is shifted.
+    """
+
+    shape: int
+    shift: FloatArray
+    turn: float
+
+    def put(self, points: FloatArray) -> FloatArray:
+        """Points (..., 2), mm, of the shape's frame on the bed."""
+        return rotate(points, self.turn) + self.shift
+
+    def taken(self, points: FloatArray) -> FloatArray:
+        """Points (..., 2), mm, of the bed in the shape's frame."""
+        return rotate(points - self.shift, -self.turn)
+
+
+Bed = tuple[Placement, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rectangle:
+    """The smallest rectangle round a shape.
+
+    Attributes
+    ----------
+    turn : float, radians
+        Takes the shape to one whose rectangle is along the axes.
+    low : (2,) float, mm
+        Its lower left corner then.
+    size : (2,) float, mm
+    """
+
+    turn: float
+    low: FloatArray
+    size: FloatArray
+
+    @classmethod
+    def of(cls, outline: FloatArray) -> _Rectangle:
+        frame = shapely.get_coordinates(shapely.minimum_rotated_rectangle(Polygon(outline)))
+        edges = np.diff(frame[:3], axis=0)
+        along = edges[int(np.argmax(np.linalg.norm(edges, axis=1)))]
+        # Opposite ways along the longer side are the same rectangle.
+        turn = -math.atan2(along[1], along[0]) % math.pi
+        turned = rotate(outline, turn)
+        low: FloatArray = turned.min(axis=0)
+        return cls(turn, low, turned.max(axis=0) - low)
+
+    def placed(self, shape: int, corner: FloatArray, upright: bool) -> Placement:
+        """The placement with the lower left corner (2,), mm; turned by a right angle where it lies upright."""
+        if not upright:
+            return Placement(shape, corner - self.low, self.turn)
+        # A quarter turn to the left takes the rectangle's upper left corner to the lower left one.
+        low = np.array([-(self.low[1] + self.size[1]), self.low[0]])
+        return Placement(shape, corner - low, self.turn + 0.5 * math.pi)
+
+
+def nested(outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: float, margin_mm: float = 0.0) -> list[Bed]:
+    """Lay shapes on beds.
+
+    Parameters
+    ----------
+    outlines : sequence of (L, 2) float, mm
+        Each in a frame of its own.
+    bed : (width, height), mm
+        0 for a side that has no end.
+    gap_mm : float
+        Least distance between shapes.
+    margin_mm : float
+        Of the bed that stays free all round.
+
+    Returns
+    -------
+    beds : list of tuple of Placement
+        In the frame of the bed; a shape that no bed has room for lies alone on the last ones, at the margin.
+    """
+    rectangles = [_Rectangle.of(outline) for outline in outlines]
+    room = tuple(side - 2.0 * margin_mm + gap_mm if side > 0.0 else 0.0 for side in bed)
+    sizes = [np.ceil((rectangle.size + gap_mm) * UNITS).astype(int).tolist() for rectangle in rectangles]
+    fits = [_fits(size, room) for size in sizes]
+    small = [number for number, fit in enumerate(fits) if fit]
+    packed = _packed([(*sizes[number], number) for number in small], room) if small else []
+    beds = [
+        tuple(
+            rectangles[shape].placed(shape, np.array([x, y]) / UNITS + margin_mm, (width, height) != tuple(sizes[shape]))
+            for x, y, width, height, shape in sorted(one, key=lambda found: found[4])
+        )
+        for one in packed
+    ]
+    corner = np.full(2, margin_mm)
+    return beds + [(rectangles[shape].placed(shape, corner, False),) for shape, fit in enumerate(fits) if not fit]
+
+
+def _fits(size: Sequence[int], room: Sequence[float]) -> bool:
+    wide, high = (math.inf if side == 0.0 else math.floor(side * UNITS) for side in room)
+    return (size[0] <= wide and size[1] <= high) or (size[1] <= wide and size[0] <= high)
+
+
+#: x, y, width, height and number of the rectangles on each bed, in units.
+_Packed = list[list[tuple[int, int, int, int, int]]]
+
+
+def _packed(rectangles: Sequence[tuple[int, int, int]], room: Sequence[float]) -> _Packed:
+    """The best packing of all that are tried."""
+    found = []
+    for method in METHODS:
+        for order in ORDERS:
+            for width, height in _bins(rectangles, room):
+                endless = min(room) == 0.0
+                packer = rectpack.newPacker(pack_algo=method, sort_algo=order, rotation=True)
+                for rectangle in rectangles:
+                    packer.add_rect(*rectangle)
+                packer.add_bin(width, height, 1 if endless else len(rectangles))
+                packer.pack()
+                if sum(len(bed) for bed in packer) == len(rectangles):
+                    found.append([[(r.x, r.y, r.width, r.height, r.rid) for r in bed] for bed in packer])
+                    break
+    return min(found, key=_cost)
+
+
+def _bins(rectangles: Sequence[tuple[int, int, int]], room: Sequence[float]) -> Iterator[tuple[int, int]]:
+    """Sides of the bed; of one without an end, of larger and larger ones."""
+    width, height = (math.floor(side * UNITS) for side in room)
+    if min(room) > 0.0:
+        yield width, height
+        return
+    area = BEGIN * sum(wide * high for wide, high, _ in rectangles)
+    longest = max(max(wide, high) for wide, high, _ in rectangles)
+    while True:
+        if max(room) == 0.0:
+            side = max(math.ceil(math.sqrt(area)), longest)
+            yield side, side
+        else:
+            end = max(math.ceil(area / max(width, height)), longest)
+            yield (width, end) if width else (end, height)
+        area *= GROWTH
+
+
+def _cost(beds: _Packed) -> tuple[int, int]:
+    """Number of beds, and the area of the rectangle round all that lies on the last one."""
+    last = beds[-1]
+    return len(beds), max(x + width for x, _, width, _, _ in last) * max(y + height for _, y, _, height, _ in last)

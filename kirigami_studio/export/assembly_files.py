@@ -1,0 +1,512 @@
+"""A design of several pieces -> a folder: a cut file for each bed, pieces and motion, parts list, assembly sheet.
+
+The folder appears whole or not at all.  Every cut file is read back by two readers, and the pieces that were found in
+the files of a kind are put together again by the motion that the folder tells (``pieces_read``).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from kirigami_studio import __version__
+from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
+from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
+from kirigami_studio.export.cut_bed import CutBed, laid_on_beds, too_large
+from kirigami_studio.export.dxf import check_written, strokes_dxf
+from kirigami_studio.export.file_content import FileContent
+from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
+from kirigami_studio.export.lightburn import strokes_lightburn, write_project
+from kirigami_studio.export.lightburn_reading import read_project, scan_project
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.pieces_read import FoundPiece, found_pieces, motion_findings
+from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
+from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
+from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
+from kirigami_studio.export.svg import strokes_svg, write_svg
+from kirigami_studio.export.verification import FORMATS, Finding, Format, Verification, agreed, reader_findings
+from kirigami_studio.fabricate.cut_plan import design_hash
+from kirigami_studio.fabricate.fastener import SIZES, Fastener
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.machine import Machine
+from kirigami_studio.fabricate.material import Construction, Material
+from kirigami_studio.fabricate.options import CutOrder
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+
+#: Angles of the motion from flat to the target.
+ANGLES = 181
+#: Decimals of lengths (mm) and turns (radians) in ``pieces.json``.
+LENGTH_DECIMALS, TURN_DECIMALS = 6, 9
+#: Chords of a round hole there miss it by this (mm).
+RING_CHORD_MM = 5e-4
+#: Kinds of cut files that are written.
+KINDS = (".dxf", ".svg", ".lbrn2")
+PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
+OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
+#: LightBurn projects have its own colours, and four decimals.
+PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
+COLUMNS = ("item", "layer", "bed", "file", "count", "diameter_mm", "length_mm", "area_mm2", "cut_mm", "seconds", "note")
+
+
+@dataclass(frozen=True, eq=False)
+class AssemblyJob:
+    """All that the files of an assembly need.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    material : Material
+    machine : Machine
+    fastener : Fastener
+    kerf_mm : float
+    hole_mm, ear_mm, clearance_mm : float
+        Diameters of holes and ears; room between pieces that pass each other.
+    construction : Construction
+    name : str
+        Of the design.
+    profile : str
+        Key of the machine profile.
+    dxf_version : DxfVersion
+    paper : Paper
+        Of the assembly sheet.
+    order : CutOrder
+    margin_mm : float
+        Of each bed that stays free all round.
+    target : (L, 2) float or None, mm
+        Target outline, in the frame of the assembly at its target angle.
+    provenance : mapping of str to str
+        Where the design comes from.
+    record : bytes
+        The design as a packed project, which the first DXF and SVG carry; empty for none.
+    verdict : str
+        Level of the verdict on the design; "" where nobody has judged it.
+    """
+
+    assembly: Assembly
+    material: Material
+    machine: Machine
+    fastener: Fastener
+    kerf_mm: float
+    hole_mm: float
+    ear_mm: float
+    clearance_mm: float
+    construction: Construction = Construction.PINNED
+    name: str = ""
+    profile: str = DEFAULT_PROFILE
+    dxf_version: DxfVersion = DxfVersion.R2010
+    paper: Paper = Paper.NONE
+    order: CutOrder = CutOrder.SHORTEST
+    margin_mm: float = 0.0
+    target: FloatArray | None = None
+    provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
+    record: bytes = b""
+    verdict: str = ""
+
+    @cached_property
+    def beds(self) -> tuple[CutBed, ...]:
+        """Pieces on the beds of the machine.
+
+        Raises
+        ------
+        FabricationError
+            A hole, a notch or an opening that is narrower than the kerf.
+        """
+        return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm)
+
+    @property
+    def allowed_mm(self) -> float:
+        """The kerf that the files allow for; cutting services allow for it themselves."""
+        return 0.0 if find_profile(self.profile).slots else self.kerf_mm
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What to read before cutting."""
+        room = self.machine.reach_mm
+        large = [
+            Note.of("pieces.larger_than_bed", piece=bed.pieces[0].piece.id, width_mm=room[0], height_mm=room[1])
+            for bed in self.beds
+            if too_large(bed, room)
+        ]
+        note = find_profile(self.profile).note
+        return (*large, *([] if note is None else [note]))
+
+    def work(self, bed: CutBed) -> Work:
+        """Length and time of the cuts of a bed."""
+        strokes = bed.strokes(find_profile(self.profile), self.order)
+        return cutting_work([one for one in strokes if one.layer != NAME_LAYER], self.material, self.machine)
+
+    @property
+    def fastener_length_mm(self) -> float:
+        """Least length of a pin: both layers, and what it needs beyond them."""
+        return 2.0 * self.material.thickness_mm + SIZES[self.fastener].beyond_mm
+
+
+@dataclass(frozen=True, slots=True)
+class AssemblyFiles:
+    """The written files.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        Cut files, pieces, parts list and assembly sheet; a folder stands for the files of a bed's layers.
+    verifications : tuple of Verification
+        One for each cut file, and one for the pieces put together.
+    """
+
+    files: tuple[Path, ...]
+    verifications: tuple[Verification, ...]
+
+
+def write_assembly(
+    job: AssemblyJob,
+    folder: str | Path,
+    kinds: Sequence[str] = KINDS,
+    judged: Callable[[Sequence[Verification]], str] | None = None,
+) -> AssemblyFiles:
+    """Write the whole folder.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+    folder : str or Path
+        Files of an earlier assembly in it are replaced; all else stays.
+    kinds : sequence of str
+        Extensions of the cut files; projects are left out where the profile wants closed contours for a service.
+    judged : function, optional
+        Gets what was read back and returns the level of the verdict, which the files repeat.
+
+    Raises
+    ------
+    ExportError
+        A place that cannot be written, or a file that is not what was meant; nothing is written then.
+    FabricationError
+        As :attr:`AssemblyJob.beds`.
+    """
+    home, beds = Path(folder), job.beds
+    wanted = [kind for kind in kinds if kind != ".lbrn2" or not find_profile(job.profile).slots]
+    with whole_folder(home, OWN_NAME) as fresh:
+        while True:
+            verified = _filled(job, beds, fresh, home, wanted)
+            level = job.verdict if judged is None else judged(verified)
+            if level == job.verdict:
+                break
+            # What is judged does not depend on what the files say of it.
+            job, judged = replace(job, verdict=level), None
+        names = sorted(entry.name for entry in fresh.iterdir())
+    return AssemblyFiles(tuple(home / name for name in names), tuple(verified))
+
+
+def _filled(
+    job: AssemblyJob, beds: Sequence[CutBed], fresh: Path, home: Path, kinds: Sequence[str]
+) -> list[Verification]:
+    """Write all files into a new folder and read them back."""
+    verified: list[Verification] = []
+    by_kind: dict[str, dict[str, FoundPiece]] = {}
+    for kind in kinds:
+        for bed in beds:
+            found, pieces = _bed_written(job, bed, fresh, home, kind)
+            verified.append(found)
+            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces})
+    write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
+    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind))
+    write_atomically(fresh / PARTS, parts_csv(job).encode())
+    sheet = AssemblySheet(job.assembly, beds, _about(job), _part_lines(job), job.target)
+    write_assembly_pdf(sheet, fresh / SHEET, job.paper)
+    for one in verified:
+        for finding in one.findings:
+            if not finding.ok:
+                raise ExportError("assembly.not_as_meant", name=one.path.name, finding=finding.text)
+    return verified
+
+
+# cut files ------------------------------------------------------------------------------------------------------------
+
+
+def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[str, str]:
+    """The record in a bed's file of its making."""
+    profile, size = find_profile(job.profile), bed.size_mm
+    numbers = sum(stroke.layer == NAME_LAYER for stroke in strokes)
+    return {
+        PROGRAM: __version__,
+        "CONSTRUCTION": job.construction.value,
+        "DESIGN": design_hash(job.assembly.deployment),
+        "SIZE_MM": f"{size[0]:.4f} x {size[1]:.4f}",
+        "LAYER": f"{bed.layer}",
+        "BED": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
+        "PIECES": f"{len(bed.pieces)}",
+        "PIN_MM": exactly(job.hole_mm),
+        "EAR_MM": exactly(job.ear_mm),
+        "CLEARANCE_MM": exactly(job.clearance_mm),
+        "FASTENER": job.fastener.value,
+        "KERF_MM": exactly(job.allowed_mm),
+        "ORDER": job.order.value,
+        "PROFILE": profile.key,
+        "MATERIAL": job.material.key,
+        **({"MACHINE": job.machine.key} if job.machine.key else {}),
+        "PATHS": "edges of the finished parts: apply the kerf offset of the machine"
+        if profile.slots
+        else "beam centre lines, kerf already allowed for: apply no kerf offset",
+        "LINES": f"{len(strokes) - numbers}",
+        **({"ENGRAVED_LINES": f"{numbers}"} if numbers else {}),
+        **({VERDICT: job.verdict} if job.verdict else {}),
+        **origin_facts(job.provenance),
+    }
+
+
+def _bed_written(
+    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str
+) -> tuple[Verification, list[FoundPiece]]:
+    """Write a bed's file, and find its pieces in it."""
+    profile = find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
+    strokes = bed.strokes(profile, job.order)
+    facts = bed_facts(job, bed, strokes)
+    record = job.record if (bed.layer, bed.number) == (1, 1) else b""
+    path, how = fresh / f"{bed.name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
+    if kind == ".lbrn2":
+        write_project(strokes_lightburn(strokes, job.material, job.machine, facts), strokes, path)
+    elif kind == ".svg":
+        title = f"Kirigami pieces, layer {bed.layer}, bed {bed.number}"
+        write_svg(strokes_svg(strokes, title, facts, profile.svg_dpi, record), path, len(strokes), extent(strokes))
+    elif profile.file_per_layer:
+        path = fresh / bed.name
+        path.mkdir()
+        fill_layer_folder(path, strokes, job.dxf_version, facts, record)
+        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
+    else:
+        content = strokes_dxf(strokes, extent(strokes), job.dxf_version, facts, record=record)
+        write_atomically(path, content, lambda one: check_written(one, strokes, extent(strokes), job.dxf_version))
+    contents = [_content(read, path) for read in how.readers]
+    version = "R2010" if kind != ".dxf" else job.dxf_version
+    found = agreed(contents, [reader_findings(content, strokes, version, how) for content in contents])
+    of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm) for content in contents[:1]]
+    if _alike(contents):
+        of_pieces *= 2
+    else:
+        of_pieces.append(found_pieces(contents[1].strokes, bed, job.allowed_mm))
+    found += agreed(contents, [findings for findings, _ in of_pieces])
+    work = job.work(bed)
+    verification = Verification(
+        path=home / path.name,
+        ok=all(finding.ok for finding in found),
+        size_mm=extent(contents[-1].strokes),
+        pieces=len(of_pieces[-1][1]) or None,
+        cut_length_mm=work.cut_length_mm,
+        seconds_low=work.times.low,
+        seconds_high=work.times.high,
+        findings=tuple(found),
+        warnings=job.notes,
+    )
+    return verification, of_pieces[-1][1]
+
+
+def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
+    return laid_together([read(part) for part in layer_paths(path)], path) if path.is_dir() else read(path)
+
+
+def _alike(contents: Sequence[FileContent]) -> bool:
+    """Whether two readers found the very same points."""
+    one, other = (content.strokes for content in contents)
+    return len(one) == len(other) and all(
+        a.layer == b.layer and a.closed == b.closed and np.array_equal(a.points, b.points)
+        and np.array_equal(a.travelled(), b.travelled())
+        for a, b in zip(one, other, strict=True)
+    )  # fmt: skip
+
+
+# pieces and motion ----------------------------------------------------------------------------------------------------
+
+
+def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
+    """Pieces, hinges and motion, as plain lists.
+
+    Outlines, holes (as rings) and hinge points are in the frame of their piece, in mm; a pose turns a piece about its
+    origin, then moves it.
+    """
+    phis = np.linspace(math.pi, assembly.phi_target, angles)
+    return {
+        "unit": "mm",
+        "pieces": [
+            {
+                "id": piece.id,
+                "layer": piece.layer,
+                "outline": _plain(piece.outline),
+                "holes": [_plain(ring) for ring in (*map(_ring, piece.holes), *piece.openings)],
+            }
+            for piece in assembly.pieces
+        ],
+        "hinges": [
+            {"pieces": list(hinge.pieces), "at": [_plain(np.asarray(at)) for at in hinge.at]}
+            for hinge in assembly.hinges
+        ],
+        "motion": [
+            {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)} for phi in phis.tolist()
+        ],
+    }
+
+
+def _plain(points: FloatArray) -> Any:
+    return (points.round(LENGTH_DECIMALS) + 0.0).tolist()
+
+
+def _poses(assembly: Assembly, phi: float) -> dict[str, list[float]]:
+    return {
+        piece.id: [round(x, LENGTH_DECIMALS) + 0.0, round(y, LENGTH_DECIMALS) + 0.0, round(turn, TURN_DECIMALS) + 0.0]
+        for piece, (x, y, turn) in zip(assembly.pieces, assembly.poses(phi).tolist(), strict=True)
+    }
+
+
+def _ring(hole: RoundHole) -> FloatArray:
+    """A round hole as a clockwise ring (K, 2), mm, whose chords are outside it by as much as inside."""
+    radius = 0.5 * hole.diameter_mm
+    count = 4 * math.ceil(math.pi / (4.0 * math.acos(1.0 - min(1.0, RING_CHORD_MM / radius))))
+    turn = -2.0 * math.pi * np.arange(count) / count
+    reach = radius / math.sqrt(math.cos(math.pi / count))
+    return np.asarray(hole.centre) + reach * np.column_stack([np.cos(turn), np.sin(turn)])
+
+
+def _motion_verified(
+    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]]
+) -> Verification:
+    """Read pieces and motion back, and put the pieces of each kind of file together."""
+    record = json.loads(path.read_bytes())
+    right = record == pieces_json(job.assembly)
+    findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
+    for kind, pieces in by_kind.items():
+        complete = set(pieces) == {piece.id for piece in job.assembly.pieces}
+        findings += [
+            replace(finding, reader=kind.removeprefix(".").upper())
+            for finding in (motion_findings(pieces, record) if right and complete else ())
+        ]
+    works = [job.work(bed) for bed in job.beds]
+    far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
+    width, height = np.ptp(far, axis=0).tolist()
+    return Verification(
+        path=goal,
+        ok=all(finding.ok for finding in findings),
+        size_mm=(width, height),
+        pieces=len(job.assembly.pieces),
+        cut_length_mm=sum(work.cut_length_mm for work in works),
+        seconds_low=sum(work.times.low for work in works),
+        seconds_high=sum(work.times.high for work in works),
+        findings=tuple(findings),
+        warnings=(),
+    )
+
+
+# parts list -----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A line of the parts list; what does not apply is None.
+
+    Attributes
+    ----------
+    item, note : str
+    layer, bed, count : int or None
+    file : str
+    diameter_mm, length_mm, area_mm2, cut_mm, seconds : float or None
+    """
+
+    item: str
+    layer: int | None = None
+    bed: int | None = None
+    file: str = ""
+    count: int | None = None
+    diameter_mm: float | None = None
+    length_mm: float | None = None
+    area_mm2: float | None = None
+    cut_mm: float | None = None
+    seconds: float | None = None
+    note: str = ""
+
+
+def parts(job: AssemblyJob) -> tuple[Part, ...]:
+    """The parts list: pieces of each bed, pins, material, and all together."""
+    found, works = [], [job.work(bed) for bed in job.beds]
+    for bed, work in zip(job.beds, works, strict=True):
+        area = sum(_area(cuts.piece) for cuts in bed.pieces)
+        ids = " ".join(cuts.piece.id for cuts in bed.pieces)
+        found.append(
+            Part("pieces", bed.layer, bed.number, bed.name, len(bed.pieces), area_mm2=area, cut_mm=work.cut_length_mm,
+                 seconds=work.times.total, note=ids)
+        )  # fmt: skip
+    if job.assembly.hinges:
+        pins = Part("pins", count=len(job.assembly.hinges), diameter_mm=job.hole_mm, length_mm=job.fastener_length_mm,
+                    note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long")  # fmt: skip
+        found.append(pins)
+    sheet = f"{job.material.name}, {job.material.thickness_mm:g} mm; area of the rectangles round what is cut"
+    found.append(Part("material", count=len(job.beds), note=sheet,
+                      area_mm2=sum(bed.size_mm[0] * bed.size_mm[1] for bed in job.beds)))  # fmt: skip
+    found.append(
+        Part("all cuts", count=len(job.assembly.pieces), area_mm2=sum(map(_area, job.assembly.pieces)),
+             cut_mm=sum(work.cut_length_mm for work in works), seconds=sum(work.times.total for work in works),
+             note=f"on {job.machine.name}")
+    )  # fmt: skip
+    return tuple(found)
+
+
+def _area(piece: Piece) -> float:
+    """Finished area of a piece, mm^2."""
+    rounds = sum(0.25 * math.pi * hole.diameter_mm**2 for hole in piece.holes)
+    return float(shapely.area(Polygon(piece.outline, piece.openings))) - rounds
+
+
+def parts_csv(job: AssemblyJob) -> str:
+    """The parts list as a table."""
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\r\n")
+    table.writerow(COLUMNS)
+    for part in parts(job):
+        table.writerow([_cell(getattr(part, column)) for column in
+                        ("item", "layer", "bed", "file", "count", "diameter_mm", "length_mm", "area_mm2", "cut_mm",
+                         "seconds", "note")])  # fmt: skip
+    return text.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    return f"{value:.1f}" if isinstance(value, float) else str(value)
+
+
+def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
+    """The parts list in sentences for the assembly sheet."""
+    lines = []
+    for part in parts(job):
+        if part.item == "pieces":
+            lines.append(f"{part.file}: {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
+        elif part.item == "pins":
+            name = SIZES[job.fastener].name
+            lines.append(f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm")
+        elif part.item == "material":
+            lines.append(f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds")
+        else:
+            lines.append(f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}")
+    return tuple(lines)
+
+
+def _minutes(seconds: float | None) -> str:
+    total = round(seconds or 0.0)
+    return f"{total // 60} min {total % 60:02d} s"
+
+
+def _about(job: AssemblyJob) -> dict[str, str]:
+    """Title and facts for the assembly sheet."""
+    facts = {"design": design_hash(job.assembly.deployment), **job.provenance}
+    return {"title": job.name or "Kirigami assembly", "subject": "; ".join(f"{key} {text}" for key, text in facts.items())}

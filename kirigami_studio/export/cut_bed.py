@@ -1,0 +1,206 @@
+"""Pieces of an assembly -> the strokes of one bed: numbers, then holes and openings, then outlines.
+
+A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
+Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from kirigami_studio.assembly.nesting import Bed, Placement, nested
+from kirigami_studio.assembly.pieces import Piece, RoundHole
+from kirigami_studio.export.profile import NAME_LAYER, Profile
+from kirigami_studio.export.strokes import MITRE_LIMIT, Stroke
+from kirigami_studio.fabricate.cut_path import CutPath, Layer, flattened
+from kirigami_studio.fabricate.cut_plan import DECIMALS
+from kirigami_studio.fabricate.engraving import clearance_mm, written_in
+from kirigami_studio.fabricate.options import CutOrder
+from kirigami_studio.fabricate.ordering import in_cutting_order
+from kirigami_studio.fabricate.routing import Ways, shortest_tour
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import FabricationError
+
+#: Material (mm) that stays between the cuts of neighbours.
+WEB_MM = 1.0
+#: Chords of a quarter circle where the room round holes is measured.
+ROUND = 16
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PieceCuts:
+    """What is cut and engraved of a piece, in its own frame, mm.
+
+    Attributes
+    ----------
+    piece : Piece
+    outline : (L, 2) float
+        Middle of the beam, counter-clockwise, not closed.
+    holes : tuple of RoundHole
+        As the middle of the beam goes.
+    openings : tuple of (K, 2) float
+    number : tuple of (P, 2) float
+        Open strokes; none where the number has no room.
+    """
+
+    piece: Piece
+    outline: FloatArray
+    holes: tuple[RoundHole, ...]
+    openings: tuple[FloatArray, ...]
+    number: tuple[FloatArray, ...]
+
+    @classmethod
+    def of(cls, piece: Piece, kerf_mm: float) -> PieceCuts:
+        """Allow for a beam of this width.
+
+        Raises
+        ------
+        FabricationError
+            A hole that is no wider than the kerf, or a notch or opening that is narrower.
+        """
+        half = 0.5 * kerf_mm
+        if any(hole.diameter_mm <= kerf_mm for hole in piece.holes):
+            least = min(hole.diameter_mm for hole in piece.holes)
+            raise FabricationError("pieces.hole_within_kerf", piece=piece.id, hole_mm=least, kerf_mm=kerf_mm)
+        outline = _offset(piece, piece.outline, half, kerf_mm)
+        openings = tuple(_offset(piece, opening[::-1], -half, kerf_mm)[::-1] for opening in piece.openings)
+        holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
+        rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
+        area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
+        parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
+        free = max(parts, key=lambda part: part.area, default=Polygon())
+        return cls(piece, outline, holes, openings, written_in(free, piece.id))
+
+
+def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> FloatArray:
+    """A counter-clockwise ring (L, 2), mm, moved outwards; corners stay sharp."""
+    if by_mm == 0.0:
+        return ring
+    area = shapely.buffer(Polygon(ring), by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    if not isinstance(area, Polygon) or area.is_empty or len(area.interiors):
+        raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
+    moved: FloatArray = shapely.get_coordinates(shapely.orient_polygons(area).exterior)[:-1]
+    return moved
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutBed:
+    """What one file cuts.
+
+    Attributes
+    ----------
+    layer, number : int
+        Of the pieces, and of the bed among those of its layer, from 1.
+    pieces : tuple of PieceCuts
+    places : tuple of Placement
+        Of each of them; the smallest coordinates of all cuts are 0.
+    """
+
+    layer: int
+    number: int
+    pieces: tuple[PieceCuts, ...]
+    places: Bed
+
+    @property
+    def name(self) -> str:
+        """Stem of its file: ``layer-1``, ``layer-1-b2``."""
+        return f"layer-{self.layer}" + (f"-b{self.number}" if self.number > 1 else "")
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height of all that is cut."""
+        far = np.concatenate([place.put(cuts.outline) for cuts, place in self.placed]).max(axis=0)
+        return float(far[0]), float(far[1])
+
+    @property
+    def placed(self) -> tuple[tuple[PieceCuts, Placement], ...]:
+        """Pieces with their places."""
+        return tuple(zip(self.pieces, self.places, strict=True))
+
+    def strokes(self, profile: Profile, order: CutOrder) -> tuple[Stroke, ...]:
+        """Everything that a file of this profile draws, in the order of cutting."""
+        return (*self._numbers(profile), *(_stroke(path, profile) for path in in_cutting_order(self._paths(), order)))
+
+    def _paths(self) -> list[CutPath]:
+        paths = []
+        for cuts, place in self.placed:
+            for hole in cuts.holes:
+                arm = np.array([0.5 * hole.diameter_mm, 0.0])
+                centre = np.round(place.put(hole.centre), DECIMALS)
+                paths.append(CutPath(np.array([centre + arm, centre - arm]), Layer.HOLES, True, bulges=np.ones(2)))
+            paths += [CutPath(_rounded(place.put(ring)), Layer.HOLES, True) for ring in cuts.openings]
+            paths.append(CutPath(_rounded(place.put(cuts.outline)), Layer.OUTLINE, True))
+        return paths
+
+    def _numbers(self, profile: Profile) -> tuple[Stroke, ...]:
+        """The numbers, each after the nearest."""
+        if profile.name_colour is None:
+            return ()
+        found = [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
+        if not found:
+            return ()
+        ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
+        tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
+        return tuple(Stroke(line, False, NAME_LAYER, profile.name_colour) for at in tour.order for line in found[at])
+
+
+def _stroke(path: CutPath, profile: Profile) -> Stroke:
+    layer, colour = profile.layer_name(path.layer), profile.colour[path.layer]
+    if path.bulges is None:
+        return Stroke(path.points, True, layer, colour)
+    centre, diameter = path.points.mean(axis=0), float(np.linalg.norm(path.points[1] - path.points[0]))
+    found = Stroke.round(np.round(centre, DECIMALS), diameter, layer, colour)
+    if not profile.flatten:
+        return found
+    chords = flattened(found.points, np.ones(2), closed=True)
+    return Stroke(_rounded(chords), True, layer, colour)
+
+
+def _rounded(points: FloatArray) -> FloatArray:
+    rounded: FloatArray = np.round(points, DECIMALS) + 0.0
+    return rounded[np.any(rounded != np.roll(rounded, 1, axis=0), axis=1)] if len(rounded) > 2 else rounded
+
+
+def laid_on_beds(
+    pieces: Sequence[Piece], kerf_mm: float, bed: tuple[float, float], margin_mm: float = 0.0
+) -> tuple[CutBed, ...]:
+    """Lay pieces on beds, those of each layer by themselves.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+    kerf_mm : float
+        That their cuts allow for; 0 where the machine's program does.
+    bed : (width, height), mm
+        0 for a side that has no end.
+    margin_mm : float
+        Of the bed that stays free all round.
+
+    Raises
+    ------
+    FabricationError
+        As :meth:`PieceCuts.of`.
+    """
+    found = []
+    for layer in sorted({piece.layer for piece in pieces}):
+        cuts = [PieceCuts.of(piece, kerf_mm) for piece in pieces if piece.layer == layer]
+        beds = nested([one.outline for one in cuts], bed, kerf_mm + WEB_MM, margin_mm)
+        for number, places in enumerate(beds, start=1):
+            here = tuple(cuts[place.shape] for place in places)
+            points = [place.put(one.outline) for one, place in zip(here, places, strict=True)]
+            low = np.concatenate(points).min(axis=0)
+            found.append(
+                CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places))
+            )
+    return tuple(found)
+
+
+def too_large(bed: CutBed, room: tuple[float, float]) -> bool:
+    """Whether what is cut reaches beyond a bed (width, height; mm, 0 for a side without an end)."""
+    return any(0.0 < most < side - math.ulp(most) * 4 for side, most in zip(bed.size_mm, room, strict=True))

@@ -1,0 +1,267 @@
+"""Pieces of an assembly as files cut them: found on their beds, and put together over the whole motion.
+
+Tolerances, mm: a finished outline lies within ``SAME_MM`` of the one that was asked for, but for the fillets of half a
+kerf that a beam leaves in corners that point into a piece; centres and diameters of holes are right within as much; pins
+meet within ``MEET_MM`` at every angle; pieces of one layer share no more than ``OVERLAP_MM2`` at any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from kirigami_studio.assembly.pieces import RoundHole
+from kirigami_studio.export.cut_bed import CutBed, PieceCuts
+from kirigami_studio.export.profile import NAME_LAYER
+from kirigami_studio.export.strokes import Stroke
+from kirigami_studio.export.verification import Finding
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
+from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest_cut
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
+
+SAME_MM, MEET_MM, OVERLAP_MM2 = 1e-3, 1e-3, 0.01
+#: Outlines are those of a piece if their middles are nearer than this (mm).
+SAME_PLACE_MM = 0.5
+#: Chords of a quarter circle of the beam; of a kerf of 5 mm they miss 0.2 um.
+BEAM_CHORDS = 64
+#: Share of its margin that a number may be nearer to a cut: rounding.
+NUMBER_NEARER = 0.01
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundPiece:
+    """A piece as a file cuts it, in its own frame.
+
+    Attributes
+    ----------
+    id : str
+    layer : int
+    area : Polygon, mm
+        Finished, with its openings and without its round holes.
+    holes : tuple of RoundHole
+        Finished.
+    miss_mm : float
+        Farthest that its outline, its openings or its holes are from where they were asked for.
+    """
+
+    id: str
+    layer: int
+    area: Polygon
+    holes: tuple[RoundHole, ...]
+    miss_mm: float
+
+
+def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tuple[list[Finding], list[FoundPiece]]:
+    """Find every piece of a bed among the strokes of its file.
+
+    Parameters
+    ----------
+    strokes : sequence of Stroke
+        As one reader has them.
+    bed : CutBed
+    kerf_mm : float
+        That the file allows for.
+
+    Returns
+    -------
+    findings : list of Finding
+    pieces : list of FoundPiece
+        In the order of the bed; none where pieces are missing.
+    """
+    cuts = [stroke for stroke in strokes if stroke.layer != NAME_LAYER]
+    if not all(stroke.closed and len(stroke.points) > 1 for stroke in cuts):
+        return [Finding.judged(False, "verify.pieces_open")], []
+    rings = np.array([Polygon(stroke.travelled(MEASURED_CHORD_MM)) for stroke in cuts], dtype=object)
+    outer, inner = _nesting(rings)
+    numbers = _matched(rings[outer], bed)
+    if numbers is None:
+        counts = {"count": len(outer), "planned": len(bed.pieces)}
+        return [Finding.judged(False, "verify.pieces_lost", **counts)], []
+    pieces = []
+    for (piece, place), number in zip(bed.placed, numbers, strict=True):
+        inside = inner[outer[number]]
+        here = place.taken(cuts[outer[number]].travelled(MEASURED_CHORD_MM)[:-1])
+        parts = [(place.taken(cuts[one].points), place.taken(cuts[one].travelled(MEASURED_CHORD_MM))) for one in inside]
+        pieces.append(_piece(piece, here, parts, kerf_mm))
+    worst = max(pieces, key=lambda one: one.miss_mm)
+    told = {"count": len(pieces), "piece": worst.id, "miss_um": round(1e3 * worst.miss_mm, 2)}
+    right = worst.miss_mm <= SAME_MM
+    findings = [Finding.judged(right, "verify.pieces_found" if right else "verify.pieces_differ", **told)]
+    return [*findings, *_number_finding(strokes, cuts, kerf_mm)], pieces
+
+
+def _nesting(rings: FloatArray) -> tuple[IntArray, dict[int, list[int]]]:
+    """Rings that lie in no other, and those that lie in each of them."""
+    starts = shapely.points([shapely.get_coordinates(ring)[0] for ring in rings])
+    holder, held = shapely.STRtree(starts).query(rings, predicate="contains_properly")
+    outer = np.setdiff1d(np.arange(len(rings)), held)
+    return outer, {int(one): held[holder == one].tolist() for one in outer}
+
+
+def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
+    """Number of the outline of each piece of a bed; None unless each piece has one of its own."""
+    meant = shapely.centroid(np.array([Polygon(place.put(one.outline)) for one, place in bed.placed], dtype=object))
+    if len(meant) != len(outlines):
+        return None
+    (_, number), away = shapely.STRtree(shapely.centroid(outlines)).query_nearest(
+        meant, return_distance=True, all_matches=False
+    )
+    if len(set(number.tolist())) != len(meant) or float(away.max()) > SAME_PLACE_MM:
+        return None
+    found: list[int] = number.tolist()
+    return found
+
+
+def _piece(
+    cuts: PieceCuts, ring: FloatArray, inside: Sequence[tuple[FloatArray, FloatArray]], kerf_mm: float
+) -> FoundPiece:
+    """A piece with its finished outline and holes, of the beam's ways (points and points along them)."""
+    piece, half = cuts.piece, 0.5 * kerf_mm
+    holes: list[RoundHole] = []
+    openings: list[Polygon] = []
+    for points, way in inside:
+        centre = points.mean(axis=0)
+        radius = np.linalg.norm(points - centre, axis=1)
+        if float(np.ptp(radius)) <= SAME_MM and len(openings) + len(inside) - len(holes) > len(piece.openings):
+            holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
+        else:
+            openings.append(Polygon(way))
+    area = Polygon(ring).buffer(-half, quad_segs=BEAM_CHORDS)
+    burned = [opening.buffer(half, quad_segs=BEAM_CHORDS) for opening in openings]
+    finished = shapely.difference(area, shapely.union_all(burned)) if burned else area
+    if not isinstance(finished, Polygon) or finished.is_empty:
+        return FoundPiece(piece.id, piece.layer, Polygon(ring), tuple(holes), np.inf)
+    asked = Polygon(piece.outline, piece.openings)
+    miss = max(_outline_miss(finished, asked, half), _holes_miss(holes, piece.holes))
+    return FoundPiece(piece.id, piece.layer, finished, tuple(holes), miss)
+
+
+def _outline_miss(finished: Polygon, asked: Polygon, half: float) -> float:
+    """Farthest that material is missing, or is left where no beam had to leave it, mm."""
+    whole = asked if half == 0.0 else asked.buffer(half, quad_segs=BEAM_CHORDS).buffer(-half, quad_segs=BEAM_CHORDS)
+    missing, left = _farthest(asked, finished), _farthest(finished, whole)
+    # Sides that run between corners are judged by the area that both shapes do not share.
+    between = shapely.symmetric_difference(finished, whole).area / asked.length
+    return float(max(missing, left, between))
+
+
+def _farthest(one: Polygon, other: Polygon) -> float:
+    """Farthest that a corner of a shape is from another shape, mm."""
+    corners = shapely.points(shapely.get_coordinates(one))
+    tree = shapely.STRtree(shapely.points(shapely.get_coordinates(other)))
+    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
+    # From corner to corner is quick, and nearly always near enough.
+    far = near > 0.5 * SAME_MM
+    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
+
+
+def _holes_miss(found: Sequence[RoundHole], asked: Sequence[RoundHole]) -> float:
+    """Farthest that a hole is from the one nearest to it, in place or diameter, mm; infinite unless they pair up."""
+    if len(found) != len(asked):
+        return np.inf
+    if not asked:
+        return 0.0
+    centres, wanted = (np.array([hole.centre for hole in holes]) for holes in (found, asked))
+    away = np.linalg.norm(centres[:, None] - wanted[None], axis=2)
+    nearest = away.argmin(axis=1)
+    if len(set(nearest.tolist())) != len(asked):
+        return np.inf
+    wider = [abs(hole.diameter_mm - asked[at].diameter_mm) for hole, at in zip(found, nearest, strict=True)]
+    return float(max(away.min(axis=1).max(), *wider))
+
+
+def _number_finding(strokes: Sequence[Stroke], cuts: Sequence[Stroke], kerf_mm: float) -> list[Finding]:
+    """Whether engraved numbers keep clear of cuts, and are engraved before them."""
+    numbers = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
+    if not numbers:
+        return []
+    first = all(stroke.layer == NAME_LAYER for stroke in strokes[: len(numbers)])
+    clear = nearest_cut([stroke.points for stroke in numbers], [stroke.travelled() for stroke in cuts]).distance_mm
+    right = first and clear >= clearance_mm(kerf_mm) - NUMBER_NEARER * MARGIN_MM
+    return [Finding.judged(right, "verify.numbers" if right else "verify.numbers_cut", clear_mm=round(clear, 2))]
+
+
+# put together -----------------------------------------------------------------------------------------------------
+
+
+def motion_findings(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]) -> list[Finding]:
+    """Whether pieces that were read from files move as their record says.
+
+    Parameters
+    ----------
+    pieces : mapping of str to FoundPiece
+        By their ids.
+    record : mapping
+        What ``pieces.json`` holds.
+    """
+    names = list(pieces)
+    poses = np.array([[step["poses"][name] for name in names] for step in record["motion"]])
+    return [_pin_finding(pieces, record, poses), _overlap_finding(pieces, record, poses)]
+
+
+def _pin_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], poses: FloatArray) -> Finding:
+    """Whether the two holes of every pin are where the record says, and meet at every angle."""
+    rows = {name: number for number, name in enumerate(pieces)}
+    ends: list[list[FloatArray]] = [[], []]
+    wide: list[list[float]] = [[], []]
+    miss = 0.0
+    for hinge in record["hinges"]:
+        for side, (name, at) in enumerate(zip(hinge["pieces"], hinge["at"], strict=True)):
+            holes = pieces[name].holes
+            away = np.array([np.linalg.norm(hole.centre - at) for hole in holes]) if holes else np.array([np.inf])
+            miss = max(miss, float(away.min()))
+            ends[side].append(holes[int(away.argmin())].centre if holes else np.zeros(2))
+            wide[side].append(holes[int(away.argmin())].diameter_mm if holes else 0.0)
+    if ends[0]:
+        sides = [[rows[hinge["pieces"][side]] for hinge in record["hinges"]] for side in (0, 1)]
+        places = [_carried(np.array(ends[side]), poses[:, sides[side]]) for side in (0, 1)]
+        miss = max(miss, float(np.linalg.norm(places[0] - places[1], axis=2).max()))
+        miss = max(miss, float(np.abs(np.subtract(*wide)).max()))
+    told = {"pins": len(record["hinges"]), "angles": len(poses), "miss_um": round(1e3 * miss, 2)}
+    return Finding.judged(miss <= MEET_MM, "verify.pins_meet" if miss <= MEET_MM else "verify.pins_miss", **told)
+
+
+def _carried(points: FloatArray, poses: FloatArray) -> FloatArray:
+    """Points (N, 2), each of its own piece, at their places under poses (A, N, 3): (A, N, 2)."""
+    turned = np.exp(1j * poses[..., 2]) * (points @ (1.0, 1j))
+    return np.stack([turned.real + poses[..., 0], turned.imag + poses[..., 1]], axis=-1)
+
+
+def _overlap_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], poses: FloatArray) -> Finding:
+    """How much of one layer lies twice, at the worst angle."""
+    angles = [float(step["phi_deg"]) for step in record["motion"]]
+    worst, where = 0.0, (angles[0], "", "")
+    for layer in sorted({piece.layer for piece in pieces.values()}):
+        here = [number for number, piece in enumerate(pieces.values()) if piece.layer == layer]
+        layer_pieces = [list(pieces.values())[number] for number in here]
+        for angle, area, (one, other) in _overlaps(layer_pieces, poses[:, here]):
+            if area > worst:
+                worst, where = area, (angles[angle], layer_pieces[one].id, layer_pieces[other].id)
+    told = {"angles": len(angles), "area_mm2": round(worst, 4), "phi_deg": where[0], "one": where[1], "other": where[2]}
+    right = worst <= OVERLAP_MM2
+    return Finding.judged(right, "verify.pieces_pass" if right else "verify.pieces_collide", **told)
+
+
+def _overlaps(pieces: Sequence[FoundPiece], poses: FloatArray) -> list[tuple[int, float, tuple[int, int]]]:
+    """Number of each angle at which pieces lie upon each other, how much of them does, and the first two."""
+    shapes = np.array([piece.area for piece in pieces], dtype=object)
+    coordinates, rings = shapely.get_coordinates(shapes, return_index=True)
+    places = coordinates @ (1.0, 1j)
+    found = []
+    for angle, pose in enumerate(poses):
+        turn, shift = np.exp(1j * pose[:, 2]), pose[:, 0] + 1j * pose[:, 1]
+        moved = turn[rings] * places + shift[rings]
+        areas = shapely.set_coordinates(shapes.copy(), np.column_stack([moved.real, moved.imag]))
+        one, other = shapely.STRtree(areas).query(areas, predicate="intersects")
+        once = one < other
+        if np.any(once):
+            shared = shapely.area(shapely.intersection(areas[one[once]], areas[other[once]]))
+            if (total := float(shared.sum())) > 0.0:
+                most = int(shared.argmax())
+                found.append((angle, total, (int(one[once][most]), int(other[once][most]))))
+    return found
