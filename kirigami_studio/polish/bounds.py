@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, is_clear
+from kirigami_studio.evaluate.pins import checkerboard, hand_of
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
@@ -15,6 +16,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet
 from kirigami_studio.lattice.symmetry import GridSymmetry
 from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.pinwheel import least_log_ratio
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 
@@ -42,15 +44,28 @@ class ShapeBounds:
     _locked: BoolArray
 
     @classmethod
-    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> ShapeBounds:
-        """The bounds of one fit."""
+    def of(
+        cls,
+        sheet: Sheet,
+        model: OutlineModel,
+        symmetry: GridSymmetry | None,
+        locked: BoolArray,
+        least_gap: float = 0.0,
+    ) -> ShapeBounds:
+        """The bounds of one fit; with a least distance between pins (unit cells) the sheet's hand is held."""
         z, fixed = sheet.field.log10.ravel(), locked.ravel()
-        start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)
+        start, high = z, np.full(z.size, LOG_RATIO_LIMIT)
+        low = -high
+        if least_gap:
+            side = hand_of(sheet.field) * checkerboard(*sheet.grid).ravel()
+            low = np.where(side > 0.0, least_log_ratio(least_gap), low)
+            high = np.where(side < 0.0, -least_log_ratio(least_gap), high)
         if model.free_rim:
             start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
-            reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
+            reach = np.full(start.size - z.size, RIM_REACH)
+            low, high = np.concatenate([low, -reach]), np.concatenate([high, reach])
             fixed = np.concatenate([fixed, model.held_mouths])
-        low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
+        low, high = np.where(fixed, start, low), np.where(fixed, start, high)
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
 
     def allowed(self, shape: FloatArray) -> FloatArray:

@@ -6,10 +6,11 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
-terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a
-round start, see ``chords``; and, where a phase of the fit asks for them, even panels, see ``even_panels``, none large,
-see ``large_panels``, a transport map of the inside, see ``transport_map``, and open junctions, see ``junctions``.  A
-second target has residuals of the same kind at its own angle, in a pose of its own, times its weight.
+terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, on pins too near to each
+other, see ``pinwheel``, and on long chords of a round start, see ``chords``; and, where a phase of the fit asks for
+them, even panels, see ``even_panels``, none large, see ``large_panels``, a transport map of the inside, see
+``transport_map``, and open junctions, see ``junctions``.  A second target has residuals of the same kind at its own
+angle, in a pose of its own, times its weight.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
+from kirigami_studio.evaluate.pins import pin_distances
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -125,6 +127,8 @@ class Objective:
     transport : TransportTerm, optional
         Needed where the phase asks for a transport map.
     second : SecondTerm, optional
+    gap : float, unit cells
+        Pins should not be nearer to each other; 0 for sheets without pins.
 
     Attributes
     ----------
@@ -143,8 +147,10 @@ class Objective:
         even: EvenPanels | None = None,
         transport: TransportTerm | None = None,
         second: SecondTerm | None = None,
+        gap: float = 0.0,
     ) -> None:
         self.model, self.target, self.terms, self.phase, self.least = model, target, terms, phase, least
+        self.gap = gap
         self.even = even if phase.even else None
         self.transport = transport if phase.transport else None
         self.second, self.poses = second, POSE if second is None else 2 * POSE
@@ -186,6 +192,10 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
+        close = NO_SIZES
+        if self.gap:
+            close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
+            cost += shortage(close, self.gap)
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -194,7 +204,7 @@ class Objective:
         if self.even is not None and self._each_large:
             large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
             cost += self._each_large * float(np.square(large.area - LARGE).sum())
-        return Look(state, decoded, outline, matching, second, small, shallow, large, excess, gaps, cost)
+        return Look(state, decoded, outline, matching, second, small, close, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -295,6 +305,7 @@ class Objective:
             (weight**0.5, beyond, reach(count))
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
+                (PENALTY, look.close.size - self.gap, look.close.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
@@ -355,6 +366,8 @@ class Look:
     second : SecondLook or None
     small : PanelSizes
         Edges and necks below the least size.
+    close : PanelSizes
+        Distances between pins below the least one.
     shallow : JunctionAngles
         Where cuts meet at shallow angles, if the phase asks for open junctions.
     large : PanelAreas
@@ -372,6 +385,7 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes
+    close: PanelSizes
     shallow: JunctionAngles
     large: PanelAreas
     excess: float
