@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, is_clear
-from kirigami_studio.evaluate.pins import checkerboard, hand_of
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
@@ -44,29 +43,29 @@ class ShapeBounds:
     _locked: BoolArray
 
     @classmethod
-    def of(
-        cls,
-        sheet: Sheet,
-        model: OutlineModel,
-        symmetry: GridSymmetry | None,
-        locked: BoolArray,
-        least_gap: float = 0.0,
-    ) -> ShapeBounds:
-        """The bounds of one fit; with a least distance between pins (unit cells) the sheet's hand is held."""
+    def of(cls, sheet: Sheet, model: OutlineModel, symmetry: GridSymmetry | None, locked: BoolArray) -> ShapeBounds:
+        """The bounds of one fit."""
         z, fixed = sheet.field.log10.ravel(), locked.ravel()
-        start, high = z, np.full(z.size, LOG_RATIO_LIMIT)
-        low = -high
-        if least_gap:
-            side = hand_of(sheet.field) * checkerboard(*sheet.grid).ravel()
-            low = np.where(side > 0.0, least_log_ratio(least_gap), low)
-            high = np.where(side < 0.0, -least_log_ratio(least_gap), high)
+        start, reach = z, np.full(z.size, LOG_RATIO_LIMIT)
         if model.free_rim:
             start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
-            reach = np.full(start.size - z.size, RIM_REACH)
-            low, high = np.concatenate([low, -reach]), np.concatenate([high, reach])
+            reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
             fixed = np.concatenate([fixed, model.held_mouths])
-        low, high = np.where(fixed, start, low), np.where(fixed, start, high)
+        low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
+
+    def with_sides_held(self, shape: FloatArray, gap: float) -> ShapeBounds:
+        """The same with every void on its side of the ratio 1, where a shape (S,) has it; locked ones as they are.
+
+        A ``gap`` (unit cells) between pins says how far from 1 the ratio is at least.
+        """
+        voids = self._locked.size
+        turned, near = (self.low < self.high)[:voids], least_log_ratio(gap)
+        above = shape[:voids] >= 0.0
+        low, high = self.low.copy(), self.high.copy()
+        low[:voids] = np.where(turned & above, near, low[:voids])
+        high[:voids] = np.where(turned & ~above, -near, high[:voids])
+        return replace(self, low=low, high=high)
 
     def allowed(self, shape: FloatArray) -> FloatArray:
         """The nearest shape within the bounds and of the symmetry."""

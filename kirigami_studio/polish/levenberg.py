@@ -34,7 +34,7 @@ from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
 from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, FitPhase, Look, Objective, SecondTerm, Slopes
 from kirigami_studio.polish.panel_size import check_least
-from kirigami_studio.polish.pinwheel import check_gap, pinwheel
+from kirigami_studio.polish.pinwheel import FIRST_PENALTY, check_gap, pinwheel
 from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.transport_map import TransportMap, TransportTerm
@@ -163,7 +163,7 @@ def polish(
         raise UsageError("fit.locks_and_symmetry")
     model = OutlineModel.of(sheet, phi, free_rim, start_weight)
     gap = check_gap(least_gap)
-    bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked, gap)
+    bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
     side = hand_of(sheet.field) * checkerboard(*sheet.grid).ravel() if gap else None
@@ -182,12 +182,17 @@ def polish(
         state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
     for phase in phases:
-        objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap)
+        objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap, FIRST_PENALTY)
         descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
         until = descent.steps + phase.steps
-        # Where panels are too small or pins too near, the last half of the last phase is left for their bound.
+        # Where panels are too small, the last half of the last phase is left for their bound.
         half = until - phase.steps // 2 if (least or gap) and phase is phases[-1] else until
-        if descent.run(half, cancel) and not (len(descent.here.small.size) or len(descent.here.close.size)):
+        goes_on = descent.run(half, cancel)
+        if gap and phase is phases[-1]:
+            bounds = bounds.with_sides_held(descent.here.state, gap)
+            objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap)
+            descent.turned_to(objective, bounds).run(until - phase.steps // 4, cancel)
+        elif goes_on and not len(descent.here.small.size):
             descent.run(until, cancel)
     assert descent is not None
     here, taken, evaluations = descent.here, descent.steps, descent.evaluations
@@ -256,10 +261,13 @@ class _Descent:
         self.stiffness: FloatArray | None = None
         self._uses = 0
 
-    def turned_to(self, objective: Objective) -> _Descent:
-        """Go on from here with another objective."""
-        self.objective = objective
-        self.here = objective.look(self.here.state)
+    def turned_to(self, objective: Objective, bounds: ShapeBounds | None = None) -> _Descent:
+        """Go on from here with another objective, within other bounds where some are given."""
+        self.objective, state = objective, self.here.state
+        if bounds is not None:
+            self._bounds, poses = bounds, self._poses
+            state = np.concatenate([bounds.allowed(state[:-poses]), state[-poses:]])
+        self.here = objective.look(state)
         self.damping = min(self.damping, FIRST_DAMPING)
         self.evaluations += 1
         return self

@@ -129,6 +129,8 @@ class Objective:
     second : SecondTerm, optional
     gap : float, unit cells
         Pins should not be nearer to each other; 0 for sheets without pins.
+    gap_penalty : float
+        Weight of what is missing, see ``pinwheel``.
 
     Attributes
     ----------
@@ -148,9 +150,10 @@ class Objective:
         transport: TransportTerm | None = None,
         second: SecondTerm | None = None,
         gap: float = 0.0,
+        gap_penalty: float = PENALTY,
     ) -> None:
         self.model, self.target, self.terms, self.phase, self.least = model, target, terms, phase, least
-        self.gap = gap
+        self.gap, self._gap_penalty = gap, gap_penalty
         self.even = even if phase.even else None
         self.transport = transport if phase.transport else None
         self.second, self.poses = second, POSE if second is None else 2 * POSE
@@ -195,7 +198,7 @@ class Objective:
         close = NO_SIZES
         if self.gap:
             close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
-            cost += shortage(close, self.gap)
+            cost += shortage(close, self.gap, self._gap_penalty)
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -305,7 +308,7 @@ class Objective:
             (weight**0.5, beyond, reach(count))
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
-                (PENALTY, look.close.size - self.gap, look.close.reach),
+                (self._gap_penalty, look.close.size - self.gap, look.close.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )

@@ -41,6 +41,6 @@ def least_in_cells(least_mm: float, width_mm: float, width_cells: float) -> floa
     return cells if cells <= LARGEST_LEAST else 0.0
 
 
-def shortage(sizes: PanelSizes, least: float) -> float:
+def shortage(sizes: PanelSizes, least: float, penalty: float = PENALTY) -> float:
     """Penalty of all sizes below ``least`` (unit cells)."""
-    return PENALTY * float(np.square(np.minimum(sizes.size - least, 0.0)).sum())
+    return penalty * float(np.square(np.minimum(sizes.size - least, 0.0)).sum())

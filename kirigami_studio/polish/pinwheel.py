@@ -23,6 +23,9 @@ from kirigami_studio.lattice.sheet import Sheet
 HANDS = (1, -1)
 #: Largest gap (unit cells) that fits are asked for.
 LARGEST_GAP = 0.6
+#: Cost of pins that are too near to each other while voids may still change sides, per square of what is missing (unit
+#: cells): as little as leads them to one.
+FIRST_PENALTY = 3e-4
 #: z of the pinwheel where fits begin, unless the gap asks for more: with that much to spare, in slits so long (cells).
 PINWHEEL, TO_SPARE, USUAL_SLIT = 0.2, 1.15, 1.8
 #: Slits (unit cells) longer than this are rare: what they need of z is its limit.
