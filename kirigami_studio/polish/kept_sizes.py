@@ -20,7 +20,7 @@ import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import pin_distances
+from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
@@ -177,7 +177,7 @@ class _SizeDescent:
         pins = pin_distances(look.decoded.nodes, model.rows, model.columns).size
         return np.concatenate([sizes, pins - self.gap + self.least])
 
-    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes, float]]:
+    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes | PinDistances, float]]:
         """Sizes near the least one, and the least one: of panels, then of gaps between pins."""
         rows, columns = self.objective.model.rows, self.objective.model.columns
         yield panel_sizes(nodes, rows, columns).distinct().below(self.least + NEAR), self.least

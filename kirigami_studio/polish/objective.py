@@ -22,7 +22,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import pin_distances
+from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -51,6 +51,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+ALL_APART = pin_distances(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
@@ -195,7 +196,7 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        close = NO_SIZES
+        close = ALL_APART
         if self.gap:
             close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
             cost += shortage(close, self.gap, self._gap_penalty)
@@ -369,7 +370,7 @@ class Look:
     second : SecondLook or None
     small : PanelSizes
         Edges and necks below the least size.
-    close : PanelSizes
+    close : PinDistances
         Distances between pins below the least one.
     shallow : JunctionAngles
         Where cuts meet at shallow angles, if the phase asks for open junctions.
@@ -388,7 +389,7 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes
-    close: PanelSizes
+    close: PinDistances
     shallow: JunctionAngles
     large: PanelAreas
     excess: float
