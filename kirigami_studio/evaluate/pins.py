@@ -3,9 +3,8 @@
 Panels of a pinned sheet lie in two layers like the squares of a checkerboard, and each has an ear about each of its
 pins.  Every pin carries an ear in both layers, so any two that are not of one and the same panel in both have to keep
 apart.  They come nearest in the two closed states, flat and at phi = 0, where a void's sides a and b lie upon each
-other: opposite corners of the void are then |a - b| apart, and the longer side of a panel has a corner of the panel
-across the void on it.  So distances between a panel's corners, and between these and what lies on its sides in either
-state, are all that has to be known; they are linear in the nodes of the flat sheet.
+other: opposite corners of the void are then |a - b| apart.  In both states the way from a pin to one near by is a sum
+of nodes of the flat sheet.
 
 The *hand* of a pinwheel is the sign of a - b at even voids; odd voids have the other one.  Large and small panels
 then alternate and whirl about each other.
@@ -26,9 +25,6 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
-
-#: A pin, and the compact nodes that its place is read off, with their factors.
-_Place = tuple[int, dict[int, float]]
 
 #: Gaps (unit cells) are kept when they lack no more than this: rounding a sheet takes less.
 GAP_ROUNDING = 1e-6
@@ -62,7 +58,7 @@ class PinDistances:
     Attributes
     ----------
     matrix : (F, N) sparse
-        Reads the way from one pin to the other, in the frame of a panel that both are at, off the compact nodes.
+        Reads the way from one pin to the other, seen from the panel of one of them, off the compact nodes.
     way : (F, 2) float, unit cells
     size : (F,) float, unit cells
     """
@@ -102,41 +98,47 @@ def least_gap_share(sheet: Sheet) -> float:
     return least_pin_distance(deployment) / float(np.ptp(deployment.compact[:, 0]))
 
 
-#: Nodes of a void on the side of the panel at its upper left, upper right, lower right and lower left; then the one
-#: that lies on this side, or its line, in the flat sheet, and the one at phi = 0: of even voids, and of odd ones.
-SIDES = ((0, 3), (3, 2), (2, 1), (1, 0))
-FLAT, CLOSED = ((2, 0, 0, 2), (1, 1, 3, 3)), ((1, 1, 3, 3), (2, 0, 0, 2))
-
-
 @lru_cache(maxsize=64)
 def _ways(rows: int, columns: int) -> csr_matrix:
-    """The matrix of :class:`PinDistances`: every pair of pins at one panel once for each state."""
+    """The matrix of :class:`PinDistances`: between corners of each panel, and of panels one or two pins away."""
     tables = topology(rows, columns)
     pinned = set(tables.void_nodes.ravel().tolist())
-    at_panel: dict[tuple[int, int], list[tuple[_Place, _Place]]] = {}
-    for (i, j), even in np.ndenumerate(tables.even_void):
-        corners = tables.void_nodes[i, j].tolist()
-        for number, panel in enumerate(((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j))):
-            first, second = (corners[corner] for corner in SIDES[number])
-            flat, closed = (corners[table[0 if even else 1][number]] for table in (FLAT, CLOSED))
-            # The void closes on its other diagonal: what was as far from one end of the side is now from the other.
-            lying = (flat, {flat: 1.0}), (closed, {first: 1.0, second: 1.0, flat: -1.0})
-            at_panel.setdefault(panel, []).append(lying)
-    known: set[tuple[int, int, int]] = set()
-    ways: list[dict[int, float]] = []
-    for panel, beside in at_panel.items():
-        corners = [node for node in tables.panel_nodes[panel].tolist() if node in pinned]
-        for state in (0, 1):
-            places = [(node, {node: 1.0}) for node in corners] + [lying[state] for lying in beside]
-            for (one, from_), (other, to) in combinations(places, 2):
-                key = min(one, other), max(one, other), 0 if one in corners and other in corners else state + 1
-                if one != other and key not in known:
-                    known.add(key)
-                    ways.append({node: to.get(node, 0.0) - from_.get(node, 0.0) for node in {*from_, *to}})
-    row = np.repeat(np.arange(len(ways)), [len(way) for way in ways])
-    column = [node for way in ways for node in way]
-    value = [factor for way in ways for factor in way.values()]
-    return csr_matrix((value, (row, column)), shape=(len(ways), tables.node_count))
+    panels = [[node for node in panel if node in pinned] for panel in tables.panel_nodes.reshape(-1, 4).tolist()]
+    owners: dict[int, list[int]] = {}
+    for number, corners in enumerate(panels):
+        for node in corners:
+            owners.setdefault(node, []).append(number)
+    rigid = {frozenset(pair) for corners in panels for pair in combinations(corners, 2)}
+    ways = {(pair, False): dict(zip(sorted(pair), (1, -1), strict=True)) for pair in rigid}
+    for number, corners in enumerate(panels):
+        for node, closed in _closed_places(number, panels, owners).items():
+            for corner in corners:
+                pair = frozenset((node, corner))
+                if node != corner and pair not in rigid:
+                    ways.setdefault((pair, False), {node: 1, corner: -1})
+                    ways.setdefault((pair, True), closed | {corner: closed.get(corner, 0) - 1})
+    row = np.repeat(np.arange(len(ways)), [len(way) for way in ways.values()])
+    column = [node for way in ways.values() for node in way]
+    factor = [float(factor) for way in ways.values() for factor in way.values()]
+    return csr_matrix((factor, (row, column)), shape=(len(ways), tables.node_count))
+
+
+def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[int]]) -> dict[int, dict[int, int]]:
+    """Where pins of panels one or two pins away from a panel lie at phi = 0, seen from it: sums of compact nodes.
+
+    From flat to phi = 0, a panel that is pinned to it at c is turned half about c, which takes w to 2 c - w; one that
+    is pinned to that at d is moved by 2 (c - d).
+    """
+    places: dict[int, dict[int, int]] = {}
+    for pin in panels[number]:
+        for beside in (other for other in owners[pin] if other != number):
+            for node in panels[beside]:
+                places.setdefault(node, {pin: 2, node: -1} if node != pin else {pin: 1})
+            for next_pin in panels[beside]:
+                for beyond in (other for other in owners[next_pin] if other not in (number, beside)):
+                    for node in panels[beyond]:
+                        places.setdefault(node, {node: 1, pin: 2, next_pin: -2})
+    return places
 
 
 def log_ratio_for(gap: float, slit: float) -> float:
