@@ -92,10 +92,9 @@ def least_pin_distance(deployment: Deployment) -> float:
 
 
 @lru_cache(maxsize=4096)
-def least_gap_share(sheet: Sheet) -> float:
-    """The same of a sheet, as a share of the flat sheet's width."""
-    deployment = deploy(sheet)
-    return least_pin_distance(deployment) / float(np.ptp(deployment.compact[:, 0]))
+def least_gap_of(sheet: Sheet) -> float:
+    """The same of a sheet that may be asked again: designs are ranked by it."""
+    return least_pin_distance(deploy(sheet))
 
 
 @lru_cache(maxsize=64)
