@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from dataclasses import field as attribute
 from enum import Enum
 
+from kirigami_studio.evaluate.pins import least_gap_of
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.evaluate.similarity import Similarity
@@ -69,6 +70,11 @@ class Candidate:
     def symmetry(self) -> Symmetry | None:
         """The largest symmetry that the sheet has."""
         return symmetry_of(self.sheet)
+
+    @property
+    def least_gap(self) -> float:
+        """Least distance, unit cells, between two pins of the sheet that is shown and cut, if it is pinned."""
+        return least_gap_of(self.final_sheet)
 
     @property
     def final_sheet(self) -> Sheet:

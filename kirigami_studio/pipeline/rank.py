@@ -23,6 +23,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.pins import GAP_ROUNDING
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.preferences import FitPreference
@@ -54,7 +55,7 @@ MOST_LOST = 0.003
 MILDER = {FitPreference.CALM: FitPreference.REGULARITY}
 
 #: Sorting key of a candidate; smaller is better.
-Key = tuple[bool, bool, bool, bool, float, bool, float, int]
+Key = tuple[bool, bool, bool, bool, bool, float, bool, float, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,8 @@ class Ranking:
         Width of the flat sheet.
     least_feature_mm : float
         Least panel edge and neck that the material allows, 0 where that is not known.
+    least_gap_mm : float
+        How far apart pins have to stay; 0 for sheets without pins.
     jam_phi : mapping of Candidate to float, radians
         Angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others.
     refusals : mapping of Candidate to Note
@@ -80,6 +83,7 @@ class Ranking:
     regular: float = 0.5
     width_mm: float = 100.0
     least_feature_mm: float = 0.0
+    least_gap_mm: float = 0.0
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
     losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
@@ -87,15 +91,23 @@ class Ranking:
     @classmethod
     def of(cls, request: Request) -> Ranking:
         """As a request asks for it."""
-        return cls(request.regular, request.width_mm, request.least_feature_mm)
+        return cls(request.regular, request.width_mm, request.least_feature_mm, request.least_gap_mm)
 
     def wide_enough(self, candidate: Candidate) -> bool:
         """Whether all panels are as wide as the material needs them."""
         return candidate.score.evenness.least_feature_mm(self.width_mm) >= self.least_feature_mm
 
+    def pins_apart(self, candidate: Candidate) -> bool:
+        """Whether the pins of a pinned sheet stay as far apart as they have to."""
+        least = self.least_gap_mm * candidate.score.evenness.width / self.width_mm
+        return not least or candidate.least_gap >= least - GAP_ROUNDING
+
     def cuttable(self, candidate: Candidate) -> bool:
-        """Whether it is feasible, all its panels are as wide as the material needs them, and nobody found otherwise."""
-        return candidate.score.feasible and self.wide_enough(candidate) and candidate not in self.refusals
+        """Whether it is feasible, all its panels are as wide as the material needs them, its pins as far apart, and
+        nobody found otherwise.
+        """
+        fits = self.wide_enough(candidate) and self.pins_apart(candidate)
+        return candidate.score.feasible and fits and candidate not in self.refusals
 
     def missed(self, candidate: Candidate) -> float:
         """Share of its way from flat to its angle that a design does not come as cut, as far as that is known."""
@@ -136,6 +148,7 @@ class Ranking:
             not score.feasible,
             candidate in self.refusals,
             candidate.trim is None,
+            not self.pins_apart(candidate),
             not self.wide_enough(candidate),
             -self.worth_as_made(candidate),
             candidate.symmetry is None,
@@ -223,6 +236,9 @@ class Ranking:
             return Note.of("rank.not_feasible")
         if one in self.refusals:
             return self.refusals[one]
+        if not self.pins_apart(one):
+            gap_mm = one.least_gap * self.width_mm / one.score.evenness.width
+            return Note.of("rank.pins_too_near", gap_mm=gap_mm, least_mm=self.least_gap_mm)
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
 

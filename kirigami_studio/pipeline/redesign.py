@@ -31,6 +31,7 @@ from kirigami_studio.polish.covering import fit_cover
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.panel_size import least_in_cells
+from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES, FitPreference
 from kirigami_studio.polish.vertex_drag import VertexDrag
 
@@ -200,6 +201,7 @@ def refitted(
     width_mm: float = 100.0,
     least_feature_mm: float = 0.0,
     room_mm: float = 0.0,
+    least_gap_mm: float = 0.0,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -224,6 +226,8 @@ def refitted(
         Width of the flat sheet, and the least panel edge and neck that the material allows, 0 where that is not known.
     room_mm : float
         Panel edge and neck that leaves connectors their full width.
+    least_gap_mm : float
+        How far apart the pins of a pinned sheet stay; 0 for others.
 
     Raises
     ------
@@ -237,6 +241,7 @@ def refitted(
     start = candidate.sheet.with_field(RatioField(ratios))
     score, preference = candidate.score, PREFERENCES[prefer]
     least = max(least_in_cells(size, width_mm, score.evenness.width) for size in (least_feature_mm, room_mm))
+    gap = gap_in_cells(least_gap_mm, width_mm, score.evenness.width)
     with one_blas_thread():
         fit = polish(
             start,
@@ -251,6 +256,7 @@ def refitted(
             symmetry=None if table.any() else kept_symmetry(start),
             locked=table,
             least_panel=least,
+            least_gap=gap,
             second=None if candidate.second is None else candidate.second.target,
         )
         _stop_if(cancel)
@@ -261,7 +267,7 @@ def refitted(
     fitted = replace(
         candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None, second=second
     )
-    better = Ranking(regular, width_mm, least_feature_mm).improves(fitted, candidate, prefer)
+    better = Ranking(regular, width_mm, least_feature_mm, least_gap_mm).improves(fitted, candidate, prefer)
     if candidate.trim is None:
         return Refit(fitted, better)
     try:

@@ -19,6 +19,7 @@ from kirigami_studio.polish.continuation import FitOptions
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
 from kirigami_studio.polish.panel_size import check_least, least_in_cells
+from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import KeptSymmetry
 from kirigami_studio.settings.design import USUAL_GRID, DesignChoices, DesignSettings, RimRule, choices_of
@@ -53,6 +54,8 @@ class Request(DesignChoices):
         Least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not known.
     room_mm : float, >= 0
         Panel edge and neck that fits leave, so that connectors have their full width; smaller ones can still be cut.
+    least_gap_mm : float, >= 0
+        How far apart pins stay, between their centres, of pinned sheets; 0 for others.
     grid_chosen : bool
         Whether the run chose the grid.
     guided : int, 0..64
@@ -99,6 +102,9 @@ class Request(DesignChoices):
     )
     room_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
+    )
+    least_gap_mm: float = field(
+        default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
     )
     grid_chosen: bool = field(default=False, kw_only=True)
     guided: int = field(default=8, kw_only=True, metadata=Setting(least=0, most=64).metadata)
@@ -176,6 +182,18 @@ class Request(DesignChoices):
         """
         return max(self.least_panel, self._in_cells(self.least_feature_mm))
 
+    @property
+    def pinned(self) -> bool:
+        """Whether its sheets have pins."""
+        return self.least_gap_mm > 0.0
+
+    @property
+    def least_gap(self) -> float:
+        """How far apart pins stay, unit cells; 0 for sheets without, and where the grid is open."""
+        if self.grid is None or not self.pinned:
+            return 0.0
+        return gap_in_cells(self.least_gap_mm, self.width_mm, width_in_cells(self.grid, self.start))
+
     def _in_cells(self, size_mm: float) -> float:
         """A size in unit cells; 0 where that is nearly a cell or more, for no design has it, or the grid is open."""
         if self.grid is None:
@@ -193,6 +211,7 @@ class Request(DesignChoices):
             self.symmetry,
             start=self.start,
             second=self.second,
+            least_gap=self.least_gap,
         )
 
     @property
@@ -252,6 +271,8 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         known["grid_choice"] = "auto"
     if request.kept_size:
         known["least_panel"] = f"{request.kept_size:g}"
+    if request.least_gap:
+        known["least_gap"] = f"{request.least_gap:g}"
     if request.trim:
         known["trim_keep"] = f"{request.keep:g}"
     if request.search:

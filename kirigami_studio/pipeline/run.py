@@ -230,15 +230,16 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     """
     if not request.fitted_starts:
         return []
-    angles = first_angles(request.target, request.chosen_grid, 1, request.symmetry, request.start)
+    grid, hands = request.chosen_grid, request.fit_options.hands
+    angles = first_angles(request.target, grid, 1, request.symmetry, request.start, pinned=request.pinned)
     if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
-    ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way]]] = {}
+    ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way, int]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
         suited = Way.suited_to(request.target, symmetry)
         poses = [angle for angle, kept in angles if kept is symmetry]
         # Another pose gives more than another way.
-        ways[symmetry] = [(angle, symmetry, way) for way in suited for angle in poses]
+        ways[symmetry] = [(angle, symmetry, way, hand) for way in suited for angle in poses for hand in hands]
     free = ways.pop(None, [])
     in_turn = [one for several in zip_longest(*ways.values()) for one in several if one is not None]
     chosen = [*in_turn, *free][: request.fitted_starts]
@@ -247,7 +248,8 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
-    poses = shared_symmetries(request.target, request.chosen_grid, request.symmetry, request.start)
+    grid, setting, start = request.chosen_grid, request.symmetry, request.start
+    poses = shared_symmetries(request.target, grid, setting, start, pinned=request.pinned)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]

@@ -90,6 +90,7 @@ class PolishTask:
                     stopped,
                     phases=self._phases(request.even),
                     least_panel=request.kept_size,
+                    least_gap=request.least_gap,
                     free_rim=request.fit_options.free_rim,
                     symmetry=symmetry,
                     second=request.second,
@@ -114,19 +115,25 @@ class PolishTask:
 
 @dataclass(frozen=True, slots=True)
 class GuidedTask:
-    """Fit the uniform sheet to the target from one pose; the design gets the number ``index``."""
+    """Fit the uniform sheet to the target from one pose; the design gets the number ``index``.
+
+    A pinned one begins with the pinwheel of a ``hand``, 1 or -1.
+    """
 
     index: int
     angle: float
     symmetry: Symmetry | None
     way: Way
+    hand: int = 0
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit the way that the task says."""
         grid, options = request.chosen_grid, request.fit_options
         with one_blas_thread():
             target = fit_target(request, self.symmetry)
-            fit = fit_from_uniform(target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped)
+            fit = fit_from_uniform(
+                target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped, self.hand
+            )
         (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
         return TaskResult(found, fit.evaluations + 1)
 
@@ -199,14 +206,14 @@ def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
     """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
     if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         return request.target
-    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry)
+    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)
 
 
 @lru_cache(maxsize=16)
 def _meant(
-    target: Outline, grid: tuple[int, int], start: StartShape, setting: KeptSymmetry, symmetry: Symmetry
+    target: Outline, grid: tuple[int, int], start: StartShape, setting: KeptSymmetry, symmetry: Symmetry, pinned: bool
 ) -> Outline:
-    for pose in shared_symmetries(target, grid, setting, start):
+    for pose in shared_symmetries(target, grid, setting, start, pinned=pinned):
         if pose.symmetry is symmetry:
             return symmetric_target(target, pose)
     return target

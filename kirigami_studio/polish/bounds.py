@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet
 from kirigami_studio.lattice.symmetry import GridSymmetry
 from kirigami_studio.polish.basis import Basis
+from kirigami_studio.polish.pinwheel import least_log_ratio
 from kirigami_studio.polish.sensitivity import OutlineModel
 
 
@@ -52,6 +53,19 @@ class ShapeBounds:
             fixed = np.concatenate([fixed, model.held_mouths])
         low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
+
+    def with_sides_held(self, shape: FloatArray, gap: float) -> ShapeBounds:
+        """The same with every void on its side of the ratio 1, where a shape (S,) has it; locked ones as they are.
+
+        A ``gap`` (unit cells) between pins says how far from 1 the ratio is at least.
+        """
+        voids = self._locked.size
+        turned, near = (self.low < self.high)[:voids], least_log_ratio(gap)
+        above = shape[:voids] >= 0.0
+        low, high = self.low.copy(), self.high.copy()
+        low[:voids] = np.where(turned & above, near, low[:voids])
+        high[:voids] = np.where(turned & ~above, -near, high[:voids])
+        return replace(self, low=low, high=high)
 
     def allowed(self, shape: FloatArray) -> FloatArray:
         """The nearest shape within the bounds and of the symmetry."""

@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import shapely
@@ -23,6 +24,7 @@ import shapely
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.feasibility import path_contact
+from kirigami_studio.evaluate.pins import GAP_ROUNDING, hand_of, least_pin_distance
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
@@ -42,6 +44,7 @@ from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, check_fit, polish
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.panel_size import check_least
+from kirigami_studio.polish.pinwheel import HANDS, check_gap, pinwheel
 from kirigami_studio.polish.preferences import Preference
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.transport_map import TransportMap
@@ -149,6 +152,8 @@ class FitOptions:
         What the sheets look like while they are flat.
     second : SecondTarget, optional
         What they should also show on their way.
+    least_gap : float, unit cells
+        Of pinned sheets, which keep turns alone, see ``pinwheel``; 0 for others.
     """
 
     preference: Preference = field(default_factory=Preference)
@@ -160,6 +165,20 @@ class FitOptions:
     symmetry_price: float = FAIR_LOSS
     start: StartShape = RECTANGLE
     second: SecondTarget | None = None
+    least_gap: float = 0.0
+
+    @property
+    def hands(self) -> tuple[int, ...]:
+        """Hands that fits begin with: both of pinned sheets; others have none."""
+        return HANDS if self.least_gap else (0,)
+
+    def beginning(self, grid: tuple[int, int], hand: int) -> Sheet:
+        """Where fits begin that have no guess: with the uniform sheet, or with the pinwheel of a hand."""
+        return self.handed(first_sheet(grid, self.start, free_rim=self.free_rim), hand)
+
+    def handed(self, sheet: Sheet, hand: int) -> Sheet:
+        """The pinwheel of a hand that is near a sheet; without one the sheet itself."""
+        return pinwheel(sheet, self.least_gap, hand) if hand else sheet
 
 
 def fit_shape(
@@ -205,19 +224,20 @@ def fit_shape(
         raise UsageError("search.effort_out_of_range", most=LARGEST_EFFORT, effort=effort)
     options = options or FitOptions()
     check_least(options.least_panel)
+    check_gap(options.least_gap)
     search = _FitSearch(target, phi, cancel, options)
     guesses = [Sheet.of(start) for start in starts]
     coarse = _coarser(grid)
     found = search.first_looks(coarse, effort)
     if coarse == grid:
-        found += [search.from_guess(lifted(guess, grid, options.start)) for guess in guesses]
+        found += [search.from_guess(guess, grid) for guess in guesses]
     best = search.completed(_best(found, KEPT * effort))
     if coarse != grid:
         raised = [look for one in best for look in search.lifted(one, grid)]
-        raised += [search.from_guess(lifted(guess, grid, options.start)) for guess in guesses]
+        raised += [search.from_guess(guess, grid) for guess in guesses]
         best = search.completed(_best(raised, KEPT * effort))
     best = search.completed(best, FINE)
-    best = _best([search.aligned(one) for one in (*best, search.plain(grid))], len(best))
+    best = _best([search.aligned(one) for one in (*best, *search.plain(grid))], len(best))
     return [replace(one.fit, evaluations=search.evaluations) for one in best]
 
 
@@ -230,11 +250,13 @@ def fit_from_uniform(
     options: FitOptions,
     symmetry: Symmetry | None = None,
     cancel: Callable[[], bool] = lambda: False,
+    hand: int = 0,
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
-    the inside, growing out of a round shape, or shrinking from a thickened one.
+    the inside, growing out of a round shape, or shrinking from a thickened one; a pinned one begins with the pinwheel
+    of a ``hand``, 1 or -1.
     """
-    sheet, even = first_sheet(grid, options.start, free_rim=options.free_rim), options.even
+    sheet, even = options.beginning(grid, hand), options.even
     pose, evaluations = _centred(sheet, phi, angle), 0
     route = _route(target, way, even)
     if route:
@@ -249,6 +271,7 @@ def fit_from_uniform(
             easy.frame.inverse().compose(pose),
             cancel,
             phases=[FitPhase(EASY_STEPS, FAR, weight)],
+            least_gap=options.least_gap,
             free_rim=options.free_rim,
             symmetry=symmetry,
             start_weight=options.start.weight,
@@ -280,6 +303,7 @@ def fit_from_uniform(
         phases=phases,
         transport=TransportMap.of(sheet, target, angle) if way is Way.GUIDED else None,
         least_panel=options.least_panel,
+        least_gap=options.least_gap,
         free_rim=options.free_rim,
         symmetry=symmetry,
         second=options.second,
@@ -335,10 +359,13 @@ def first_angles(
     effort: int = 1,
     setting: KeptSymmetry = KeptSymmetry.AUTO,
     start: StartShape = RECTANGLE,
+    *,
+    pinned: bool = False,
 ) -> list[tuple[float, Symmetry | None]]:
     """Rotations to begin with, those that keep a symmetry first: both ways up for a mirror axis.
 
-    A long sheet counts them from the one that lays it along a long target, and those near that one come first.
+    A long sheet counts them from the one that lays it along a long target, and those near that one come first.  A
+    ``pinned`` sheet has no mirrors.
     """
     angles = _rotations(grid, effort, start)
     upright = start.proportion(*grid)
@@ -348,7 +375,7 @@ def first_angles(
         first = along if upright < 0.0 else along - 0.5 * math.pi
         angles = sorted((first + angle for angle in angles), key=lambda angle: abs(math.sin(angle - first)))
     looks: list[tuple[float, Symmetry | None]] = []
-    for pose in shared_symmetries(target, grid, setting, start):
+    for pose in shared_symmetries(target, grid, setting, start, pinned=pinned):
         looks += [(angle, pose.symmetry) for angle in _own_angles(pose, angles)]
     return looks + [(angle, None) for angle in angles]
 
@@ -372,8 +399,8 @@ def lifted(sheet: Sheet, grid: tuple[int, int], start: StartShape = RECTANGLE) -
 class _FoundFit:
     """A fit, its exact IoU in its own pose, whether the sheet gets there untouched, and what symmetry it has.
 
-    ``small`` says that a panel is smaller than asked for; ``worth`` is the IoU less the price of uneven panels and what
-    the second target lacks, plus what a symmetry is worth.
+    ``small`` says that a panel is smaller than asked for, or that pins are nearer; ``worth`` is the IoU less the price
+    of uneven panels and what the second target lacks, plus what a symmetry is worth.
     """
 
     fit: Fit
@@ -396,20 +423,24 @@ class _FitSearch:
         thick = thickened(self.target, MARGINS)
         ways = Way.suited_to(self.target)
         found: list[_FoundFit] = []
-        for angle, symmetry in first_angles(self.target, grid, effort, self.options.symmetry, self.options.start):
+        options = self.options
+        poses = first_angles(self.target, grid, effort, options.symmetry, options.start, pinned=options.least_gap > 0.0)
+        for (angle, symmetry), hand in product(poses, options.hands):
             for way in ways:
                 if found and self.cancel():
                     return found
-                found.append(self._from_uniform(grid, angle, way, symmetry))
-            sheet = first_sheet(grid, self.options.start, free_rim=self.options.free_rim)
+                found.append(self._from_uniform(grid, angle, way, symmetry, hand))
+            sheet = options.beginning(grid, hand)
             first = thick[0].frame.compose(_centred(sheet, self.phi, angle))
             if found and self.cancel():
                 return found
             found.append(self._along(thick, sheet, first, symmetry))
         return found
 
-    def _from_uniform(self, grid: tuple[int, int], angle: float, way: Way, symmetry: Symmetry | None) -> _FoundFit:
-        fit = fit_from_uniform(self.target, grid, self.phi, angle, way, self.options, symmetry, self.cancel)
+    def _from_uniform(
+        self, grid: tuple[int, int], angle: float, way: Way, symmetry: Symmetry | None, hand: int
+    ) -> _FoundFit:
+        fit = fit_from_uniform(self.target, grid, self.phi, angle, way, self.options, symmetry, self.cancel, hand)
         self.evaluations += fit.evaluations
         return self._found(fit, symmetry)
 
@@ -420,16 +451,24 @@ class _FitSearch:
             sheet, pose = fit.sheet, easy.frame.compose(fit.pose)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry)
 
-    def from_guess(self, sheet: Sheet) -> _FoundFit:
-        """A look from a given sheet, aligned by IoU; it keeps its symmetry."""
+    def from_guess(self, guess: Sheet, grid: tuple[int, int]) -> _FoundFit:
+        """A look from a given sheet of any grid, aligned by IoU; it keeps its symmetry, and its hand."""
+        sheet = self._laid(guess, grid)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry_of(sheet))
 
-    def plain(self, grid: tuple[int, int]) -> _FoundFit:
-        """The fit without a search, so that a search never ends with less."""
-        sheet = first_sheet(grid, self.options.start, free_rim=self.options.free_rim)
-        pose = align(deploy(sheet).outline(self.phi), self.target.points)
-        return self._fit(sheet, pose, PLAIN_STEPS, FINE, None)
+    def plain(self, grid: tuple[int, int]) -> list[_FoundFit]:
+        """The fit without a search, of every hand, so that a search never ends with less."""
+        found = []
+        for sheet in (self.options.beginning(grid, hand) for hand in self.options.hands):
+            pose = align(deploy(sheet).outline(self.phi), self.target.points)
+            found.append(self._fit(sheet, pose, PLAIN_STEPS, FINE, None))
+        return found
+
+    def _laid(self, sheet: Sheet, grid: tuple[int, int]) -> Sheet:
+        """A sheet carried to another grid; a pinned one keeps its hand."""
+        laid = lifted(sheet, grid, self.options.start)
+        return self.options.handed(laid, hand_of(laid.field)) if self.options.least_gap else laid
 
     def aligned(self, found: _FoundFit) -> _FoundFit:
         """The same sheet in the pose of largest IoU, which is what a score compares."""
@@ -442,7 +481,7 @@ class _FitSearch:
 
     def lifted(self, coarse: _FoundFit, grid: tuple[int, int]) -> list[_FoundFit]:
         """Looks on a finer grid from a fit on a coarse one; grids of equal parities have the same symmetries."""
-        sheet = lifted(coarse.fit.sheet, grid, self.options.start)
+        sheet = self._laid(coarse.fit.sheet, grid)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         routes = [[], thickened(self.target, LIFTED_MARGINS)]
         kept = coarse.symmetry
@@ -465,6 +504,8 @@ class _FitSearch:
         iou, options = exact_iou(laid, self.target), self.options
         figures = evenness(deployment)
         small = min(figures.least_edge, figures.least_neck) < options.least_panel
+        if options.least_gap:
+            small = small or least_pin_distance(deployment) < options.least_gap - GAP_ROUNDING
         worth = iou - options.evenness_price * figures.area_cv
         if options.second is not None and fit.second_pose is not None:
             laid = fit.second_pose.apply(deployment.outline(options.second.phi))
@@ -495,6 +536,7 @@ class _FitSearch:
             trust=trust,
             even=options.even,
             least_panel=least_panel,
+            least_gap=options.least_gap,
             free_rim=options.free_rim,
             symmetry=symmetry,
             second=options.second,

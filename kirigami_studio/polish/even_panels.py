@@ -53,6 +53,8 @@ class EvenPanels:
         Shares of edges and areas.
     mean_area : float, unit cells squared
         Of the panels of the uniform sheet.
+    asked : float or (P,) float
+        Areas that panels are pulled to, as multiples of the mean: 1, or those of a pinwheel.
     large : float
         Weight of large panels beside it, see ``large_panels``.
     """
@@ -64,18 +66,21 @@ class EvenPanels:
     edges: float
     areas: float
     mean_area: float
+    asked: float | FloatArray
     large: float
 
     @classmethod
-    def of(cls, sheet: Sheet) -> EvenPanels:
+    def of(cls, sheet: Sheet, model: Sheet | None = None) -> EvenPanels:
         """The term for a sheet's grid, start outline and cell; its ratios and rim do not matter.
+
+        Another sheet of that start takes the place of the uniform one where it is given, as ``model``.
 
         Areas count in the paper's rectangle alone, where uniform panels have one area; in other starts
         ``large_panels`` looks after them.
         """
         panels = topology(*sheet.grid).panel_nodes.reshape(-1, 4)
         start, end = panels.ravel(), np.roll(panels, -1, axis=1).ravel()
-        nodes = deploy(unfolded(sheet.plain())).compact
+        nodes = deploy(unfolded(sheet.plain()) if model is None else model).compact
         length = np.sqrt(np.square(nodes[end] - nodes[start]).sum(axis=1).mean() * start.size)
         rows = np.arange(start.size)
         sign = np.ones(start.size) / length
@@ -83,18 +88,21 @@ class EvenPanels:
             (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
             shape=(start.size, len(nodes)),
         )
-        mean = float(panel_areas(nodes, *sheet.grid).area.mean())
+        areas_asked = panel_areas(nodes, *sheet.grid).area
+        mean = float(areas_asked.mean())
+        asked = 1.0 if model is None else areas_asked / mean
         square = sheet.start is None and sheet.cell == (1.0, 1.0)
         edges, areas = (EDGES, AREAS) if square else (1.0, 0.0)
         along = 2.0 * edges * (difference.T @ difference)
         stiffness = csr_matrix(block_diag((along, along)))
-        return cls(sheet.grid, difference, difference @ nodes, stiffness, edges, areas, mean, over_even(sheet))
+        reference = difference @ nodes
+        return cls(sheet.grid, difference, reference, stiffness, edges, areas, mean, asked, over_even(sheet))
 
     def value(self, nodes: FloatArray) -> float:
         """The shares' sum for compact ``nodes`` (N, 2): mean squares, in uniform edges and areas."""
         value = self.edges * float(np.square(self.difference @ nodes - self.uniform).sum())
         if self.areas:
-            value += self.areas * float(np.square(self._panels(nodes).area - 1.0).mean())
+            value += self.areas * float(np.square(self._panels(nodes).area - self.asked).mean())
         return value
 
     def pull(self, nodes: FloatArray) -> FloatArray:
@@ -102,7 +110,7 @@ class EvenPanels:
         pull: FloatArray = 2.0 * self.edges * (self.difference.T @ (self.difference @ nodes - self.uniform))
         if self.areas:
             panels = self._panels(nodes)
-            by_area = 2.0 * self.areas / len(panels) * (panels.area - 1.0)
+            by_area = 2.0 * self.areas / len(panels) * (panels.area - self.asked)
             pull += (by_area @ panels.growth(len(nodes))).reshape(2, len(nodes)).T
         return pull
 

@@ -1,4 +1,4 @@
-"""Last steps of a fit with a least panel size: every edge and neck keeps it.
+"""Last steps of a fit with a least panel size: every edge and neck keeps it; and with pins: all keep apart.
 
 The penalty in the objective leaves sizes a little below the least one, because the match goes on pulling.  Here each
 step s solves the quadratic problem
@@ -13,13 +13,14 @@ multiplier.  Where that does not end with all sizes kept, the nearest sheet that
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
-from kirigami_studio.evaluate.evenness import panel_sizes
+from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
+from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
@@ -52,7 +53,7 @@ class Sized:
     look : Look
         The state found; the one given, if no sheet near by keeps all sizes.
     kept : bool
-        Whether all edges and necks are at least as long as asked for.
+        Whether all edges and necks are at least as long, and all pins as far apart, as asked for.
     steps, evaluations : int
         Steps taken and layouts decoded.
     """
@@ -71,8 +72,9 @@ def with_kept_sizes(
     steps: int,
     cancel: Callable[[], bool],
     stiffness: FloatArray | None = None,
+    gap: float = 0.0,
 ) -> Sized:
-    """Go on from a fitted state until no edge and no neck is smaller than ``least``.
+    """Go on from a fitted state until no edge and no neck is below ``least``, and no pins are nearer than ``gap``.
 
     Parameters
     ----------
@@ -88,8 +90,10 @@ def with_kept_sizes(
         Asked before every step.
     stiffness : (V, V) float, optional
         Second derivative of even panels at a state nearby, to be used again.
+    gap : float, unit cells
+        Least distance between pins; 0 for sheets without.
     """
-    descent = _SizeDescent(objective, state, bounds, least, stiffness)
+    descent = _SizeDescent(objective, state, bounds, (least, gap), stiffness)
     first = descent.here
     if descent.is_kept:
         return Sized(first, True, 0, descent.evaluations)
@@ -103,9 +107,15 @@ class _SizeDescent:
     """The moving state."""
 
     def __init__(
-        self, objective: Objective, state: FloatArray, bounds: ShapeBounds, least: float, stiffness: FloatArray | None
+        self,
+        objective: Objective,
+        state: FloatArray,
+        bounds: ShapeBounds,
+        least: tuple[float, float],
+        stiffness: FloatArray | None,
     ) -> None:
-        self.objective, self.bounds, self.least = objective, bounds, least
+        self.objective, self.bounds = objective, bounds
+        self.least, self.gap = least
         self.here, self._stiffness = objective.look(state), stiffness
         self.steps, self.evaluations = 0, 1
         self._guarded = self._is_clear(self.here)
@@ -159,8 +169,20 @@ class _SizeDescent:
         return missing if sizes_alone else look.cost + weight * missing
 
     def _sizes(self, look: Look) -> FloatArray:
+        """All sizes, those of gaps as if the least one was that of panels."""
         model = self.objective.model
-        return panel_sizes(look.decoded.nodes, model.rows, model.columns).size
+        sizes = panel_sizes(look.decoded.nodes, model.rows, model.columns).size
+        if not self.gap:
+            return sizes
+        pins = pin_distances(look.decoded.nodes, model.rows, model.columns).size
+        return np.concatenate([sizes, pins - self.gap + self.least])
+
+    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes | PinDistances, float]]:
+        """Sizes near the least one, and the least one: of panels, then of gaps between pins."""
+        rows, columns = self.objective.model.rows, self.objective.model.columns
+        yield panel_sizes(nodes, rows, columns).distinct().below(self.least + NEAR), self.least
+        if self.gap:
+            yield pin_distances(nodes, rows, columns).below(self.gap + NEAR), self.gap
 
     def _moved(self, step: FloatArray) -> Look:
         state = self.here.state.copy()
@@ -204,10 +226,12 @@ class _SizeProblem:
         model, basis, poses = objective.model, bounds.basis, objective.poses
         derivatives = None if sizes_alone else descent.slopes()
         motion = model.node_motion(here.decoded) if derivatives is None else derivatives.motion
-        near = panel_sizes(here.decoded.nodes, model.rows, model.columns).distinct().below(descent.least + NEAR)
-        slopes = np.zeros((len(near.size), basis.size + poses))
-        slopes[:, :-poses] = motion.slopes(*near.reach(model.node_count), basis)
-        added = np.minimum(descent.least + AIM - near.size, MOST_ADDED)
+        near = list(descent.near(here.decoded.nodes))
+        reaches = [sizes.reach(model.node_count) for sizes, _ in near]
+        along_x, along_y = (np.concatenate([reach[axis] for reach in reaches]) for axis in (0, 1))
+        slopes = np.zeros((len(along_x), basis.size + poses))
+        slopes[:, :-poses] = motion.slopes(along_x, along_y, basis)
+        added = np.concatenate([np.minimum(least + AIM - sizes.size, MOST_ADDED) for sizes, least in near])
         shape = here.state[:-poses]
         if derivatives is None:
             count = basis.size + poses

@@ -16,6 +16,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.pins import checkerboard, hand_of
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -33,6 +34,7 @@ from kirigami_studio.polish.matching import check_excess
 from kirigami_studio.polish.normal_equations import Damped
 from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, FitPhase, Look, Objective, SecondTerm, Slopes
 from kirigami_studio.polish.panel_size import check_least
+from kirigami_studio.polish.pinwheel import FIRST_PENALTY, check_gap, pinwheel
 from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.transport_map import TransportMap, TransportTerm
@@ -98,6 +100,7 @@ def polish(
     phases: Sequence[FitPhase] = (),
     transport: TransportMap | None = None,
     least_panel: float = 0.0,
+    least_gap: float = 0.0,
     free_rim: bool = False,
     symmetry: Symmetry | None = None,
     excess: float = 1.0,
@@ -127,6 +130,9 @@ def polish(
         Needed by phases with a transport map.
     least_panel : float, unit cells
         No panel edge or neck of the fitted sheet is smaller, wherever a sheet near by allows that; 0 for any size.
+    least_gap : float, unit cells
+        No two pins of a pinned sheet come nearer, wherever a sheet near by allows that, and the sheet keeps its hand,
+        see ``pinwheel``; 0 for sheets without pins.
     free_rim : bool
         Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places.
     symmetry : Symmetry, optional
@@ -147,8 +153,8 @@ def polish(
         ``phi`` is not in [0, pi): the closed sheet is a rectangle whatever the ratios; or the second target's angle is
         not larger.
     UsageError
-        ``steps``, ``trust``, ``least_panel`` or ``excess`` is not a number that a fit can have, ``locked`` is not a
-        table of the field's shape, or voids are locked and a symmetry is asked for.
+        ``steps``, ``trust``, ``least_panel``, ``least_gap`` or ``excess`` is not a number that a fit can have,
+        ``locked`` is not a table of the field's shape, or voids are locked and a symmetry is asked for.
     """
     sheet = Sheet.of(design)
     phi = check_fit(phi, steps, trust)
@@ -156,12 +162,16 @@ def polish(
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
     model = OutlineModel.of(sheet, phi, free_rim, start_weight)
+    gap = check_gap(least_gap)
     bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
     pose = pose or align(model.outline(start), target.points)
-    terms = FieldPreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns)
+    side = hand_of(sheet.field) * checkerboard(*sheet.grid).ravel() if gap else None
+    terms = FieldPreferenceTerms(preference or Preference(), start[: model.voids], sheet.rows, sheet.columns, side)
     phases = tuple(phases) or (FitPhase(steps, trust, even, least_gain=CONVERGED),)
-    even_panels = EvenPanels.of(sheet) if any(phase.even for phase in phases) else None
+    even_panels: EvenPanels | None = None
+    if any(phase.even for phase in phases):
+        even_panels = EvenPanels.of(sheet, pinwheel(sheet.plain(), gap, hand_of(sheet.field)) if gap else None)
     term = TransportTerm(sheet, phi, transport) if transport is not None else None
     boundary, least, excess = BoundaryTarget.of(target, SAMPLES), check_least(least_panel), check_excess(excess)
     state = np.concatenate([start, _numbers(pose)])
@@ -172,18 +182,23 @@ def polish(
         state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
     for phase in phases:
-        objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also)
+        objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap, FIRST_PENALTY)
         descent = _Descent(objective, state, bounds) if descent is None else descent.turned_to(objective)
         until = descent.steps + phase.steps
         # Where panels are too small, the last half of the last phase is left for their bound.
-        half = until - phase.steps // 2 if least and phase is phases[-1] else until
-        if descent.run(half, cancel) and not len(descent.here.small.size):
+        half = until - phase.steps // 2 if (least or gap) and phase is phases[-1] else until
+        goes_on = descent.run(half, cancel)
+        if gap and phase is phases[-1]:
+            bounds = bounds.with_sides_held(descent.here.state, gap)
+            objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap)
+            descent.turned_to(objective, bounds).run(until - phase.steps // 4, cancel)
+        elif goes_on and not len(descent.here.small.size):
             descent.run(until, cancel)
     assert descent is not None
     here, taken, evaluations = descent.here, descent.steps, descent.evaluations
-    if least and any(phase.steps for phase in phases):
+    if (least or gap) and any(phase.steps for phase in phases):
         bare, left = Objective(model, boundary, terms, phases[-1], 0.0, excess, even_panels, term, also), until - taken
-        sized = with_kept_sizes(bare, here.state, bounds, least, left, cancel, descent.stiffness)
+        sized = with_kept_sizes(bare, here.state, bounds, least, left, cancel, descent.stiffness, gap)
         here, taken, evaluations = sized.look, taken + sized.steps, evaluations + sized.evaluations
     poses = here.state[start.size :]
     return Fit(
@@ -246,10 +261,13 @@ class _Descent:
         self.stiffness: FloatArray | None = None
         self._uses = 0
 
-    def turned_to(self, objective: Objective) -> _Descent:
-        """Go on from here with another objective."""
-        self.objective = objective
-        self.here = objective.look(self.here.state)
+    def turned_to(self, objective: Objective, bounds: ShapeBounds | None = None) -> _Descent:
+        """Go on from here with another objective, within other bounds where some are given."""
+        self.objective, state = objective, self.here.state
+        if bounds is not None:
+            self._bounds, poses = bounds, self._poses
+            state = np.concatenate([bounds.allowed(state[:-poses]), state[-poses:]])
+        self.here = objective.look(state)
         self.damping = min(self.damping, FIRST_DAMPING)
         self.evaluations += 1
         return self

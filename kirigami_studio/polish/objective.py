@@ -6,10 +6,11 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from even samples of the target boundary to the layout (nothing may be missed),
 
 down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
-terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, and on long chords of a
-round start, see ``chords``; and, where a phase of the fit asks for them, even panels, see ``even_panels``, none large,
-see ``large_panels``, a transport map of the inside, see ``transport_map``, and open junctions, see ``junctions``.  A
-second target has residuals of the same kind at its own angle, in a pose of its own, times its weight.
+terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, on pins too near to each
+other, see ``pinwheel``, and on long chords of a round start, see ``chords``; and, where a phase of the fit asks for
+them, even panels, see ``even_panels``, none large, see ``large_panels``, a transport map of the inside, see
+``transport_map``, and open junctions, see ``junctions``.  A second target has residuals of the same kind at its own
+angle, in a pose of its own, times its weight.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
+from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -49,6 +51,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+ALL_APART = pin_distances(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
@@ -125,6 +128,10 @@ class Objective:
     transport : TransportTerm, optional
         Needed where the phase asks for a transport map.
     second : SecondTerm, optional
+    gap : float, unit cells
+        Pins should not be nearer to each other; 0 for sheets without pins.
+    gap_penalty : float
+        Weight of what is missing, see ``pinwheel``.
 
     Attributes
     ----------
@@ -143,8 +150,11 @@ class Objective:
         even: EvenPanels | None = None,
         transport: TransportTerm | None = None,
         second: SecondTerm | None = None,
+        gap: float = 0.0,
+        gap_penalty: float = PENALTY,
     ) -> None:
         self.model, self.target, self.terms, self.phase, self.least = model, target, terms, phase, least
+        self.gap, self._gap_penalty = gap, gap_penalty
         self.even = even if phase.even else None
         self.transport = transport if phase.transport else None
         self.second, self.poses = second, POSE if second is None else 2 * POSE
@@ -186,6 +196,10 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
+        close = ALL_APART
+        if self.gap:
+            close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
+            cost += shortage(close, self.gap, self._gap_penalty)
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -194,7 +208,7 @@ class Objective:
         if self.even is not None and self._each_large:
             large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
             cost += self._each_large * float(np.square(large.area - LARGE).sum())
-        return Look(state, decoded, outline, matching, second, small, shallow, large, excess, gaps, cost)
+        return Look(state, decoded, outline, matching, second, small, close, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -295,6 +309,7 @@ class Objective:
             (weight**0.5, beyond, reach(count))
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
+                (self._gap_penalty, look.close.size - self.gap, look.close.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
@@ -355,6 +370,8 @@ class Look:
     second : SecondLook or None
     small : PanelSizes
         Edges and necks below the least size.
+    close : PinDistances
+        Distances between pins below the least one.
     shallow : JunctionAngles
         Where cuts meet at shallow angles, if the phase asks for open junctions.
     large : PanelAreas
@@ -372,6 +389,7 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes
+    close: PinDistances
     shallow: JunctionAngles
     large: PanelAreas
     excess: float

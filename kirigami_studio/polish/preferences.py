@@ -70,15 +70,21 @@ class FieldPreferenceTerms:
     start : (m * n,) float
         The field that the fit began with.
     rows, columns : int
+    side : (m * n,) float, optional
+        Factors 1 and -1 of z before it is looked at: those of a pinwheel's hand, whose voids alternate.
     """
 
-    def __init__(self, weights: Preference, start: FloatArray, rows: int, columns: int) -> None:
-        self.weights, self.start = weights, start
+    def __init__(
+        self, weights: Preference, start: FloatArray, rows: int, columns: int, side: FloatArray | None = None
+    ) -> None:
+        self._side = np.ones(start.size) if side is None else side
+        self.weights, self.start = weights, self._side * start
         self._smooth = neighbours(rows, columns, 2)
         self._varied = neighbours(rows, columns, 1)
 
     def value(self, z: FloatArray) -> float:
         """Weighted sum of all terms at z (m * n,)."""
+        z = self._side * z
         pull, step = z - self.start, self._smooth.differences(z)
         total = self.weights.start * float(pull @ pull) + self.weights.smooth * float(step @ step)
         if self.weights.total_variation:
@@ -88,6 +94,7 @@ class FieldPreferenceTerms:
 
     def gradient(self, z: FloatArray) -> FloatArray:
         """Derivative of the value: (m * n,)."""
+        z = self._side * z
         gradient = 2.0 * self.weights.smooth * self._smooth.gathered(self._smooth.differences(z))
         gradient += 2.0 * self.weights.start * (z - self.start)
         if self.weights.total_variation:
@@ -95,15 +102,15 @@ class FieldPreferenceTerms:
             step = self._varied.differences(x)
             pull = self._varied.gathered(step / _rounded(step))
             gradient += self.weights.total_variation / z.size * LN10 * x * pull
-        varied: FloatArray = gradient
-        return varied
+        turned: FloatArray = self._side * gradient
+        return turned
 
     def curvature(self, z: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
         """Entries (row, column, value) whose sum is a positive semi-definite approximation of the second derivative.
 
         The total variation gets the curvature of the quadratic that touches it from above (reweighted least squares).
         """
-        own = np.arange(z.size)
+        z, own = self._side * z, np.arange(z.size)
         parts = [(own, own, np.full(z.size, 2.0 * self.weights.start))]
         parts += self._smooth.curvature(np.full(len(self._smooth.first), 2.0 * self.weights.smooth), np.ones(z.size))
         if self.weights.total_variation:
@@ -111,7 +118,7 @@ class FieldPreferenceTerms:
             share = self.weights.total_variation / z.size / _rounded(self._varied.differences(x))
             parts += self._varied.curvature(share, LN10 * x)
         row, column, value = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return row, column, value
+        return row, column, self._side[row] * self._side[column] * value
 
 
 def _rounded(step: FloatArray) -> FloatArray:

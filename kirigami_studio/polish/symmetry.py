@@ -67,12 +67,17 @@ class SymmetricPose:
 
 
 def shared_symmetries(
-    target: Outline, grid: tuple[int, int], setting: KeptSymmetry = KeptSymmetry.AUTO, start: StartShape = RECTANGLE
+    target: Outline,
+    grid: tuple[int, int],
+    setting: KeptSymmetry = KeptSymmetry.AUTO,
+    start: StartShape = RECTANGLE,
+    *,
+    pinned: bool = False,
 ) -> list[SymmetricPose]:
     """Symmetries of ``target`` that sheets of ``grid`` and ``start`` have too, at every angle, the most specific first.
 
     What is only a part of another one in the list is left out, unless it lets the sheet lie at other angles: beside two
-    mirrors the half turn stays, with which a diamond may lie on its corner.
+    mirrors the half turn stays, with which a diamond may lie on its corner.  ``pinned`` sheets have turns alone.
 
     Raises
     ------
@@ -82,7 +87,7 @@ def shared_symmetries(
         A symmetry is asked for that the grid or the start does not have.
     """
     found: list[SymmetricPose] = []
-    for pose in symmetric_poses(target, setting):
+    for pose in symmetric_poses(target, setting, pinned=pinned):
         if pose.fits(grid, start) and not any(pose.is_part_of(other) for other in found):
             found.append(pose)
     if not found and setting in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
@@ -94,7 +99,9 @@ def shared_symmetries(
     return found
 
 
-def symmetric_poses(target: Outline, setting: KeptSymmetry = KeptSymmetry.AUTO) -> tuple[SymmetricPose, ...]:
+def symmetric_poses(
+    target: Outline, setting: KeptSymmetry = KeptSymmetry.AUTO, *, pinned: bool = False
+) -> tuple[SymmetricPose, ...]:
     """All symmetric set-ups that are worth trying for a target, the most specific first, whatever the grid.
 
     Axes that a turn of the target onto itself carries to each other count once: a star has one axis, a hexagon two
@@ -106,14 +113,20 @@ def symmetric_poses(target: Outline, setting: KeptSymmetry = KeptSymmetry.AUTO) 
     setting : KeptSymmetry
         ``auto``: symmetries with an overlap of at least ``TOLERANCE``; ``mirror`` and ``turn``: the best axis or turn,
         if there is any that overlaps by ``LEAST_MEANT``; ``none``: nothing.
+    pinned : bool
+        Whether for sheets with pins, which a flip would turn into others: they have no mirrors.
 
     Raises
     ------
     TargetError
         A symmetry is asked for and the target is far from any.
+    UsageError
+        A mirror is asked for with pins.
     """
     poses: list[SymmetricPose] = []
-    if setting in (KeptSymmetry.AUTO, KeptSymmetry.MIRROR):
+    if pinned and setting == KeptSymmetry.MIRROR:
+        raise UsageError("symmetry.no_mirror_with_pins")
+    if setting in (KeptSymmetry.AUTO, KeptSymmetry.MIRROR) and not pinned:
         poses += _mirror_poses(target, forced=setting == KeptSymmetry.MIRROR)
     if setting in (KeptSymmetry.AUTO, KeptSymmetry.TURN):
         poses += _turn_poses(target, forced=setting == KeptSymmetry.TURN)

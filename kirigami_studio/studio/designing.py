@@ -33,7 +33,7 @@ from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, pin_gap_mm
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
@@ -174,7 +174,8 @@ def request_for(
         budget_seconds=budget_seconds,
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
-        room_mm=room_mm(cut),
+        room_mm=sizes_of(cut)[1],
+        least_gap_mm=pin_gap_mm(cut),
     )
 
 
@@ -276,6 +277,8 @@ def _ranked_as_cut(
     from kirigami_studio.studio.as_cut import estimates
     from kirigami_studio.studio.verdict import CloseLook, looking
 
+    if result.request.pinned:
+        return result  # sheets are looked at as cut for their connectors, and pins have none
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
     progress = _looking_at(0, len(everything.candidates))
@@ -358,7 +361,7 @@ def document_of(result: Result, cut: FabricationSettings) -> Document:
 def ranking_of(document: Document, known: KnownAsCut | None = None) -> Ranking:
     """What the document's settings, sheet and material put first, with what is known of designs that are cut so."""
     settings, cut = document.settings, document.fabrication
-    ranking = Ranking(settings.regular, cut.width_mm, sizes_of(cut)[0])
+    ranking = Ranking(settings.regular, cut.width_mm, sizes_of(cut)[0], gap_of(cut))
     if known is None or known.sheet != one_sheet(cut):
         return ranking
     return replace(ranking, jam_phi=known.jam_phi, refusals=known.refusals, losses=known.losses)
@@ -436,6 +439,7 @@ def refitting(
         width_mm=settings.width_mm,
         least_feature_mm=least_mm,
         room_mm=room_mm,
+        least_gap_mm=gap_of(settings),
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -481,12 +485,20 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
 def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
     """Panel edge and neck (mm) that the material allows at least, and that leaves connectors their full width.
 
-    Zeros for a material that is not known here.
+    Pinned sheets have no connectors.  Zeros for a material that is not known here.
     """
     try:
-        return least_feature_mm(settings), room_mm(settings)
+        return least_feature_mm(settings), 0.0 if pin_gap_mm(settings) else room_mm(settings)
     except KirigamiError:
         return 0.0, 0.0
+
+
+def gap_of(settings: FabricationSettings) -> float:
+    """How far apart pins have to stay, mm; 0 without pins, and for a material that is not known here."""
+    try:
+        return pin_gap_mm(settings)
+    except KirigamiError:
+        return 0.0
 
 
 def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:

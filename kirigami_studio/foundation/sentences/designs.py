@@ -117,6 +117,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "fit.excess_out_of_range": mark("The weight of what sticks out must be a number from 0 to 1, got {excess!r:.80}."),
     "fit.least_panel_out_of_range": mark("The least panel size must be 0 to {most:g} cells, got {least!r:.80}."),
+    "fit.least_gap_out_of_range": mark("The least distance of pins must be 0 to {most:g} cells, got {gap!r:.80}."),
     "grid.coarsest_expected": mark(
         "{rows} x {columns}: as coarse as the shape allows. Expected match: {percent:.1f} %."
     ),
@@ -241,6 +242,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
         "are cut out of it with {count} panels.",
     ),
+    "rank.pins_too_near": mark("Pins come as near as {gap_mm:.1f} mm; their ears need {least_mm:.1f} mm."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),
     "request.angle_out_of_range": mark(
@@ -254,6 +256,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "request.least_feature_out_of_range": mark(
         "The smallest panel that the material allows must be a number of at least 0 mm, got {value!r:.80}."
+    ),
+    "request.least_gap_out_of_range": mark(
+        "The least distance of pins must be a number of at least 0 mm, got {value!r:.80}."
     ),
     "request.k_out_of_range": mark(
         "The number of candidates (k) must be a whole number from {least} to {most}, got {value!r:.80}."

@@ -224,6 +224,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "smoothing.strength": mark("The strength of smoothing must be between 0 and 1, got {value!r:.40}."),
     "smoothing.nothing_left": mark("Smoothed this much, nothing of the target is left. Smooth it less."),
     "simplifying.strength": mark("The strength of simplifying must be between 0 and 1, got {value!r:.40}."),
+    "symmetry.no_mirror_with_pins": mark(
+        "Sheets with pins cannot be their own mirror image. Choose the symmetry auto, turn or none."
+    ),
     "symmetry.no_mirror_axis": mark(
         "The target has no mirror axis: it shares {percent:.0f} % of its area with its best mirror image, and "
         "{least:.0f} % are needed. Choose another symmetry, or draw with the mirror."

@@ -55,7 +55,7 @@ class TargetReader(QObject):
         request = next_run(document)
         asked = None
         if request is not None:
-            sheet = (request.width_mm, request.least_feature_mm)
+            sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm)
             unfolding = () if request.start.is_plain else (request.grid, request.rim)
             asked = (request.target, request.phi, request.symmetry, request.start, *sheet, *unfolding)
         if self._session.project != self._project:

@@ -1,0 +1,145 @@
+"""Pins of a pinned sheet: how near to each other two of them ever come.
+
+Panels of a pinned sheet lie in two layers like the squares of a checkerboard, and each has an ear about each of its
+pins.  Every pin carries an ear in both layers, so any two that are not of one and the same panel in both have to keep
+apart.  They come nearest in the two closed states, flat and at phi = 0, where a void's sides a and b lie upon each
+other: opposite corners of the void are then |a - b| apart.  In both states the way from a pin to one near by is a sum
+of nodes of the flat sheet.
+
+The *hand* of a pinwheel is the sign of a - b at even voids; odd voids have the other one.  Large and small panels
+then alternate and whirl about each other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.topology import topology
+
+#: Gaps (unit cells) are kept when they lack no more than this: rounding a sheet takes less.
+GAP_ROUNDING = 1e-6
+
+
+@lru_cache(maxsize=64)
+def checkerboard(rows: int, columns: int) -> FloatArray:
+    """1 at even voids, -1 at odd ones: (m, n)."""
+    signs = np.where(topology(rows, columns).even_void, 1.0, -1.0)
+    signs.setflags(write=False)
+    return signs
+
+
+def void_gaps(deployment: Deployment) -> FloatArray:
+    """What side a of each void, from p0 to p1, is longer than side b, from p0 to p3: (m, n), unit cells."""
+    corners = deployment.compact[deployment.topology.void_nodes]
+    a, b = (np.hypot(*np.moveaxis(corners[:, :, end] - corners[:, :, 0], -1, 0)) for end in (1, 3))
+    gaps: FloatArray = a - b
+    return gaps
+
+
+def hand_of(field: RatioField) -> int:
+    """Sign, 1 or -1, that z = log10 x mostly has at even voids and the opposite of which it has at odd ones."""
+    return 1 if float((checkerboard(field.rows, field.columns) * field.log10).sum()) >= 0.0 else -1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PinDistances:
+    """Distances between pins of one sheet, in the closed state in which they matter.
+
+    Attributes
+    ----------
+    matrix : (F, N) sparse
+        Reads the way from one pin to the other, seen from the panel of one of them, off the compact nodes.
+    way : (F, 2) float, unit cells
+    size : (F,) float, unit cells
+    """
+
+    matrix: csr_matrix
+    way: FloatArray
+    size: FloatArray
+
+    def below(self, least: float) -> PinDistances:
+        """Those that are smaller than ``least``."""
+        chosen = np.flatnonzero(self.size < least)
+        return PinDistances(self.matrix[chosen], self.way[chosen], self.size[chosen])
+
+    def reach(self, node_count: int) -> tuple[FloatArray, FloatArray]:
+        """Matrices (F, N) that read changes of the distances off motions of the nodes in x and in y."""
+        dense = self.matrix.toarray()
+        direction = self.way / np.maximum(self.size, 1e-12)[:, None]
+        return direction[:, :1] * dense, direction[:, 1:] * dense
+
+
+def pin_distances(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
+    """Measure all pins of an m x n grid with compact ``nodes`` (N, 2), unit cells."""
+    matrix = _ways(rows, columns)
+    way = matrix @ nodes
+    return PinDistances(matrix, way, np.hypot(way[:, 0], way[:, 1]))
+
+
+def least_pin_distance(deployment: Deployment) -> float:
+    """The least of :func:`pin_distances`, unit cells."""
+    return float(pin_distances(deployment.compact, *deployment.sheet.grid).size.min())
+
+
+@lru_cache(maxsize=4096)
+def least_gap_of(sheet: Sheet) -> float:
+    """The same of a sheet that may be asked again: designs are ranked by it."""
+    return least_pin_distance(deploy(sheet))
+
+
+@lru_cache(maxsize=64)
+def _ways(rows: int, columns: int) -> csr_matrix:
+    """The matrix of :class:`PinDistances`: between corners of each panel, and of panels one or two pins away."""
+    tables = topology(rows, columns)
+    pinned = set(tables.void_nodes.ravel().tolist())
+    panels = [[node for node in panel if node in pinned] for panel in tables.panel_nodes.reshape(-1, 4).tolist()]
+    owners: dict[int, list[int]] = {}
+    for number, corners in enumerate(panels):
+        for node in corners:
+            owners.setdefault(node, []).append(number)
+    rigid = {frozenset(pair) for corners in panels for pair in combinations(corners, 2)}
+    ways = {(pair, False): dict(zip(sorted(pair), (1, -1), strict=True)) for pair in rigid}
+    for number, corners in enumerate(panels):
+        for node, closed in _closed_places(number, panels, owners).items():
+            for corner in corners:
+                pair = frozenset((node, corner))
+                if node != corner and pair not in rigid:
+                    ways.setdefault((pair, False), {node: 1, corner: -1})
+                    ways.setdefault((pair, True), closed | {corner: closed.get(corner, 0) - 1})
+    row = np.repeat(np.arange(len(ways)), [len(way) for way in ways.values()])
+    column = [node for way in ways.values() for node in way]
+    factor = [float(factor) for way in ways.values() for factor in way.values()]
+    return csr_matrix((factor, (row, column)), shape=(len(ways), tables.node_count))
+
+
+def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[int]]) -> dict[int, dict[int, int]]:
+    """Where pins of panels one or two pins away from a panel lie at phi = 0, seen from it: sums of compact nodes.
+
+    From flat to phi = 0, a panel that is pinned to it at c is turned half about c, which takes w to 2 c - w; one that
+    is pinned to that at d is moved by 2 (c - d).
+    """
+    places: dict[int, dict[int, int]] = {}
+    for pin in panels[number]:
+        for beside in (other for other in owners[pin] if other != number):
+            for node in panels[beside]:
+                places.setdefault(node, {pin: 2, node: -1} if node != pin else {pin: 1})
+            for next_pin in panels[beside]:
+                for beyond in (other for other in owners[next_pin] if other not in (number, beside)):
+                    for node in panels[beyond]:
+                        places.setdefault(node, {node: 1, pin: 2, next_pin: -2})
+    return places
+
+
+def log_ratio_for(gap: float, slit: float) -> float:
+    """z = log10 x of a void whose slit is so long that leaves this gap, both in unit cells."""
+    return 2.0 * math.atanh(gap / slit) / math.log(10.0)
