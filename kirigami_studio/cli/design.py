@@ -23,6 +23,7 @@ from kirigami_studio.foundation.errors import Cancelled, FabricationError, Kirig
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
@@ -38,18 +39,21 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
+    Planned,
     closed,
     export_job,
     judged,
+    judged_pieces,
     planned,
     with_cuttable_chosen,
     written,
+    written_pieces,
 )
 from kirigami_studio.studio.verdict import Verdict, refused
 
@@ -57,7 +61,7 @@ from kirigami_studio.studio.verdict import Verdict, refused
 def design(arguments: argparse.Namespace) -> int:
     """Design every target; one JSON object a line for many, files only where --out is given."""
     fabrication = material_settings(arguments)
-    limits = material_for(fabrication).limits_note
+    limits = note_before_run(fabrication)
     check_name(arguments.name, run_labels(0, 1)[0].code)
     batch = are_many_targets(arguments.targets)
     if arguments.out is not None:
@@ -83,6 +87,7 @@ def design(arguments: argparse.Namespace) -> int:
     def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
         warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
         answer = summary(design.result) | {"files": files, "warnings": warnings}
+        answer["construction"] = construction_for(fabrication).value
         if limits is not None:
             answer["material_note"] = limits.text
         answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
@@ -183,6 +188,8 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     if job.name:
         document = set_label(document, document.chosen or 0, job.name, "").document
     request = CutRequest.of(document)
+    if request.is_pinned:
+        return DesignOutcome(result, request, judged_pieces(request), notes=notes)
     try:
         made = planned(request)
     except FabricationError as error:
@@ -280,6 +287,7 @@ def summary(result: Result) -> dict[str, object]:
     answer: dict[str, object] = {
         "candidates": entries,
         "best": entries[0],
+        "target_outline": [result.request.target.points.tolist()],
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }
@@ -338,6 +346,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
         "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
+        "outline": [candidate.score.transform.apply(deploy(candidate.sheet).outline(candidate.score.phi)).tolist()],
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -373,18 +382,28 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     listing = {"candidates": candidates_json(design.result)}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     made, refusal = None, ""
+    if request.is_pinned:
+        _write_pictures(request, None, paths)
+        paths["cut"] = folder / "cut"
+        verdict = written_pieces(request, Output(paths["cut"], "cut")).verdict
+        assert verdict is not None  # pieces are judged
+        return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
     try:
         made = planned(request)
     except FabricationError as error:
         refusal = str(error)
-    job = export_job(request, made)
-    write_layout_svg(job, paths["layout"])
-    write_png(job, paths["preview"])
+    _write_pictures(request, made, paths)
     if made is None:
         raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
     verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
     assert verdict is not None  # planned sheets are judged
     return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
+
+
+def _write_pictures(request: CutRequest, made: Planned | None, paths: Mapping[str, Path]) -> None:
+    job = export_job(request, made)
+    write_layout_svg(job, paths["layout"])
+    write_png(job, paths["preview"])
 
 
 def _folder_name(name: str, used: set[str]) -> str:

@@ -21,13 +21,20 @@ from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for, new_settings, with_choices
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    construction_for,
+    material_for,
+    new_settings,
+    with_choices,
+)
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
 from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.cutting import check_connectors
@@ -35,13 +42,16 @@ from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
 from kirigami_studio.studio.making import (
     CutRequest,
+    ExportedFiles,
     Output,
     chosen_candidate,
     closed,
     export_job,
     fixing,
     planned,
+    writes_pieces,
     written,
+    written_pieces,
 )
 from kirigami_studio.studio.verdict import Verdict, refused
 
@@ -55,7 +65,7 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     Unknown materials are refused here, before any work.
     """
     settings = new_settings(_given(arguments))
-    limits = material_for(settings).limits_note
+    limits = None if construction_for(settings) is Construction.PINNED else material_for(settings).limits_note
     if limits is not None:
         sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
     return settings
@@ -63,8 +73,6 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
 
 def export(arguments: argparse.Namespace) -> int:
     """Write cut or picture files of a project, verify the cut files, and report on them."""
-    if not arguments.all:
-        find_writer(arguments.out)
     _check_picture(arguments)
     document = load(arguments.project)
     chosen_candidate(document)
@@ -73,6 +81,11 @@ def export(arguments: argparse.Namespace) -> int:
         document = set_label(document, document.chosen, arguments.name, document.label.note).document
     settings = overridden(document.fabrication, arguments)
     request = CutRequest.of(document, settings)
+    output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
+    if request.is_pinned and writes_pieces(output):
+        return _export_pieces(written_pieces(request, output), as_json=arguments.json)
+    if not arguments.all:
+        find_writer(arguments.out)
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
@@ -82,8 +95,6 @@ def export(arguments: argparse.Namespace) -> int:
         fixes = " ".join(_advice(request, refused(error)).lines)
         raise FabricationError("export.with_fixes", reason=str(error), fixes=fixes) from error
     plan, report = made.plan, made.report
-    record = arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
-    output = Output(Path(arguments.out), "cut" if arguments.all else None, record)
     motion = None
     if arguments.as_cut:
         sheet = simulated(request.candidate, plan, settings.width_mm, request.target, request.deployment)
@@ -162,6 +173,54 @@ def export(arguments: argparse.Namespace) -> int:
     for warning in warnings:
         if warning not in said:
             say("  " + tr("note: {text}", text=warning))
+    return 0 if found.ok else 1
+
+
+def _wants_record(arguments: argparse.Namespace) -> bool:
+    """Whether all settings are written beside the files: beside a whole set unless refused."""
+    return arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
+
+
+def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
+    """Report on the files of a pinned design."""
+    pieces, verdict = found.pieces, found.verdict
+    assert pieces is not None and verdict is not None
+    assembly, beds, report = pieces.made.assembly, pieces.job.beds, pieces.report
+    warnings = list(dict.fromkeys(note.text for note in (*report.problems, *report.notes, *pieces.job.notes)))
+    if as_json:
+        print_json(
+            {
+                "files": [str(path) for path in found.files],
+                "construction": pieces.job.construction.value,
+                "cut_length_mm": pieces.cut_length_mm,
+                "seconds_estimate": pieces.seconds,
+                "pieces": len(assembly.pieces),
+                "pins": len(assembly.hinges),
+                "beds": len(beds),
+                "iou": report.opened_iou,
+                "flat_iou": report.flat_iou,
+                **jam_json(verdict.as_cut),
+                "warnings": warnings,
+                "verified": [_summary(one) for one in found.verifications],
+                "ok": verdict.ok,
+                "verdict": verdict.to_json(),
+            }
+        )
+        return 0 if found.ok else 1
+    say(
+        tr(
+            "{folder}: {pieces} pieces on {beds} beds, {pins} pins, cut {cut:.1f} mm, about {seconds:.0f} s",
+            folder=found.path,
+            pieces=len(assembly.pieces),
+            beds=len(beds),
+            pins=len(assembly.hinges),
+            cut=pieces.cut_length_mm,
+            seconds=pieces.seconds,
+        )
+    )
+    for one in found.verifications:
+        say("  " + tr("{path}: verified by two readers", path=one.path))
+    say_verdict(verdict)
     return 0 if found.ok else 1
 
 

@@ -9,6 +9,7 @@ from typing import Any, TypedDict
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.fabricate.fastener import SIZES, WALL_MM, Fastener
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
     cuttable,
@@ -29,7 +30,7 @@ from kirigami_studio.fabricate.material import (
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
 from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, tr
 
 LARGEST_SHEET_MM = 10_000.0
 
@@ -438,6 +439,21 @@ def construction_for(settings: FabricationSettings) -> Construction:
         No such material.
     """
     return settings.construction or material_for(settings).construction
+
+
+def note_before_run(settings: FabricationSettings) -> Note | None:
+    """Return a word on what the construction asks for, or on the limits of one sheet; None where there is none.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    material = material_for(settings)
+    if construction_for(settings) is Construction.PINNED:
+        fastener = tr(SIZES[settings.fastener].name)
+        return Note.of("construction.pinned", material=tr(material.name), fastener=fastener)
+    return material.limits_note
 
 
 @dataclass(frozen=True, slots=True)

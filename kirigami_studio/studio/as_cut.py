@@ -23,7 +23,7 @@ from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.making_room import long_enough
-from kirigami_studio.fabricate.material import Material
+from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
@@ -54,7 +54,7 @@ from kirigami_studio.mechanics.connectors import (
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, material_for
 
 MPA_PER_GPA = 1e3
 #: A sheet within this (radians) of being closed has closed.

@@ -5,15 +5,21 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 
+from kirigami_studio.assembly.checks import PinnedReport, check_pinned
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
-from kirigami_studio.assembly.pinned import PinnedPlan, PinnedReport, check_pinned, pinned
+from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, machine_for, material_for, pin_sizes
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    construction_for,
+    material_for,
+    pin_sizes,
+)
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
@@ -85,7 +86,7 @@ def plan_sheet(
     return plan
 
 
-def refuse_errors(report: PlanReport) -> None:
+def refuse_errors(report: PlanReport | PinnedReport) -> None:
     """Refuse cuts that the sheet would not survive.
 
     Raises

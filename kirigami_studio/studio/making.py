@@ -6,12 +6,15 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
     Cancelled,
     ExportError,
@@ -26,7 +29,6 @@ from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
-from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     construction_for,
@@ -36,9 +38,11 @@ from kirigami_studio.settings.fabrication import (
 )
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import refuse_errors
-from kirigami_studio.studio.file_kinds import kind_of
+from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.checks import PinnedReport
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
@@ -50,6 +54,7 @@ if TYPE_CHECKING:
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
     from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
+    from kirigami_studio.studio.assembling import Assembled
     from kirigami_studio.studio.fixes import Advice
     from kirigami_studio.studio.verdict import Verdict
 
@@ -280,10 +285,11 @@ def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | 
     planned_at_least: Document | None = None
     for number in range(document.chosen or 0, len(document.candidates)):
         chosen = replace(document, chosen=number)
+        request = CutRequest.of(chosen)
         try:
-            report = planned(CutRequest.of(chosen)).report
+            made = pieces_of(request) if request.is_pinned else planned(request)
             planned_at_least = planned_at_least or chosen
-            refuse_errors(report)
+            refuse_errors(made.report)
         except FabricationError as error:
             first = first or error
             continue
@@ -315,18 +321,34 @@ class MadePieces:
     job: AssemblyJob
     verdict: Verdict
 
-    @cached_property
-    def times(self) -> CutTimes:
-        """Time of cutting all beds, one after the other."""
-        return total_times(self.job.work(bed).times for bed in self.job.beds)
+    @property
+    def report(self) -> PinnedReport:
+        """Findings of the check of the pieces."""
+        return self.made.report
 
     @cached_property
+    def works(self) -> tuple[Work, ...]:
+        """Length and time of the cuts of each bed."""
+        return tuple(self.job.work(bed) for bed in self.job.beds)
+
+    @cached_property
+    def flat_size_mm(self) -> tuple[float, float]:
+        """Width and height of the flat assembly."""
+        left, bottom, right, top = self.made.plan.flat.bounds
+        return right - left, top - bottom
+
+    @property
     def cut_length_mm(self) -> float:
         """Of all beds."""
-        return sum(self.job.work(bed).cut_length_mm for bed in self.job.beds)
+        return sum(work.cut_length_mm for work in self.works)
+
+    @property
+    def seconds(self) -> float:
+        """Estimated time of cutting all beds, without changing the sheets."""
+        return sum(work.times.total for work in self.works)
 
 
-def pieces_of(request: CutRequest, verifications: Sequence[Verification] = ()) -> MadePieces:
+def pieces_of(request: CutRequest) -> MadePieces:
     """Make, check and judge the pieces of a pinned design.
 
     Raises
@@ -361,7 +383,23 @@ def pieces_of(request: CutRequest, verifications: Sequence[Verification] = ()) -
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
-    return MadePieces(made, job, judge_assembled(request.candidate, made, verifications))
+    return MadePieces(made, job, judge_assembled(request.candidate, made))
+
+
+def writes_pieces(output: Output) -> bool:
+    """Whether an output of a pinned design is the folder of its pieces: for cut files, no pictures."""
+    kind = output.path.suffix.lower()
+    return output.name is not None or not kind or any(one.extension == kind and one.cuts for one in FILE_KINDS)
+
+
+def judged_pieces(request: CutRequest) -> Verdict:
+    """Judge a pinned design, also one whose pieces cannot be made."""
+    from kirigami_studio.studio.verdict import refused
+
+    try:
+        return pieces_of(request).verdict
+    except (FabricationError, UsageError) as error:
+        return refused(error)
 
 
 def written_pieces(request: CutRequest, output: Output) -> ExportedFiles:
@@ -552,7 +590,7 @@ def exporting(
     from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
-    if request.is_pinned and (output.name is not None or kind_of(path.suffix).cuts or not path.suffix):
+    if request.is_pinned and writes_pieces(output):
         yield written_pieces(request, output)
         return
     if output.name is None:

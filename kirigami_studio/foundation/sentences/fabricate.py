@@ -307,9 +307,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The cuts cover {width_mm:.1f} x {height_mm:.1f} mm, but the machine reaches {bed_width_mm:g} x "
         "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."
     ),
+    "construction.pinned": mark("{material}: made of two layers of pieces that turn on pins ({fastener})."),
     "plan.material_does_not_hold": mark(
-        "{material}: one sheet cannot close, its connectors break whatever their style and width. Two pinned layers "
-        "can (not built yet). For one sheet cut film, paper or polypropylene."
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Two layers on pins "
+        "can: choose that construction. For one sheet cut film, paper or polypropylene."
     ),
     "plan.material_needs_backing": mark(
         "{material}: one sheet cannot close, its connectors break whatever their style and width. Tiles of it glued on "

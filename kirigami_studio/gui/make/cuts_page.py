@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.gui.make.beds_view import BedsView
 from kirigami_studio.gui.make.cut_items import CutSteps, cut_steps
 from kirigami_studio.gui.make.cut_view import CutOverlay, CutView
 from kirigami_studio.gui.make.fabrication_panel import sheets_of
@@ -28,7 +29,7 @@ from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
-    from kirigami_studio.studio.making import Planned
+    from kirigami_studio.studio.making import MadePieces, Planned
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0
@@ -58,7 +59,8 @@ class CutsPage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._plan: CutPlan | None = None
-        self.view = CutView()
+        self._pieces: MadePieces | None = None
+        self.view, self.beds = CutView(), BedsView()
         self.problems = ProblemList()
         self.hinges = HingeBar()
         self.bar = CutBar()
@@ -72,6 +74,8 @@ class CutsPage(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
         column.addWidget(self.view, 1)
+        column.addWidget(self.beds, 1)
+        self.beds.hide()
         for part in (self.problems, self.hinges, self.bar):
             column.addWidget(part)
         self._connect()
@@ -96,6 +100,9 @@ class CutsPage(QWidget):
     @property
     def summary(self) -> tuple[str, ...]:
         """What the header says, longest first."""
+        if self._pieces is not None:
+            pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.job.beds)
+            return (tr("{pieces} pieces  ·  {beds} beds", pieces=pieces, beds=beds),)
         if self._plan is None:
             return ()
         size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm
@@ -110,8 +117,19 @@ class CutsPage(QWidget):
         )
         return long, tr("{size}  ·  kerf {kerf_mm:g} mm", size=size, kerf_mm=kerf_mm), size
 
+    def show_pieces(self, made: MadePieces | None) -> None:
+        """Show the beds of a pinned design in the place of a plan; None shows the plan again."""
+        self._pieces = made
+        self.beds.show_pieces(made)
+        self.beds.setVisible(made is not None)
+        for part in (self.view, self.hinges, self.bar):
+            part.setVisible(made is None)
+        if made is not None:
+            self.problems.show_problems(made.report.problems)
+
     def show_plan(self, planned: Planned | None) -> None:
         """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
+        self.show_pieces(None)
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm

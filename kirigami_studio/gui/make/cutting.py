@@ -32,6 +32,7 @@ from kirigami_studio.studio.making import (
     ANIMATION,
     CutRequest,
     ExportedFiles,
+    MadePieces,
     ManyPages,
     Motion,
     Output,
@@ -54,15 +55,15 @@ TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
 class CutPlanner(QObject):
     """Keeps the cut plan of the design on the stage up to date."""
 
-    planned = Signal(object)  #: Planned, or None without a design
-    answered = Signal(CutRequest, Planned)  #: what was to be planned, and its plan
+    planned = Signal(object)  #: Planned or MadePieces, or None without a design
+    answered = Signal(CutRequest, object)  #: what was to be planned, and the same
     refused = Signal(str)
     not_planned = Signal(CutRequest, str)  #: what was to be planned, and why it cannot be
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
-        self._job = LatestJob[Planned](session.queue)
+        self._job = LatestJob[Planned | MadePieces](session.queue)
         self._wanted: CutRequest | None = None
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
@@ -108,7 +109,7 @@ class CutPlanner(QObject):
         callbacks = JobCallbacks(partial(self._take, self._wanted), on_failed=partial(self._refuse, self._wanted))
         self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
 
-    def _take(self, request: CutRequest, made: Planned) -> None:
+    def _take(self, request: CutRequest, made: Planned | MadePieces) -> None:
         self.planned.emit(made)
         self.answered.emit(request, made)
 
@@ -212,7 +213,10 @@ class DesignExporter(QObject):
 
     def _report(self, exported: ExportedFiles) -> None:
         path, made = exported.path, exported.planned
-        if made is None:
+        if exported.pieces is not None:
+            self._session.set_status(tr("Exported {path}.", path=path))
+            message = message_of_pieces(path, exported.pieces, exported.verdict)
+        elif made is None:
             self._session.set_status(tr("Exported {path}.", path=path))
             message = Message(picture_sentence(exported), Tone.DONE, str(path))
         else:
@@ -294,6 +298,23 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)
+
+
+def message_of_pieces(path: Path, pieces: MadePieces, verdict: Verdict | None) -> Message:
+    """Say which files of pieces were written, and whether they would work."""
+    details = "\n".join([str(path), *(() if verdict is None else verdict.lines)])
+    if verdict is not None and verdict.problems:
+        level, text = verdict.level.words, verdict.problems[0].text
+        sentence = tr("{name} exported. {level}: {text}", name=path.name, level=level, text=text)
+        return Message(sentence, Tone.WARNING, details)
+    sentence = tr(
+        "Folder “{name}” exported and checked: {pieces} pieces, {pins} pins, {beds} beds, no faults.",
+        name=path.name,
+        pieces=len(pieces.made.assembly.pieces),
+        pins=len(pieces.made.assembly.hinges),
+        beds=len(pieces.job.beds),
+    )
+    return Message(sentence, Tone.DONE, details)
 
 
 class FabricationEditor:

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.make.machine_chooser import MachineChooser
@@ -40,13 +41,13 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
     from kirigami_studio.gui.make.library_editors import MachineEditor
-    from kirigami_studio.studio.making import Planned
+    from kirigami_studio.studio.making import MadePieces, Planned
 
 #: Settings that are shown at once.
 LENGTHS = ("width_mm", "connector_mm", "kerf_mm")
@@ -107,10 +108,11 @@ class FabricationPanel(Card):
             "editMaterials", "material", tr("Copy, edit and calibrate materials (Ctrl+M).")
         )
         self.edit_materials.clicked.connect(self.materials_wanted)
-        self.material_row = self._material_row()
         self.form = Form(FabricationSettings, 82, parent=self)
         self.form.changed.connect(self.changed)
         self.form.edited.connect(self.edited)
+        self.construction = self.form.choice("construction")
+        self.material_row = self._material_row()
         self.lengths = {name: self.form.decimal(name) for name in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
@@ -190,14 +192,16 @@ class FabricationPanel(Card):
             (
                 (tr("Machine"), self.machine, self.edit_machines),
                 (tr("&Material"), self.material, self.edit_materials),
+                (tr("Construction"), self.construction, None),
             )
         ):
             caption = QLabel(text)
             caption.setObjectName("muted")
             caption.setBuddy(box)
             table.addWidget(caption, line, 0)
-            table.addWidget(box, line, 1)
-            table.addWidget(button, line, 2)
+            table.addWidget(box, line, 1, 1, 1 if button is not None else 2)
+            if button is not None:
+                table.addWidget(button, line, 2)
         return row
 
     def _edit_machines(self) -> None:
@@ -263,6 +267,9 @@ class FabricationPanel(Card):
             "kerf_mm": settings.kerf_mm if settings.kerf_mm is not None else (material.kerf_mm if material else 0.0),
         }
         self.form.show(shown)
+        self.construction.choose(settings.construction)
+        pinned = material is not None and construction_for(settings) is Construction.PINNED
+        self.lengths["connector_mm"].setEnabled(not pinned)
         self.options.show_settings(settings)
         extension = ".pdf" if material is not None and material.by_hand else ".dxf"
         if settings.machine:
@@ -298,6 +305,29 @@ class FabricationPanel(Card):
         self.numbers["length"].setToolTip(format_slots(planned))
         size = texts["size"] if copies == 1 else sheets_of(plan)
         self._sum_up(size, copies * len(plan.paths), planned.removed_share)
+
+    def show_pieces(self, made: MadePieces) -> None:
+        """Show the amount of pieces, pins and cuts of a pinned design."""
+        self.exports.allow(cuts=True, pictures=True)
+        assembly, works, beds = made.made.assembly, made.works, made.job.beds
+        pieces, pins = len(assembly.pieces), len(assembly.hinges)
+        cuts = sum(len(bed.pieces) + sum(len(one.holes) for one in bed.pieces) for bed in beds)
+        texts = {
+            "size": readable_size(*made.flat_size_mm),
+            "slits": f"{cuts}",
+            "length": readable_length(made.cut_length_mm),
+            "time": readable_range(sum(work.times.low for work in works), sum(work.times.high for work in works)),
+            "pieces": tr("{pieces} + {pins} pins", pieces=pieces, pins=pins),
+            "ligament": tr("{width_mm:.2f} mm", width_mm=made.report.least_neck_mm),
+        }
+        for key, text in texts.items():
+            self.numbers[key].setText(text)
+            self.numbers[key].setToolTip("")
+        self.options.rows.setText("")
+        summary = tr("{size}  ·  {pieces} pieces, {pins} pins", size=texts["size"], pieces=pieces, pins=pins)
+        self._summaries = ("", summary)
+        self.summary.setToolTip("")
+        self._show_summary()
 
     def show_verdict(self, state: VerdictState) -> None:
         """Show what is to be expected of the sheet, and why: the same list as in the banner."""

@@ -16,7 +16,7 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.as_cut import AsCutEstimates
 from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.project.document import Document
-from kirigami_studio.studio.making import Planned
+from kirigami_studio.studio.making import MadePieces, Planned
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.fixes import Fix
@@ -100,9 +100,13 @@ class FabricationPresenter(QObject):
             self._session.apply(fix.edit(self._session.document))
             self._session.history.end_drag()
 
-    def _show_plan(self, planned: Planned | None) -> None:
-        self._panel.show_plan(planned)
-        self._cuts.show_plan(planned)
+    def _show_plan(self, made: Planned | MadePieces | None) -> None:
+        if made is None or isinstance(made, Planned):
+            self._panel.show_plan(made)
+            self._cuts.show_plan(made)
+        else:
+            self._panel.show_pieces(made)
+            self._cuts.show_pieces(made)
 
     def _show_refusal(self, sentence: str) -> None:
         self._panel.show_refusal(sentence)

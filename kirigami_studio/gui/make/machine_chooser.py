@@ -14,6 +14,7 @@ from kirigami_studio.settings.fabrication import (
     machine_changes,
     machine_for,
     material_changes,
+    note_before_run,
     stored_material,
 )
 
@@ -73,8 +74,8 @@ class MachineChooser(QObject):
                 thickness_mm=material.thickness_mm,
                 note=tr(material.note),
             )
-            limits = material.limits_note
-            self.material.setToolTip(about if limits is None else f"{limits.text}\n{about}")
+            note = note_before_run(settings)
+            self.material.setToolTip(about if note is None else f"{note.text}\n{about}")
             cutter = machine or machine_for(settings)
             self.machine.setToolTip(_about_machine(cutter))
         return material
@@ -95,9 +96,9 @@ class MachineChooser(QObject):
                 for key, _ in listed:
                     self.material.addItem("", key)
         for row, (_, material) in enumerate(listed):
-            limits = material.limits_note
+            note = note_before_run(FabricationSettings(material=material.key))
             self.material.setItemText(row, tr(material.name))
-            self.material.setItemData(row, None if limits is None else limits.text, Qt.ItemDataRole.ToolTipRole)
+            self.material.setItemData(row, None if note is None else note.text, Qt.ItemDataRole.ToolTipRole)
         return offered
 
     def _take_machine(self, index: int) -> None:

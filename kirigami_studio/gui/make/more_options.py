@@ -6,11 +6,13 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
 from kirigami_studio.gui.widgets.form import Form
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, pin_sizes
 
 
 class MoreOptions(QWidget):
@@ -67,7 +69,7 @@ class MoreOptions(QWidget):
         marks.addWidget(self.engrave)
         marks.addWidget(self.markers)
         table.addLayout(marks, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
-        elsewhere = ("width_mm", "connector_mm", "kerf_mm")  # above, in the panel
+        elsewhere = ("width_mm", "connector_mm", "kerf_mm", "construction")  # above, in the panel
         for line, row in enumerate([*self.cuts.remaining(), *self.files.remaining(elsewhere)], 5):
             table.addLayout(row, line, 0, 1, 4)
         for column in range(4):
@@ -89,8 +91,22 @@ class MoreOptions(QWidget):
         """Show the document's choices without reporting them as gestures."""
         self.cuts.show_settings(settings.options)
         self.files.show_settings(settings)
+        self._show_pins(settings)
         self.tab_mm.setEnabled(settings.options.tabs > 0)
         self.copy_gap.setEnabled(settings.options.copies != 1)
+
+    def _show_pins(self, settings: FabricationSettings) -> None:
+        """Show the sizes that pinned and backed sheets have, where the sheet is one."""
+        try:
+            construction, sizes = construction_for(settings), pin_sizes(settings)
+        except KirigamiError:  # its material is gone, or its ears are; the plan says so
+            return
+        self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm})
+        pinned = construction is Construction.PINNED
+        for name in ("fastener", "pin_mm", "ear_mm"):
+            self.files.fields[name].setEnabled(pinned)
+        self.files.fields["clearance_mm"].setEnabled(pinned or construction is Construction.PRINTED)
+        self.files.fields["gap_mm"].setEnabled(construction is Construction.BACKED)
 
     def _show_content(self, shown: bool) -> None:
         self.content.setVisible(shown)

@@ -19,7 +19,7 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import request_for
-from kirigami_studio.studio.making import CutRequest, ExportedFiles, Planned, fixing, judging
+from kirigami_studio.studio.making import CutRequest, ExportedFiles, MadePieces, Planned, fixing, judging
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -114,15 +114,23 @@ class VerdictKeeper(QObject):
         self._drop()
         self._say(UNKNOWN if self._session.stage is None else PENDING)
 
-    def take_plan(self, request: CutRequest, made: Planned) -> None:
-        """The cuts of a design are planned and checked."""
+    def take_plan(self, request: CutRequest, made: Planned | MadePieces) -> None:
+        """The cuts or the pieces of a design are planned and checked; pieces are judged already."""
         stage = self._session.stage
-        if stage is not None and stage.candidate == request.candidate:
+        if stage is None or stage.candidate != request.candidate:
+            return
+        if isinstance(made, Planned):
             self._planned = request, made
             self._judge()
+            return
+        self._drop()
+        self.judged.emit(request, made.verdict)
+        self._say(VerdictState(made.verdict))
 
     def take_export(self, exported: ExportedFiles) -> None:
         """Files were written and read back: the verdict answers for them, too."""
+        if exported.pieces is not None and exported.verdict is not None and self.state.known:
+            self._say(replace(self.state, verdict=exported.verdict))
         if exported.planned is None or exported.verdict is None:
             return
         self._exported = exported.planned.plan, exported.verdict

@@ -17,7 +17,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.sheet_size import cut_for
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import one_sheet
-from kirigami_studio.studio.making import CutRequest, Estimated, Planned, estimating, simulating
+from kirigami_studio.studio.making import CutRequest, Estimated, MadePieces, Planned, estimating, simulating
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.material import Material
@@ -88,10 +88,13 @@ class AsCutReader(QObject):
         self._drop()
         self._say(UNKNOWN if self._session.stage is None else BUSY)
 
-    def read(self, request: CutRequest, made: Planned) -> None:
-        """Close a sheet whose cuts are planned, unless that was done before."""
+    def read(self, request: CutRequest, made: Planned | MadePieces) -> None:
+        """Close a sheet whose cuts are planned, unless that was done before; pins have nothing to simulate."""
         stage = self._session.stage
         if stage is None or stage.candidate != request.candidate:
+            return
+        if not isinstance(made, Planned):
+            self.forget()
             return
         self._job.stop()
         self._candidate = request.candidate

@@ -44,6 +44,7 @@ from kirigami_studio.gui.stage.layout_labels import (
     room_in,
     smallest_parts,
 )
+from kirigami_studio.gui.stage.piece_items import ShownPieces
 from kirigami_studio.gui.stage.void_gestures import VoidGestures
 from kirigami_studio.gui.stage.void_items import VoidShapes, steady
 from kirigami_studio.gui.widgets.canvas import Canvas
@@ -74,6 +75,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
+    from kirigami_studio.studio.making import MadePieces
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)
@@ -169,6 +171,7 @@ class LayoutView(Canvas):
         self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self._artwork: ShownArtwork | None = None
+        self._pieces: ShownPieces | None = None
         self._grips = GRIPS_UNKNOWN
         self._overstretched = 0
         self._areas: Mismatch | None = None
@@ -228,7 +231,7 @@ class LayoutView(Canvas):
         ``second`` is how this very sheet shows a second target.
         """
         self._design, self._target, self._cut, self._second = design, target, None, None
-        self._areas, self._ideal_areas, self._faults = None, None, ()
+        self._areas, self._ideal_areas, self._faults, self._pieces = None, None, (), None
         before, self._bounds = self._bounds, None
         if design is not None:
             self._rigid = RigidFacts.of(design)
@@ -250,7 +253,7 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self._design, self._cut, self._second = design, None, None
+        self._design, self._cut, self._second, self._pieces = design, None, None, None
         self._areas, self._ideal_areas, self._faults, self._contact = None, None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
@@ -260,6 +263,13 @@ class LayoutView(Canvas):
         if sheet is not self._cut:
             self._cut = sheet
             self.update()
+
+    def show_pieces(self, made: MadePieces | None) -> None:
+        """Draw the pieces of a pinned design in the place of its panels; None draws the panels again."""
+        self._pieces = None if made is None or self._design is None else ShownPieces.of(made, self._design)
+        if self._pieces is not None and self._bounds is not None:
+            self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))
+        self.update()
 
     def set_as_cut(self, on: bool) -> None:
         """Draw the panels as the cuts leave them, as far as the sheet comes, or those of the ideal motion."""
@@ -317,6 +327,8 @@ class LayoutView(Canvas):
     @property
     def mm_per_unit(self) -> float:
         """Millimetres of one world unit; 0 while there is no design."""
+        if self._pieces is not None:
+            return self._pieces.mm_per_world
         return 0.0 if self._design is None else self._design.mm_per_world(self._width_mm)
 
     @property
@@ -433,6 +445,9 @@ class LayoutView(Canvas):
             if self._target is not None:
                 paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
+        if self._pieces is not None:
+            self._paint_pieces(painter, transform, self._pieces)
+            return
         pose = self.shown_as_cut
         nodes = self._design.nodes(self._phi) if pose is None else pose.nodes
         field = self._design.deployment.field
@@ -459,6 +474,15 @@ class LayoutView(Canvas):
         self._paint_grips(painter, transform)
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
+
+    def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: ShownPieces) -> None:
+        self._areas, self._faults = None, ()
+        pieces.paint(painter, self._phi, transform, self.palette_)
+        nearness = self._nearness
+        if self._target is not None and Overlay.TARGET in self._overlays:
+            painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
+            paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
+            painter.setOpacity(1.0)
 
     def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
         """The artwork, unless it belongs to another design, hides an overlay, or cannot be drawn as lines."""

@@ -194,7 +194,7 @@ class Presenters(QObject):
         chosen.refitting.busy_changed.connect(stage.voids.show_fitting)
         services.as_cut.changed.connect(stage.show_as_cut)
         services.artwork.painted.connect(stage.view.show_artwork)
-        services.cutting.planned.connect(stage.show_title)
+        services.cutting.planned.connect(stage.show_made)
         stage.switches_changed.connect(self.voids.refresh)
 
     def _connect_pages(self) -> None:

@@ -24,6 +24,7 @@ from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.making import MadePieces, Planned
 from kirigami_studio.studio.two_states import TwoStates
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
@@ -395,6 +396,11 @@ class StagePanel(Card):
         )
         self.plots.set_target(shown.design.phi_target)
         self._tell_as_cut()
+
+    def show_made(self, made: Planned | MadePieces | None) -> None:
+        """The cuts or the pieces of the design are planned: draw pieces, and say so in the header."""
+        self.view.show_pieces(made if isinstance(made, MadePieces) else None)
+        self.show_title()
 
     def show_title(self) -> None:
         """Show what the header says of the design or of its cuts."""

@@ -39,6 +39,7 @@ from kirigami_studio.gui.widgets.card import ToolButton, muted_label
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.preferences import MotionPreference, TypedSize
+from kirigami_studio.settings.fabrication import note_before_run
 from kirigami_studio.studio.projects import Pair, reading_sample
 
 #: Seconds from flat to open and back: slower than a design is played, so that it draws no eye from the work.
@@ -280,7 +281,8 @@ class WelcomePresenter(QObject):
             session.restart(changed, session.path)
         self._page.question.hide()
         begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
-        session.set_status(begin if known.limits_note is None else known.limits_note.text)
+        note = note_before_run(cut)
+        session.set_status(begin if note is None else note.text)
 
     def decline(self) -> None:
         """Do not ask again."""

@@ -1,0 +1,83 @@
+"""The beds of a pinned design side by side: pieces where they are cut, with holes and numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtWidgets import QWidget
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.stage.piece_items import paint_piece
+from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
+
+if TYPE_CHECKING:
+    from kirigami_studio.export.cut_bed import CutBed
+    from kirigami_studio.studio.making import MadePieces
+
+#: Between two beds, in widths of a bed; height of a caption (pixels).
+BETWEEN, CAPTION = 0.06, 16.0
+#: Pieces have numbers from so many pixels a millimetre on, in boxes of twice this size (pixels).
+NUMBERED, HALF_LABEL = 0.8, QPointF(30.0, 10.0)
+
+
+class BedsView(Canvas):
+    """Draws the nested pieces of each bed."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("bedsView")
+        self.setAccessibleName(tr("Beds of the pieces"))
+        self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
+        self._beds: tuple[CutBed, ...] = ()
+        self._room = (0.0, 0.0)
+        self._places: list[FloatArray] = []
+
+    def show_pieces(self, made: MadePieces | None) -> None:
+        """Show other beds; None shows nothing."""
+        self._beds = () if made is None else made.job.beds
+        if made is not None:
+            self._room = made.job.machine.reach_mm
+            if min(self._room) <= 0.0:  # a hand has no bed
+                self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
+        columns = max(1, round(len(self._beds) ** 0.5))
+        width, height = (1.0 + BETWEEN) * self._room[0], (1.0 + BETWEEN) * self._room[1]
+        self._places = [
+            np.array([number % columns * width, -(number // columns) * height]) for number in range(len(self._beds))
+        ]
+        self.update()
+
+    def scene_bounds(self) -> Bounds | None:
+        if not self._beds:
+            return None
+        corners = np.concatenate([[place, place + self._room] for place in self._places])
+        return Bounds.of(corners)
+
+    def empty_state(self) -> tuple[str, str, str]:
+        return "info", tr("No cuts yet"), tr("Choose a design to see its pieces.")
+
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
+        for bed, place in zip(self._beds, self._places, strict=True):
+            left, top = transform.to_pixels(place + np.array([0.0, self._room[1]])).tolist()
+            size = transform.scale * np.array(self._room)
+            painter.setPen(QPen(QColor(self.palette_.border), 1.0))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(left, top, *size.tolist()))
+            for cuts, at in bed.placed:
+                piece = cuts.piece
+                ring = transform.to_pixels(at.put(piece.outline) + place)
+                holes = np.array([hole.centre for hole in piece.holes]).reshape(-1, 2)
+                centres = transform.to_pixels(at.put(holes) + place)
+                paint_piece(painter, piece, ring, centres, transform.scale, self.palette_)
+                if transform.scale > NUMBERED:
+                    painter.setPen(QColor(self.palette_.text))
+                    middle = QPointF(*transform.to_pixels(at.put(np.array([piece.label_at])) + place)[0].tolist())
+                    box = QRectF(middle - HALF_LABEL, middle + HALF_LABEL)
+                    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, piece.id)
+            painter.setPen(QColor(self.palette_.muted))
+            words = tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number)
+            painter.drawText(QPointF(left, top - 0.3 * CAPTION), words)
