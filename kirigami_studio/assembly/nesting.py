@@ -7,8 +7,10 @@ rectangles.  It has no random numbers, so the same shapes always lie in the same
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
+from typing import Any
 
 import numpy as np
 import rectpack
@@ -21,10 +23,9 @@ from kirigami_studio.lattice.deployment import rotate
 #: rectpack counts whole numbers: units to the mm.
 UNITS = 1000
 #: Ways of packing that are tried; the one with the fewest beds and the least of the last one is taken.
-METHODS = (rectpack.MaxRectsBaf, rectpack.MaxRectsBssf, rectpack.MaxRectsBl, rectpack.SkylineBlWm)
-ORDERS = (rectpack.SORT_AREA, rectpack.SORT_LSIDE, rectpack.SORT_SSIDE)
-#: By how much a bed without an end is made larger until it holds everything, and where it begins: share of the area
-#: of all rectangles.
+WAYS = tuple(product((rectpack.MaxRectsBaf, rectpack.MaxRectsBl), (rectpack.SORT_AREA, rectpack.SORT_SSIDE)))
+#: By how much a block is made larger until it holds everything, and where it begins: shares of the area of all
+#: rectangles.
 GROWTH, BEGIN = 1.04, 1.02
 
 
@@ -95,7 +96,7 @@ class _Rectangle:
 
 
 def nested(outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: float, margin_mm: float = 0.0) -> list[Bed]:
-    """Lay shapes on beds.
+    """Lay shapes on beds, those of the last one close together.
 
     Parameters
     ----------
@@ -139,39 +140,48 @@ def _fits(size: Sequence[int], room: Sequence[float]) -> bool:
 _Packed = list[list[tuple[int, int, int, int, int]]]
 
 
-def _packed(rectangles: Sequence[tuple[int, int, int]], room: Sequence[float]) -> _Packed:
-    """The best packing of all that are tried."""
-    found = []
-    for method in METHODS:
-        for order in ORDERS:
-            for width, height in _bins(rectangles, room):
-                endless = min(room) == 0.0
-                packer = rectpack.newPacker(pack_algo=method, sort_algo=order, rotation=True)
-                for rectangle in rectangles:
-                    packer.add_rect(*rectangle)
-                packer.add_bin(width, height, 1 if endless else len(rectangles))
-                packer.pack()
-                if sum(len(bed) for bed in packer) == len(rectangles):
-                    found.append([[(r.x, r.y, r.width, r.height, r.rid) for r in bed] for bed in packer])
-                    break
-    return min(found, key=_cost)
-
-
-def _bins(rectangles: Sequence[tuple[int, int, int]], room: Sequence[float]) -> Iterator[tuple[int, int]]:
-    """Sides of the bed; of one without an end, of larger and larger ones."""
-    width, height = (math.floor(side * UNITS) for side in room)
+def _packed(rectangles: Sequence[tuple[int, int, int]], room: tuple[float, ...]) -> _Packed:
+    """Rectangles on as few beds as are found; what is on the last one lies in a small block, not in a long strip."""
     if min(room) > 0.0:
-        yield width, height
-        return
+        width, height = (math.floor(side * UNITS) for side in room)
+        tried = (_tried(rectangles, way, width, height, len(rectangles)) for way in WAYS)
+        beds = min((one for one in tried if one is not None), key=_cost)
+        last = {number for *_, number in beds[-1]}
+        block = _block([one for one in rectangles if one[2] in last], width, height)
+        return [*beds[:-1], beds[-1] if block is None else block]
+    block = _block(rectangles, *(math.floor(side * UNITS) if side else math.inf for side in room))
+    assert block is not None  # a bed without an end has room for everything
+    return [block]
+
+
+def _tried(
+    rectangles: Sequence[tuple[int, int, int]], way: tuple[Any, Any], width: int, height: int, beds: int
+) -> _Packed | None:
+    """One way of packing; None where something found no room."""
+    packer = rectpack.newPacker(pack_algo=way[0], sort_algo=way[1], rotation=True)
+    for rectangle in rectangles:
+        packer.add_rect(*rectangle)
+    packer.add_bin(width, height, beds)
+    packer.pack()
+    found = [[(one.x, one.y, one.width, one.height, one.rid) for one in bed] for bed in packer]
+    return found if sum(map(len, found)) == len(rectangles) else None
+
+
+def _block(rectangles: Sequence[tuple[int, int, int]], width: float, height: float) -> list[Any] | None:
+    """Rectangles in the smallest square that holds them, cut to the sides of the bed; None where none does."""
     area = BEGIN * sum(wide * high for wide, high, _ in rectangles)
     longest = max(max(wide, high) for wide, high, _ in rectangles)
     while True:
-        if max(room) == 0.0:
-            side = max(math.ceil(math.sqrt(area)), longest)
-            yield side, side
-        else:
-            end = max(math.ceil(area / max(width, height)), longest)
-            yield (width, end) if width else (end, height)
+        side = max(math.sqrt(area), longest)
+        wide = min(side, width)
+        high = min(max(area / wide, longest), height)
+        wide = min(max(area / high, longest), width)
+        found = [_tried(rectangles, way, math.ceil(wide), math.ceil(high), 1) for way in WAYS]
+        packed = [one for one in found if one is not None]
+        if packed:
+            return min(packed, key=_cost)[0]
+        if wide == width and high == height:
+            return None
         area *= GROWTH
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -89,7 +90,7 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> Flo
     return moved
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class CutBed:
     """What one file cuts.
 
@@ -100,12 +101,14 @@ class CutBed:
     pieces : tuple of PieceCuts
     places : tuple of Placement
         Of each of them; the smallest coordinates of all cuts are 0.
+    order : CutOrder
     """
 
     layer: int
     number: int
     pieces: tuple[PieceCuts, ...]
     places: Bed
+    order: CutOrder = CutOrder.SHORTEST
 
     @property
     def name(self) -> str:
@@ -123,11 +126,14 @@ class CutBed:
         """Pieces with their places."""
         return tuple(zip(self.pieces, self.places, strict=True))
 
-    def strokes(self, profile: Profile, order: CutOrder) -> tuple[Stroke, ...]:
+    def strokes(self, profile: Profile) -> tuple[Stroke, ...]:
         """Everything that a file of this profile draws, in the order of cutting."""
-        return (*self._numbers(profile), *(_stroke(path, profile) for path in in_cutting_order(self._paths(), order)))
+        colour = profile.name_colour
+        numbers = () if colour is None else (Stroke(line, False, NAME_LAYER, colour) for line in self._numbers)
+        return (*numbers, *(_stroke(path, profile) for path in self._paths))
 
-    def _paths(self) -> list[CutPath]:
+    @cached_property
+    def _paths(self) -> tuple[CutPath, ...]:
         paths = []
         for cuts, place in self.placed:
             for hole in cuts.holes:
@@ -136,18 +142,17 @@ class CutBed:
                 paths.append(CutPath(np.array([centre + arm, centre - arm]), Layer.HOLES, True, bulges=np.ones(2)))
             paths += [CutPath(_rounded(place.put(ring)), Layer.HOLES, True) for ring in cuts.openings]
             paths.append(CutPath(_rounded(place.put(cuts.outline)), Layer.OUTLINE, True))
-        return paths
+        return in_cutting_order(paths, self.order)
 
-    def _numbers(self, profile: Profile) -> tuple[Stroke, ...]:
+    @cached_property
+    def _numbers(self) -> tuple[FloatArray, ...]:
         """The numbers, each after the nearest."""
-        if profile.name_colour is None:
-            return ()
         found = [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
         if not found:
             return ()
         ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
         tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
-        return tuple(Stroke(line, False, NAME_LAYER, profile.name_colour) for at in tour.order for line in found[at])
+        return tuple(line for at in tour.order for line in found[at])
 
 
 def _stroke(path: CutPath, profile: Profile) -> Stroke:
@@ -168,7 +173,11 @@ def _rounded(points: FloatArray) -> FloatArray:
 
 
 def laid_on_beds(
-    pieces: Sequence[Piece], kerf_mm: float, bed: tuple[float, float], margin_mm: float = 0.0
+    pieces: Sequence[Piece],
+    kerf_mm: float,
+    bed: tuple[float, float],
+    margin_mm: float = 0.0,
+    order: CutOrder = CutOrder.SHORTEST,
 ) -> tuple[CutBed, ...]:
     """Lay pieces on beds, those of each layer by themselves.
 
@@ -181,6 +190,8 @@ def laid_on_beds(
         0 for a side that has no end.
     margin_mm : float
         Of the bed that stays free all round.
+    order : CutOrder
+        Of the cuts on each bed.
 
     Raises
     ------
@@ -196,7 +207,7 @@ def laid_on_beds(
             points = [place.put(one.outline) for one, place in zip(here, places, strict=True)]
             low = np.concatenate(points).min(axis=0)
             found.append(
-                CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places))
+                CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places), order)
             )
     return tuple(found)
 

@@ -141,14 +141,14 @@ def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
     names = () if plan.engraving is None else plan.engraving.lines
     for name, (colour, lines) in (meant | {NAME_LAYER: (picture.NAME_COLOUR, names)}).items():
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
-        found = sum(_length_in_cell(page, part, colour) for page, part in shown)
+        found = sum(length_in_cell(page, part, colour) for page, part in shown)
         length = len(plan.copies) * sum(_chord_length(line) for line in lines)
         corners = len(plan.copies) * sum(len(line) for line in lines)
         if abs(found - length) > SAME_LENGTH * length + ROUNDING_MM * corners:
             raise ExportError("pdf.other_length", found_mm=found, planned_mm=length, layer=name)
 
 
-def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
+def length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
     """Length (mm) of one colour's lines inside the page's cell."""
     shift = to_page(part)
     lines = [LineString(line.points - shift) for line in page.lines if line.colour == colour]

@@ -54,7 +54,7 @@ def draw_pages(canvas: Any, tiling: Tiling, size: Size, about: str, draw_part: C
         low_x, low_y, high_x, high_y = part.window
         place = f"Page {number} of {count}: row {part.row + 1}, column {part.column + 1}, "
         place += f"x {low_x:.2f} to {high_x:.2f} mm, y {low_y:.2f} to {high_y:.2f} mm"
-        _draw_ruler(canvas, about, place if count > 1 else "")
+        draw_ruler(canvas, about, place if count > 1 else "")
         canvas.showPage()
 
 
@@ -123,10 +123,10 @@ def _draw_map(canvas: Any, size: Size, tiling: Tiling, about: str) -> None:
     canvas.setFont("Helvetica", 9)
     text = f"Map of {len(tiling.tiles)} pages, {tiling.rows} x {tiling.columns}: cut along the dashed lines, lay cross"
     canvas.drawString(MARGIN_MM * mm, (page[1] - MARGIN_MM) * mm, f"{text} upon cross, and tape.")
-    _draw_ruler(canvas, about, "")
+    draw_ruler(canvas, about, "")
 
 
-def _draw_ruler(canvas: Any, about: str, place: str) -> None:
+def draw_ruler(canvas: Any, about: str, place: str) -> None:
     left, base = MARGIN_MM, MARGIN_MM
     canvas.setLineWidth(LINE_MM * mm)
     stroke_colour(canvas, picture.INK)

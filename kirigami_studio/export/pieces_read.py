@@ -189,6 +189,18 @@ def _number_finding(strokes: Sequence[Stroke], cuts: Sequence[Stroke], kerf_mm: 
 # put together -----------------------------------------------------------------------------------------------------
 
 
+def same_pieces(one: Mapping[str, FoundPiece], other: Mapping[str, FoundPiece], tolerance_mm: float) -> bool:
+    """Whether all points of pieces agree within a tolerance."""
+    if list(one) != list(other):
+        return False
+    alike = shapely.equals_exact([piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm)
+    holes, others = (
+        np.array([(*hole.centre, hole.diameter_mm) for piece in pieces.values() for hole in piece.holes])
+        for pieces in (one, other)
+    )
+    return bool(np.all(alike)) and holes.shape == others.shape and bool(np.all(np.abs(holes - others) <= tolerance_mm))
+
+
 def motion_findings(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]) -> list[Finding]:
     """Whether pieces that were read from files move as their record says.
 

@@ -350,6 +350,34 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut, or has its colour. Export again."
     ),
+    "verify.pieces_found": mark_n(
+        "{count} piece is there, and its outline and holes are right within {miss_um:.2f} µm ({piece}).",
+        "All {count} pieces are there once, and their outlines and holes are right within {miss_um:.2f} µm (the worst is "
+        "{piece}).",
+    ),
+    "verify.pieces_differ": mark(
+        "Piece {piece} has an outline or a hole that is {miss_um:.2f} µm from its place. Export it again."
+    ),
+    "verify.pieces_lost": mark("The file has {count} outlines, not those of the {planned} pieces. Export it again."),
+    "verify.pieces_open": mark("The file has a cut that is not closed: a piece would not come free. Export it again."),
+    "verify.numbers": mark("Numbers are engraved first, {clear_mm:.2f} mm or more from every cut."),
+    "verify.numbers_cut": mark(
+        "A number comes within {clear_mm:.2f} mm of a cut, or is engraved after one. Export it again."
+    ),
+    "verify.pins_meet": mark(
+        "The holes of all {pins} pins lie on each other within {miss_um:.2f} µm at {angles} angles."
+    ),
+    "verify.pins_miss": mark(
+        "The two holes of a pin lie {miss_um:.2f} µm apart at one of {angles} angles. Export it again."
+    ),
+    "verify.pieces_pass": mark("Pieces of one layer pass each other at all {angles} angles."),
+    "verify.pieces_collide": mark(
+        "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more clearance or "
+        "smaller ears."
+    ),
+    "verify.motion_as_planned": mark("Pieces, pins and their places at {angles} angles are as planned."),
+    "verify.motion_differs": mark("Pieces, pins or their places at {angles} angles are not as planned. Export it again."),
+    "assembly.not_as_meant": mark("Nothing was written, for {name:.120} is not as it was meant: {finding}"),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
     ),

@@ -1,0 +1,503 @@
+"""The assembly sheet: what the pieces are put together to, in which order, and the flat sheet at 1:1 to lay them on.
+
+The first page shows the flat and the opened sheet, the parts and the steps, the next ones the pins row by row and where
+pieces lie on their beds.  The last ones show the flat sheet at true size: one large page, or pages of a paper size.
+The written file is read back: page sizes, and the length of the outlines at true size.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString, Polygon
+
+from kirigami_studio import __version__
+from kirigami_studio.assembly.pieces import Assembly, Hinge
+from kirigami_studio.export import picture
+from kirigami_studio.export.cut_bed import CutBed
+from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, PAPERS, Paper, Size, Tile, Tiling, find_paper, tile
+from kirigami_studio.export.pdf import ROUNDING_MM, SAME_LENGTH, length_in_cell, read_pages
+from kirigami_studio.export.pdf_library import Canvas, mm
+from kirigami_studio.export.pdf_pages import (
+    LINE_MM,
+    RULER_MM,
+    SAME_SIZE_MM,
+    draw_line,
+    draw_pages,
+    draw_ruler,
+    stroke_colour,
+    to_page,
+)
+from kirigami_studio.export.picture import Colour
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.files import write_atomically
+
+#: Fill and edge of the pieces of each layer: the first solid, the other lighter.
+FILLS: Mapping[int, Colour] = {1: picture.PANEL, 2: (236, 242, 248)}
+EDGES: Mapping[int, Colour] = {1: picture.PANEL_EDGE, 2: (120, 146, 178)}
+PIN: Colour = picture.TARGET_EDGE
+#: Corners nearer than this (mm) to the line of their neighbours are left out of pictures.
+UNSEEN_MM = 0.02
+#: Corners of a pin's circle.
+PIN_CORNERS = 24
+#: Sizes of letters (points), and distance of lines (mm).
+TITLE_POINTS, HEAD_POINTS, TEXT_POINTS, LINE_STEP_MM = 17, 11, 8.5, 4.3
+#: Numbers in pictures are this share of a piece's room, and at least and at most so large (points).
+NUMBER_SHARE, LEAST_POINTS, MOST_POINTS = 0.55, 3.0, 12.0
+#: Letters that fit into a mm of a line of text.
+LETTERS_PER_MM = 0.62
+GAP_MM = 8.0
+#: Pins that a page lists in a column, columns on a page, and pictures of beds in a row.
+COLUMNS, BEDS_IN_A_ROW = 2, 2
+STEPS = (
+    "Engraved numbers and bars face you in both layers; the bar is below the number. Without engraving, number the "
+    "pieces by the pictures of the beds.",
+    "Lay the pieces of layer 2 (light) on the page at true size, each on its number.",
+    "Lay the pieces of layer 1 (dark) over them, hole on hole.",
+    "Put in the pins row by row from the top, in the order of the list; leave them loose.",
+    "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn.",
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AssemblySheet:
+    """What the sheet shows.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    beds : sequence of CutBed
+    about : mapping of str to str
+        ``title`` and ``subject`` of the document.
+    lines : sequence of str
+        The parts list.
+    target : (L, 2) float or None, mm
+        Target outline behind the opened sheet.
+    """
+
+    assembly: Assembly
+    beds: Sequence[CutBed]
+    about: Mapping[str, str]
+    lines: Sequence[str]
+    target: FloatArray | None = None
+
+
+def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
+    """Write the assembly sheet and read it back.
+
+    Parameters
+    ----------
+    sheet : AssemblySheet
+    path : Path
+    paper : str
+        "none" for one large page with the flat sheet, the others in A4; or a paper size.
+
+    Raises
+    ------
+    ExportError
+        Unknown paper, too many pages, an unwritable place, or a file that did not read back.
+    """
+    upright = find_paper(paper) or PAPERS[Paper.A4]
+    assert upright is not None
+    flat = _Drawing.of(sheet.assembly, math.pi)
+    tiling = _one_page(flat.size) if find_paper(paper) is None else tile(flat.size, paper)
+    stream = BytesIO()
+    make_canvas: Any = Canvas
+    canvas = make_canvas(stream, pagesize=tuple(side * mm for side in upright), invariant=1, pageCompression=0)
+    canvas.setTitle(sheet.about["title"])
+    canvas.setSubject(sheet.about["subject"])
+    canvas.setCreator(f"Kirigami Studio {__version__}")
+    canvas.setLineJoin(1)
+    _first_page(canvas, sheet, flat, upright)
+    before = 1 + _pages_of_pins(canvas, sheet, flat, upright) + _pages_of_beds(canvas, sheet.beds, upright)
+    canvas.setPageSize(tuple(side * mm for side in tiling.page))
+    about = f"{sheet.about['title']}, flat, at true size: {flat.size[0]:.1f} x {flat.size[1]:.1f} mm"
+    draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
+    canvas.save()
+    content = stream.getvalue()
+    write_atomically(path, content, lambda written: _verify(written, flat, tiling, [upright] * before))
+
+
+def _one_page(size: Size) -> Tiling:
+    page = (max(size[0], RULER_MM) + 2.0 * MARGIN_MM, size[1] + 2.0 * MARGIN_MM + FOOTER_MM)
+    everything = (-math.inf, -math.inf, math.inf, math.inf)
+    return Tiling(page, 1, 1, (Tile(0, 0, (0.0, 0.0, *size), everything),))
+
+
+# pictures -------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shape:
+    """A piece in a picture, mm: its rings, the outer one first, its number, and where that stands."""
+
+    layer: int
+    rings: tuple[FloatArray, ...]
+    number: str
+    at: FloatArray
+    room_mm: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawing:
+    """Pieces in a frame whose smallest coordinates are 0.
+
+    Attributes
+    ----------
+    shapes : tuple of _Shape
+        Layer 2 first, for layer 1 lies on it.
+    pins : (H, 2) float, mm
+    target : (L, 2) float or None, mm
+    size : (width, height), mm
+    """
+
+    shapes: tuple[_Shape, ...]
+    pins: FloatArray
+    target: FloatArray | None
+    size: Size
+
+    @classmethod
+    def of(cls, assembly: Assembly, phi: float, target: FloatArray | None = None) -> _Drawing:
+        """The sheet at an angle."""
+        pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
+        placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
+        everything = np.concatenate([*placed.values(), *([] if target is None else [target])])
+        low, high = everything.min(axis=0), everything.max(axis=0)
+        shapes = [
+            _Shape(
+                piece.layer,
+                (
+                    placed[piece.id] - low,
+                    *(assembly.placed(piece, ring, phi) - low for ring in piece.openings),
+                    *(
+                        assembly.placed(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE, phi) - low
+                        for hole in piece.holes
+                    ),
+                ),
+                piece.id,
+                assembly.placed(piece, np.asarray(piece.label_at, dtype=np.float64), phi) - low,
+                _room(piece.outline, piece.label_mm),
+            )
+            for piece in pieces
+        ]
+        pins = np.array([_pin_place(assembly, hinge, phi) - low for hinge in assembly.hinges]).reshape(-1, 2)
+        width, height = (high - low).tolist()
+        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height))
+
+    @classmethod
+    def of_bed(cls, bed: CutBed) -> _Drawing:
+        """A bed as it is cut."""
+        shapes = [
+            _Shape(
+                bed.layer,
+                (place.put(cuts.outline), *(place.put(ring) for ring in cuts.openings),
+                 *(place.put(hole.centre + 0.5 * hole.diameter_mm * CIRCLE) for hole in cuts.holes)),
+                cuts.piece.id,
+                place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
+                _room(cuts.piece.outline, cuts.piece.label_mm),
+            )
+            for cuts, place in bed.placed
+        ]  # fmt: skip
+        return cls(tuple(shapes), np.zeros((0, 2)), None, bed.size_mm)
+
+
+_TURN = 2.0 * np.pi * np.arange(PIN_CORNERS) / PIN_CORNERS
+CIRCLE: FloatArray = np.column_stack([np.cos(_TURN), np.sin(_TURN)])
+
+
+def _room(outline: FloatArray, label_mm: float) -> float:
+    """Height (mm) that a number may have in a picture."""
+    return max(label_mm, 0.25 * math.sqrt(abs(Polygon(outline).area)))
+
+
+def _pin_place(assembly: Assembly, hinge: Hinge, phi: float) -> FloatArray:
+    piece = assembly.by_id[hinge.pieces[0]]
+    return assembly.placed(piece, np.asarray(hinge.at[0]), phi)
+
+
+def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> None:
+    """Draw a picture at a scale with its lower left corner (2,), mm, on the page."""
+    canvas.setLineWidth(0.35 * LINE_MM * mm if scale < 1.0 else LINE_MM * mm)
+    if drawing.target is not None:
+        _fill(canvas, [corner + scale * drawing.target], picture.TARGET_FILL)
+    for shape in drawing.shapes:
+        rings = [corner + _coarse(scale * ring) for ring in shape.rings]
+        _fill(canvas, rings[:1], FILLS[shape.layer])
+        for ring in rings[1:]:
+            _fill(canvas, [ring], picture.PAPER)
+        stroke_colour(canvas, EDGES[shape.layer])
+        for ring in rings:
+            draw_line(canvas, ring, closed=True)
+    if drawing.target is not None:
+        stroke_colour(canvas, picture.TARGET_EDGE)
+        draw_line(canvas, corner + scale * drawing.target, closed=True)
+    stroke_colour(canvas, PIN)
+    for pin in drawing.pins:
+        draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)
+    for shape in drawing.shapes:
+        _number(canvas, shape, scale, corner)
+
+
+def _coarse(ring: FloatArray) -> FloatArray:
+    """A ring (L, 2), mm on the page, without corners that nobody sees."""
+    found: FloatArray = shapely.get_coordinates(shapely.simplify(shapely.LinearRing(ring), UNSEEN_MM))[:-1]
+    return found
+
+
+def _fill(canvas: Any, rings: Sequence[FloatArray], colour: Colour) -> None:
+    canvas.setFillColorRGB(*(channel / 255.0 for channel in colour))
+    path = canvas.beginPath()
+    for ring in rings:
+        (x, y), *rest = ring.tolist()
+        path.moveTo(x * mm, y * mm)
+        for x, y in rest:
+            path.lineTo(x * mm, y * mm)
+        path.close()
+    canvas.drawPath(path, stroke=0, fill=1, fillMode=1)
+
+
+def _number(canvas: Any, shape: _Shape, scale: float, corner: FloatArray) -> None:
+    points = min(MOST_POINTS, max(LEAST_POINTS, NUMBER_SHARE * shape.room_mm * scale * mm))
+    x, y = (corner + scale * shape.at).tolist()
+    _ink(canvas)
+    canvas.setFont("Helvetica", points)
+    canvas.drawCentredString(x * mm, y * mm - 0.35 * points, shape.number)
+
+
+def _ink(canvas: Any) -> None:
+    canvas.setFillColorRGB(*(channel / 255.0 for channel in picture.INK))
+
+
+def _fitting(drawing: _Drawing, box: Size) -> float:
+    """The scale at which a picture fits into a box, no larger than true size."""
+    return min(1.0, *(room / side for room, side in zip(box, drawing.size, strict=True)))
+
+
+# pages ----------------------------------------------------------------------------------------------------------------
+
+
+class _Column:
+    """Lines of text down a column of the page; mm."""
+
+    def __init__(self, canvas: Any, left: float, top: float, width: float) -> None:
+        self.canvas, self.left, self.y, self.width = canvas, left, top, width
+
+    def head(self, text: str) -> None:
+        """A heading, with room above it."""
+        self.y -= 0.5 * LINE_STEP_MM
+        self._write(text, "Helvetica-Bold", HEAD_POINTS)
+        self.y -= 0.3 * LINE_STEP_MM
+
+    def text(self, text: str, number: str = "") -> None:
+        """A paragraph, numbered or not."""
+        indent = 5.0 if number else 0.0
+        lines = textwrap.wrap(text, max(20, int((self.width - indent) * LETTERS_PER_MM)))
+        for at, line in enumerate(lines):
+            if number and at == 0:
+                self._write(number, "Helvetica", TEXT_POINTS, step=0.0)
+            self._write(line, "Helvetica", TEXT_POINTS, indent)
+
+    def _write(self, text: str, font: str, points: float, indent: float = 0.0, step: float = LINE_STEP_MM) -> None:
+        _ink(self.canvas)
+        self.canvas.setFont(font, points)
+        self.canvas.drawString((self.left + indent) * mm, self.y * mm, _printable(text))
+        self.y -= step
+
+
+def _printable(text: str) -> str:
+    """What the fonts of every reader of PDF have."""
+    return text.encode("cp1252", "replace").decode("cp1252")
+
+
+def _title(canvas: Any, text: str, page: Size) -> float:
+    """Write the title of a page, and return where the rest begins, mm."""
+    _ink(canvas)
+    canvas.setFont("Helvetica-Bold", TITLE_POINTS)
+    top = page[1] - MARGIN_MM - 6.0
+    canvas.drawString(MARGIN_MM * mm, top * mm, _printable(text))
+    return top - GAP_MM
+
+
+def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> None:
+    opened = _Drawing.of(sheet.assembly, sheet.assembly.phi_target, sheet.target)
+    top = _title(canvas, sheet.about["title"], page)
+    width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
+    room = (width, 0.42 * page[1])
+    scale = min(_fitting(flat, room), _fitting(opened, room))
+    degrees = math.degrees(sheet.assembly.phi_target)
+    height = scale * max(flat.size[1], opened.size[1])
+    for number, (drawing, words) in enumerate(((flat, "Flat"), (opened, f"Opened, {degrees:.0f} degrees"))):
+        left = MARGIN_MM + number * (width + GAP_MM)
+        _ink(canvas)
+        canvas.setFont("Helvetica-Bold", HEAD_POINTS)
+        canvas.drawString(left * mm, top * mm, words)
+        low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
+        _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
+    y = top - 4.0 - height - GAP_MM
+    _legend(canvas, y, scale)
+    column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
+    column.head("Parts")
+    for line in sheet.lines:
+        column.text(line)
+    column.head("Assembly")
+    for number, line in enumerate(STEPS, start=1):
+        column.text(line, f"{number}.")
+    _ink(canvas)
+    draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
+    canvas.showPage()
+
+
+def _legend(canvas: Any, y: float, scale: float) -> None:
+    """The signs of the pictures."""
+    x = MARGIN_MM
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
+    canvas.setLineWidth(LINE_MM * mm)
+    for layer, words in ((1, "layer 1, in front"), (2, "layer 2, behind")):
+        ring = square + (x, y)
+        _fill(canvas, [ring], FILLS[layer])
+        stroke_colour(canvas, EDGES[layer])
+        draw_line(canvas, ring, closed=True)
+        x = _words(canvas, words, x + 6.0, y)
+    stroke_colour(canvas, PIN)
+    draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
+    x = _words(canvas, "pin", x + 5.0, y)
+    _words(canvas, f"pictures at 1 : {1.0 / scale:.1f}", x, y)
+
+
+def _words(canvas: Any, words: str, x: float, y: float) -> float:
+    """Write on a line, and return where the next words may begin, mm."""
+    _ink(canvas)
+    canvas.setFont("Helvetica", TEXT_POINTS)
+    canvas.drawString(x * mm, (y + 0.6) * mm, words)
+    return float(x + canvas.stringWidth(words, "Helvetica", TEXT_POINTS) / mm + 6.0)
+
+
+def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
+    """Pins by rows of the flat sheet from the top, each row from the left.
+
+    Pins of one row of pieces and the next belong together, for they are put in side by side.
+    """
+    places = {hinge.node: _pin_place(assembly, hinge, math.pi) for hinge in assembly.hinges}
+    rows: dict[int, list[Hinge]] = {}
+    for hinge in assembly.hinges:
+        row = min(assembly.by_id[name].panel[0] for name in hinge.pieces)
+        rows.setdefault(row, []).append(hinge)
+    return [sorted(rows[row], key=lambda hinge: (places[hinge.node][0], -places[hinge.node][1])) for row in sorted(rows)]
+
+
+def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> int:
+    """List the pins in their order; return the number of pages."""
+    if not sheet.assembly.hinges:
+        return 0
+    width = (page[0] - 2.0 * MARGIN_MM - (COLUMNS - 1) * GAP_MM) / COLUMNS
+    lines: list[tuple[bool, str]] = []
+    for number, row in enumerate(pins_in_order(sheet.assembly), start=1):
+        lines.append((True, f"Row {number}: {len(row)} pins"))
+        text = ", ".join(f"{hinge.pieces[0]}+{hinge.pieces[1]}" for hinge in row)
+        lines += [(False, line) for line in textwrap.wrap(text, int(width * LETTERS_PER_MM), break_on_hyphens=False)]
+    pages, at = 0, 0
+    while at < len(lines):
+        top = _title(canvas, "Pins in order" if pages == 0 else "Pins in order, continued", page)
+        for number in range(COLUMNS):
+            column = _Column(canvas, MARGIN_MM + number * (width + GAP_MM), top, width)
+            while at < len(lines) and column.y > MARGIN_MM + FOOTER_MM + 3.0 * LINE_STEP_MM:
+                head, text = lines[at]
+                column.head(text) if head else column.text(text)
+                at += 1
+        _ink(canvas)
+        draw_ruler(canvas, sheet.about["title"], "")
+        canvas.showPage()
+        pages += 1
+    return pages
+
+
+def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
+    """Show which piece lies where on each bed; return the number of pages."""
+    width = (page[0] - 2.0 * MARGIN_MM - (BEDS_IN_A_ROW - 1) * GAP_MM) / BEDS_IN_A_ROW
+    drawings = [_Drawing.of_bed(bed) for bed in beds]
+    at, pages = 0, 0
+    while at < len(beds):
+        y = _title(canvas, "Pieces on their beds", page)
+        while at < len(beds):
+            row = range(at, min(at + BEDS_IN_A_ROW, len(beds)))
+            room = (width, 0.3 * page[1])
+            scales = [_fitting(drawings[one], room) for one in row]
+            high = max(scale * drawings[one].size[1] for scale, one in zip(scales, row, strict=True))
+            if y - high - GAP_MM < MARGIN_MM + FOOTER_MM:
+                break
+            for number, (scale, one) in enumerate(zip(scales, row, strict=True)):
+                left, size = MARGIN_MM + number * (width + GAP_MM), drawings[one].size
+                _ink(canvas)
+                canvas.setFont("Helvetica-Bold", TEXT_POINTS)
+                words = f"{beds[one].name}: {len(beds[one].pieces)} pieces, {size[0]:.1f} x {size[1]:.1f} mm"
+                canvas.drawString(left * mm, y * mm, words)
+                _draw(canvas, drawings[one], scale, np.array([left, y - 3.0 - scale * size[1]]))
+            y -= high + 3.0 + GAP_MM
+            at = row.stop
+        _ink(canvas)
+        draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
+        canvas.showPage()
+        pages += 1
+    return pages
+
+
+def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
+    """Draw what a page shows of the flat sheet at true size; lines that leave it are cut off there."""
+    shift, window = to_page(part), shapely.box(*part.window)
+    canvas.saveState()
+    clip = canvas.beginPath()
+    low_x, low_y, high_x, high_y = part.window
+    clip.rect(*((np.array([low_x, low_y]) + shift) * mm).tolist(), (high_x - low_x) * mm, (high_y - low_y) * mm)
+    canvas.clipPath(clip, stroke=0, fill=0)
+    here = [shape for shape in flat.shapes if window.intersects(Polygon(shape.rings[0]))]
+    for shape in here:
+        _fill(canvas, [_coarse(shape.rings[0]) + shift], FILLS[shape.layer])
+    canvas.restoreState()
+    canvas.setLineWidth(LINE_MM * mm)
+    for shape in here:
+        stroke_colour(canvas, EDGES[shape.layer])
+        for ring in shape.rings:
+            line = LineString([*ring, ring[0]])
+            if line.within(window):
+                draw_line(canvas, ring + shift, closed=True)
+                continue
+            for piece in shapely.get_parts(line.intersection(window)):
+                if isinstance(piece, LineString) and not piece.is_empty:
+                    draw_line(canvas, shapely.get_coordinates(piece) + shift, closed=False)
+        if window.contains(shapely.Point(shape.at)):
+            _number(canvas, shape, 1.0, shift)
+    _ink(canvas)
+
+
+def _verify(path: Path, flat: _Drawing, tiling: Tiling, before: Sequence[Size]) -> None:
+    """Read the pages back: their sizes, and that those at true size hold every outline once."""
+    pages = read_pages(path)
+    sizes = [*before, *[tiling.page] * (len(tiling.tiles) + (len(tiling.tiles) > 1))]
+    if len(pages) != len(sizes):
+        raise ExportError("pdf.other_page_count", pages=len(pages), parts=len(sizes))
+    for page, size in zip(pages, sizes, strict=True):
+        if max(abs(a - b) for a, b in zip(page.size_mm, size, strict=True)) > SAME_SIZE_MM:
+            raise ExportError(
+                "pdf.other_page_size",
+                width_mm=page.size_mm[0],
+                height_mm=page.size_mm[1],
+                planned_width_mm=size[0],
+                planned_height_mm=size[1],
+            )
+    for layer in sorted({shape.layer for shape in flat.shapes}):
+        rings = [ring for shape in flat.shapes if shape.layer == layer for ring in shape.rings]
+        length = sum(float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum()) for ring in rings)
+        shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
+        found = sum(length_in_cell(page, part, EDGES[layer]) for page, part in shown)
+        corners = sum(len(ring) for ring in rings)
+        if abs(found - length) > SAME_LENGTH * length + ROUNDING_MM * corners:
+            raise ExportError("pdf.other_length", found_mm=found, planned_mm=length, layer=f"{layer}")

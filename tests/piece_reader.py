@@ -1,0 +1,192 @@
+"""Reads the folder of an assembly without the program: libraries and the words of the files, nothing of the package.
+
+Pieces are recognised by the places of their holes and the middle of their outline, whatever turn they lie in, and put
+together by ``pieces.json``.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import ezdxf
+import numpy as np
+import shapely
+import svgelements
+from shapely.geometry import Polygon
+
+Ring = tuple[np.ndarray, bool]  #: points, and whether they are those of a circle
+
+
+@dataclass(frozen=True)
+class Together:
+    """Pieces of one kind of file, put together.
+
+    Attributes
+    ----------
+    pieces : int
+    outline_mm, holes_mm, pins_mm : float
+        Farthest that finished outlines, holes, and the two holes of a pin are from where they should be.
+    overlap_mm2 : float
+        That pieces of one layer share at the worst angle.
+    """
+
+    pieces: int
+    outline_mm: float
+    holes_mm: float
+    pins_mm: float
+    overlap_mm2: float
+
+
+def circle(centre: np.ndarray, radius: float) -> np.ndarray:
+    turn = 2.0 * np.pi * np.arange(64) / 64
+    return centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])
+
+
+def dxf_rings(path: Path) -> list[Ring]:
+    rings: list[Ring] = []
+    for entity in ezdxf.readfile(path).modelspace():
+        if entity.dxf.layer == "NAME":
+            continue
+        if entity.dxftype() == "CIRCLE":
+            rings.append((circle(np.array([entity.dxf.center.x, entity.dxf.center.y]), entity.dxf.radius), True))
+        elif entity.dxftype() == "POLYLINE":
+            assert entity.is_closed
+            rings.append((np.array([[v.dxf.location.x, v.dxf.location.y] for v in entity.vertices]), False))
+        else:
+            assert entity.dxftype() == "LWPOLYLINE" and entity.closed and not entity.has_arc
+            rings.append((np.array(entity.get_points("xy")), False))
+    return rings
+
+
+def svg_rings(path: Path) -> list[Ring]:
+    rings: list[Ring] = []
+    drawing = svgelements.SVG.parse(path, reify=False)
+    height = float(drawing.viewbox.height)
+    for group in drawing.select(lambda element: isinstance(element, svgelements.Group) and element.id != "NAME"):
+        for shape in group:
+            if not isinstance(shape, svgelements.Path):
+                continue
+            arcs = [part for part in shape if isinstance(part, svgelements.Arc)]
+            if arcs:
+                centre = np.array([float(arcs[0].center.x), height - float(arcs[0].center.y)])
+                rings.append((circle(centre, float(arcs[0].rx)), True))
+                continue
+            ends = [part.end for part in shape if isinstance(part, (svgelements.Move, svgelements.Line))]
+            assert isinstance(shape[-1], svgelements.Close)
+            rings.append((np.array([[end.x, height - end.y] for end in ends], dtype=float), False))
+    return rings
+
+
+def project_rings(path: Path) -> list[Ring]:
+    rings: list[Ring] = []
+    root = ElementTree.parse(path).getroot()
+    names = {s.find("index").get("Value"): s.find("name").get("Value") for s in root.findall("CutSetting")}
+    for shape in root.findall("Shape"):
+        place = np.array([float(word) for word in shape.findtext("XForm").split()])
+        assert place[:4].tolist() == [1.0, 0.0, 0.0, 1.0]
+        if names[shape.get("CutIndex")] == "NAME":
+            continue
+        if shape.get("Type") == "Ellipse":
+            rings.append((circle(place[4:], float(shape.get("Rx"))), True))
+            continue
+        corners = re.findall(r"V(\S+) ([-\d.]+)", shape.findtext("VertList"))
+        ways = re.findall(r"L(\d+) (\d+)", shape.findtext("PrimList"))
+        assert [int(end) for _, end in ways] == [*range(1, len(corners)), 0]
+        rings.append((np.array(corners, dtype=float), False))
+    return rings
+
+
+READERS = {".dxf": dxf_rings, ".svg": svg_rings, ".lbrn2": project_rings}
+
+
+def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
+    """Read the files of a kind, recognise every piece once, and move them as ``pieces.json`` says."""
+    record = json.loads((folder / "pieces.json").read_text())
+    wanted = {piece["id"]: piece for piece in record["pieces"]}
+    found: dict[str, tuple[Polygon, np.ndarray]] = {}
+    outline_mm = holes_mm = 0.0
+    for path in sorted(folder.glob(f"layer-*{kind}")):
+        layer = int(re.match(r"layer-(\d+)", path.name)[1])
+        rings = READERS[kind](path)
+        outlines = [Polygon(ring) for ring, is_circle in rings if not is_circle]
+        holes = [ring.mean(axis=0) for ring, is_circle in rings if is_circle]
+        radii = [np.linalg.norm(ring[0] - ring.mean(axis=0)) for ring, is_circle in rings if is_circle]
+        for beam in outlines:
+            mine = [at for at, hole in enumerate(holes) if beam.contains(shapely.Point(hole))]
+            finished = beam.buffer(-0.5 * kerf_mm, quad_segs=64)
+            here = np.array([holes[at] for at in mine]).reshape(-1, 2)
+            name, turn, shift, miss = recognised(finished, here, layer, wanted, found)
+            area = shapely.transform(finished, lambda points, turn=turn, shift=shift: points @ turn.T + shift)
+            meant = Polygon(wanted[name]["outline"])
+            fillets = meant.buffer(0.5 * kerf_mm, quad_segs=64).buffer(-0.5 * kerf_mm, quad_segs=64)
+            corners = shapely.points(shapely.get_coordinates(area))
+            outline_mm = max(outline_mm, shapely.distance(shapely.points(np.array(meant.exterior.coords)), area).max(),
+                             shapely.distance(corners, fillets).max())  # fmt: skip
+            radius = [np.sqrt(Polygon(ring).area / np.pi) for ring in wanted[name]["holes"]]
+            sizes = [abs(radii[at] + 0.5 * kerf_mm - radius[0]) for at in mine]
+            holes_mm = max(holes_mm, miss, *sizes, 0.0)
+            found[name] = (area, here @ turn.T + shift)
+    assert set(found) == set(wanted), "a piece is missing"
+    return Together(len(found), outline_mm, holes_mm, *moved(record, found, {n: p["layer"] for n, p in wanted.items()}))
+
+
+def recognised(
+    area: Polygon, holes: np.ndarray, layer: int, wanted: dict[str, dict], found: dict[str, object]
+) -> tuple[str, np.ndarray, np.ndarray, float]:
+    """The piece of a layer that is not found yet and fits best; its turn, its shift, and how far its holes are off."""
+    best = ("", np.eye(2), np.zeros(2), np.inf)
+    for name, piece in wanted.items():
+        meant = Polygon(piece["outline"])
+        if piece["layer"] != layer or name in found or len(piece["holes"]) != len(holes):
+            continue
+        if abs(meant.area - area.area) > 0.5:
+            continue
+        middles = np.array([Polygon(ring).centroid.coords[0] for ring in piece["holes"]]).reshape(-1, 2)
+        for order in itertools.permutations(range(len(holes))):
+            turn, shift, miss = fitted(
+                np.vstack([holes, area.centroid.coords[0]]), np.vstack([middles[list(order)], meant.centroid.coords[0]])
+            )
+            if miss < best[3]:
+                best = (name, turn, shift, miss)
+    assert best[3] < 0.05, "no piece looks like this"
+    return best
+
+
+def fitted(points: np.ndarray, onto: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """The rigid motion, without a mirror, that lays points on others best; how far the farthest hole is off."""
+    middle, other = points.mean(axis=0), onto.mean(axis=0)
+    u, _, vt = np.linalg.svd((points - middle).T @ (onto - other))
+    turn = vt.T @ np.diag([1.0, np.linalg.det(vt.T @ u.T)]) @ u.T
+    shift = other - turn @ middle
+    return turn, shift, float(np.linalg.norm(points @ turn.T + shift - onto, axis=1)[:-1].max(initial=0.0))
+
+
+def moved(
+    record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]
+) -> tuple[float, float]:
+    """Farthest that the holes of a pin are apart, and largest overlap within a layer, over the whole motion."""
+    pins = overlap = 0.0
+    for step in record["motion"]:
+        areas, holes = {}, {}
+        for name, (area, middles) in found.items():
+            x, y, turn = step["poses"][name]
+            turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+            areas[name] = shapely.transform(area, lambda points, t=turned, s=(x, y): points @ t.T + s)
+            holes[name] = middles @ turned.T + (x, y)
+        for hinge in record["hinges"]:
+            ends = []
+            for name, at in zip(hinge["pieces"], hinge["at"], strict=True):
+                x, y, turn = step["poses"][name]
+                turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+                pin = turned @ np.array(at) + (x, y)
+                ends.append(holes[name][np.linalg.norm(holes[name] - pin, axis=1).argmin()])
+            pins = max(pins, float(np.linalg.norm(ends[0] - ends[1])))
+        for layer in set(layers.values()):
+            here = [areas[name] for name in areas if layers[name] == layer]
+            overlap = max(overlap, sum(area.area for area in here) - shapely.union_all(here).area)
+    return pins, overlap

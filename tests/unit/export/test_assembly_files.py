@@ -1,0 +1,266 @@
+"""The folder of a design of several pieces: its files, what they hold, and that nothing wrong appears."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+from piece_reader import put_together
+from pinned_assemblies import CLEARANCE_MM, EAR_MM, HOLE_MM, small_assembly
+from pypdf import PdfReader
+from shapely.geometry import Polygon
+
+from kirigami_studio.assembly.pieces import Assembly
+from kirigami_studio.export.assembly_files import (
+    ANGLES,
+    KINDS,
+    AssemblyFiles,
+    AssemblyJob,
+    parts,
+    pieces_json,
+    write_assembly,
+)
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.fabricate.fastener import SIZES, Fastener
+from kirigami_studio.fabricate.machine import machine_of
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.foundation.errors import ExportError
+
+PLYWOOD = find_material("plywood-co2")
+SMALL_BED = replace(machine_of(PLYWOOD), bed_width_mm=120.0, bed_height_mm=70.0)
+
+
+def job_of(assembly: Assembly, **changes: Any) -> AssemblyJob:
+    job = AssemblyJob(
+        assembly, PLYWOOD, machine_of(PLYWOOD), Fastener.M3, 0.2, HOLE_MM, EAR_MM, CLEARANCE_MM, name="Pinwheel"
+    )
+    return replace(job, **changes)
+
+
+@pytest.fixture(scope="module")
+def assembly() -> Assembly:
+    return small_assembly(2, 3, 5)
+
+
+@pytest.fixture(scope="module")
+def job(assembly: Assembly) -> AssemblyJob:
+    return job_of(assembly, machine=SMALL_BED, paper=Paper.A4, verdict="ready_to_cut")
+
+
+@pytest.fixture(scope="module")
+def folder(job: AssemblyJob, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    home = tmp_path_factory.mktemp("assembly") / "pinned"
+    write_assembly(job, home)
+    return home
+
+
+def codes(files: AssemblyFiles) -> set[str]:
+    return {finding.code for one in files.verifications for finding in one.findings}
+
+
+def test_that_the_folder_has_a_file_for_each_layer_and_bed_and_the_sheets_beside_them(
+    job: AssemblyJob, folder: Path
+) -> None:
+    names = {entry.name for entry in folder.iterdir()}
+    beds = {bed.name for bed in job.beds}
+    assert {"layer-1", "layer-2", "layer-2-b2"} <= beds
+    assert names == {f"{bed}{kind}" for bed in beds for kind in KINDS} | {"assembly.pdf", "parts.csv", "pieces.json"}
+    assert not [entry for entry in folder.parent.iterdir() if entry != folder], "nothing is left beside it"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_that_another_reader_puts_the_pieces_of_every_kind_of_file_together(
+    job: AssemblyJob, folder: Path, kind: str
+) -> None:
+    found = put_together(folder, kind, job.kerf_mm)
+    assert found.pieces == len(job.assembly.pieces)
+    assert found.outline_mm < 1.5e-3 and found.holes_mm < 1e-3
+    assert found.pins_mm < 1e-3 and found.overlap_mm2 < 0.01
+
+
+def test_that_pieces_and_motion_are_written_as_the_contract_says(job: AssemblyJob, folder: Path) -> None:
+    record = json.loads((folder / "pieces.json").read_text())
+    assert set(record) == {"unit", "pieces", "hinges", "motion"} and record["unit"] == "mm"
+    assert [piece["id"] for piece in record["pieces"]] == [piece.id for piece in job.assembly.pieces]
+    angles = [step["phi_deg"] for step in record["motion"]]
+    assert len(angles) == ANGLES >= 61 and angles[0] == 180.0 and angles[-1] == 0.0
+    assert all(set(step["poses"]) == set(job.assembly.by_id) for step in record["motion"])
+    for written, piece in zip(record["pieces"], job.assembly.pieces, strict=True):
+        assert written["layer"] == piece.layer and len(written["holes"]) == len(piece.holes)
+        assert np.abs(np.array(written["outline"]) - piece.outline).max() < 1e-6
+        for ring, hole in zip(written["holes"], piece.holes, strict=True):
+            away = np.linalg.norm(np.array(ring) - hole.centre, axis=1)
+            assert np.abs(away - 0.5 * hole.diameter_mm).max() < 1e-3
+            assert Polygon(ring).area == pytest.approx(0.25 * math.pi * hole.diameter_mm**2, rel=1e-5)
+    for hinge in record["hinges"]:
+        first, second = (record["motion"][90]["poses"][name] for name in hinge["pieces"])
+        ends = [
+            complex(*at) * np.exp(1j * turn) + complex(x, y)
+            for at, (x, y, turn) in zip(hinge["at"], (first, second), strict=True)
+        ]
+        assert abs(ends[0] - ends[1]) < 2e-6
+
+
+def test_that_the_target_angle_ends_the_motion() -> None:
+    record = pieces_json(small_assembly(2, 2, 3, phi_target=1.0), angles=61)
+    assert record["motion"][-1]["phi_deg"] == pytest.approx(math.degrees(1.0))
+
+
+def test_that_holes_are_circles_and_files_say_how_they_were_made(job: AssemblyJob, folder: Path) -> None:
+    for bed in job.beds:
+        document = ezdxf.readfile(folder / f"{bed.name}.dxf")
+        kinds = [entity.dxftype() for entity in document.modelspace() if entity.dxf.layer == "HOLES"]
+        assert kinds == ["CIRCLE"] * sum(len(cuts.piece.holes) for cuts in bed.pieces)
+        facts = dict(document.header.custom_vars)
+        assert facts["CONSTRUCTION"] == "pinned" and facts["LAYER"] == f"{bed.layer}"
+        assert facts["BED"] == f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}"
+        assert [float(facts[key]) for key in ("PIN_MM", "EAR_MM", "CLEARANCE_MM", "KERF_MM")] == [
+            HOLE_MM, EAR_MM, CLEARANCE_MM, 0.2,
+        ]  # fmt: skip
+        assert facts["VERDICT"] == "ready_to_cut" and facts["PIECES"] == f"{len(bed.pieces)}"
+
+
+def test_that_two_readers_find_every_piece_in_every_file(job: AssemblyJob, tmp_path: Path) -> None:
+    files = write_assembly(job, tmp_path / "out")
+    assert len(files.verifications) == len(KINDS) * len(job.beds) + 1
+    assert all(one.ok and all(finding.ok for finding in one.findings) for one in files.verifications)
+    assert {"verify.pieces_found", "verify.numbers", "verify.points_as_planned", "verify.layers_as_planned"} <= codes(files)
+    assert {"verify.pins_meet", "verify.pieces_pass", "verify.motion_as_planned"} <= codes(files)
+    for one in files.verifications[:-1]:
+        assert one.pieces == len(next(bed for bed in job.beds if bed.name == one.path.stem).pieces)
+
+
+def test_that_the_parts_list_counts_pieces_pins_material_and_time(job: AssemblyJob, folder: Path) -> None:
+    rows = list(csv.DictReader((folder / "parts.csv").read_text().splitlines()))
+    pieces = [row for row in rows if row["item"] == "pieces"]
+    assert [row["file"] for row in pieces] == [bed.name for bed in job.beds]
+    assert sum(int(row["count"]) for row in pieces) == len(job.assembly.pieces)
+    assert {name for row in pieces for name in row["note"].split()} == set(job.assembly.by_id)
+    (pins,) = (row for row in rows if row["item"] == "pins")
+    assert int(pins["count"]) == len(job.assembly.hinges) and float(pins["diameter_mm"]) == HOLE_MM
+    assert float(pins["length_mm"]) == pytest.approx(2.0 * PLYWOOD.thickness_mm + SIZES[Fastener.M3].beyond_mm)
+    total = parts(job)[-1]
+    assert total.seconds == pytest.approx(sum(part.seconds or 0.0 for part in parts(job) if part.item == "pieces"))
+    whole = sum(Polygon(piece.outline).area for piece in job.assembly.pieces)
+    holes = sum(0.25 * math.pi * HOLE_MM**2 * len(piece.holes) for piece in job.assembly.pieces)
+    assert total.area_mm2 == pytest.approx(whole - holes)
+
+
+def test_that_the_assembly_sheet_has_every_number_at_true_size(job: AssemblyJob, folder: Path) -> None:
+    pages = PdfReader(folder / "assembly.pdf").pages
+    assert {tuple(round(float(side) * 25.4 / 72.0) for side in page.mediabox[2:]) for page in pages} == {(210, 297)}
+    flat = pages[-1].extract_text()
+    assert all(piece.id in flat for piece in job.assembly.pieces)
+    assert "Print at 100 %" in flat
+    listed = "".join(page.extract_text() for page in pages)
+    assert all(f"{hinge.pieces[0]}+{hinge.pieces[1]}" in listed for hinge in job.assembly.hinges)
+
+
+@pytest.mark.parametrize(("paper", "size"), [(Paper.LETTER, (216, 279)), (Paper.NONE, None)])
+def test_that_the_assembly_sheet_is_laid_on_the_paper_that_is_asked_for(
+    assembly: Assembly, tmp_path: Path, paper: Paper, size: tuple[int, int] | None
+) -> None:
+    write_assembly(job_of(small_assembly(6, 8, 2), paper=paper), tmp_path / "out", kinds=())
+    pages = PdfReader(tmp_path / "out" / "assembly.pdf").pages
+    sizes = [tuple(round(float(side) * 25.4 / 72.0) for side in page.mediabox[2:]) for page in pages]
+    if size is None:
+        assert sizes[0] == (210, 297) and min(sizes[-1]) > 210, "one page as large as the sheet"
+    else:
+        assert sizes[0] == size and set(map(frozenset, sizes)) == {frozenset(size)}
+        assert "Map of" in "".join(page.extract_text() for page in pages)
+
+
+@pytest.mark.parametrize("profile", ["lightburn", "k40", "single", "slots", "layers", "cricut"])
+def test_that_every_profile_gets_files_that_read_back(assembly: Assembly, tmp_path: Path, profile: str) -> None:
+    files = write_assembly(job_of(assembly, profile=profile), tmp_path / "out")
+    assert all(one.ok for one in files.verifications)
+    names = {path.name for path in files.files}
+    assert ("layer-1.lbrn2" in names) == (profile != "slots")
+    if profile == "layers":
+        assert {part.name for part in (tmp_path / "out" / "layer-1").iterdir()} == {
+            "1_NAME.dxf", "2_HOLES.dxf", "3_OUTLINE.dxf",
+        }  # fmt: skip
+    if profile == "slots":
+        assert put_together(tmp_path / "out", ".dxf", 0.0).outline_mm < 1e-3, "a service allows for its kerf itself"
+
+
+def test_that_old_programs_get_the_same_circles(assembly: Assembly, tmp_path: Path) -> None:
+    write_assembly(job_of(assembly, dxf_version=DxfVersion.R12), tmp_path / "out", kinds=(".dxf",))
+    document = ezdxf.readfile(tmp_path / "out" / "layer-1.dxf")
+    assert document.dxfversion == "AC1009"
+    assert document.ezdxf_metadata()["CONSTRUCTION"] == "pinned" and document.ezdxf_metadata()["LAYER"] == "1"
+    assert put_together(tmp_path / "out", ".dxf", 0.2).overlap_mm2 < 0.01
+
+
+def test_that_the_same_design_gives_the_same_bytes(job: AssemblyJob, folder: Path, tmp_path: Path) -> None:
+    write_assembly(replace(job), tmp_path / "again")
+    for path in folder.iterdir():
+        assert (tmp_path / "again" / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_that_files_repeat_what_was_judged_of_them(job: AssemblyJob, tmp_path: Path) -> None:
+    seen: list[int] = []
+
+    def judged(verifications: Any) -> str:
+        seen.append(len(verifications))
+        return "cut_with_care"
+
+    write_assembly(job, tmp_path / "out", (".dxf",), judged)
+    assert seen == [len(job.beds) + 1]
+    assert dict(ezdxf.readfile(tmp_path / "out" / "layer-1.dxf").header.custom_vars)["VERDICT"] == "cut_with_care"
+
+
+def colliding(assembly: Assembly) -> Assembly:
+    """The same with a piece that reaches into others of its layer."""
+    one = assembly.pieces[0]
+    return replace(assembly, pieces=(replace(one, outline=one.outline * 2.5, holes=()), *assembly.pieces[1:]))
+
+
+def test_that_a_design_that_collides_is_refused_and_an_earlier_folder_stays(
+    assembly: Assembly, folder: Path, tmp_path: Path
+) -> None:
+    home = tmp_path / "out"
+    with pytest.raises(ExportError) as refusal:
+        write_assembly(job_of(colliding(replace(assembly, hinges=()))), home)
+    assert refusal.value.code == "assembly.not_as_meant" and not home.exists() and not list(tmp_path.iterdir())
+    shutil.copytree(folder, home)
+    with pytest.raises(ExportError):
+        write_assembly(job_of(colliding(replace(assembly, hinges=()))), home)
+    assert {path.name: path.read_bytes() for path in home.iterdir()} == {
+        path.name: path.read_bytes() for path in folder.iterdir()
+    }
+
+
+def test_that_a_pin_without_holes_is_refused(assembly: Assembly, tmp_path: Path) -> None:
+    bare = replace(assembly, pieces=tuple(replace(piece, holes=()) for piece in assembly.pieces))
+    with pytest.raises(ExportError) as refusal:
+        write_assembly(job_of(bare), tmp_path / "out", (".dxf",))
+    assert refusal.value.code == "assembly.not_as_meant"
+
+
+def test_that_an_earlier_assembly_is_replaced_and_other_files_stay(
+    assembly: Assembly, folder: Path, tmp_path: Path
+) -> None:
+    home = tmp_path / "out"
+    shutil.copytree(folder, home)
+    (home / "notes.txt").write_text("mine")
+    write_assembly(job_of(assembly), home, (".dxf",))
+    assert {path.name for path in home.iterdir()} == {
+        "notes.txt", "layer-1.dxf", "layer-2.dxf", "assembly.pdf", "parts.csv", "pieces.json",
+    }  # fmt: skip
+    assert (home / "notes.txt").read_text() == "mine" and not [p for p in tmp_path.iterdir() if p != home]
+
+
+def test_that_a_piece_beyond_the_bed_is_told(assembly: Assembly) -> None:
+    tiny = replace(SMALL_BED, bed_width_mm=10.0, bed_height_mm=10.0)
+    assert "pieces.larger_than_bed" in {note.code for note in job_of(assembly, machine=tiny).notes}
+    assert "pieces.larger_than_bed" not in {note.code for note in job_of(assembly).notes}
