@@ -11,7 +11,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from kirigami_studio.evaluate.boundary import as_points
+import shapely
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.fabricate.material import Construction
@@ -379,7 +380,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
         dxf_version=settings.dxf_version,
         paper=settings.paper,
         order=settings.options.order,
-        target=as_points(made.plan.opened),
+        target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
