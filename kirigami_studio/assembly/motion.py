@@ -104,18 +104,14 @@ class LayerMotion:
             found.append(np.stack([one, other], axis=1)[apart <= radius[one] + radius[other] + reach])
         return np.concatenate(found)
 
-    def distance_on_arc(
-        self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray
-    ) -> FloatArray:
+    def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
         """Least distance (K,) over the motion between points of panels ``other`` and points moving with ``one``."""
         drift = self.drift[one] - self.drift[other]
         seen = points - (moving - drift)
         radius = np.abs(drift)
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
         ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
-        ends = np.minimum(
-            np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening))
-        )
+        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
         return np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends)
 
 
@@ -179,26 +175,27 @@ def swept_discs(
 
 
 def swept_hulls(
-    corners: ComplexArray, drift: complex, turn: float, tolerance: float, window: tuple[float, float, float, float]
+    corners: ComplexArray, drifts: ComplexArray, turn: float, tolerance: float, window: tuple[float, ...]
 ) -> GeometryArray:
-    """Convex areas that a convex polygon sweeps along an arc, as far as they come near a window.
+    """Convex areas that convex polygons sweep along arcs, as far as they come near a window.
 
-    Grown by ``tolerance`` they contain the exact one.
+    Grown by ``tolerance`` they contain the exact ones.
 
     Parameters
     ----------
-    corners : (C,) complex, mm
-    drift : complex, mm
+    corners : (C, K) complex, mm
+    drifts : (C,) complex, mm
     turn : float, radians
         As for :func:`swept_discs`.
     tolerance : float, mm
-        Sagitta of the chords that stand for the arc.
+        Sagitta of the chords that stand for the arcs.
     window : (left, bottom, right, top), mm
     """
-    steps = max(2, math.ceil(abs(turn) * math.sqrt(abs(drift) / (8.0 * tolerance))))
-    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0) * drift
-    points = corners + shifts[:, None]
-    both = np.concatenate([points[:-1], points[1:]], axis=1)
+    farthest = float(np.abs(drifts).max(initial=0.0))
+    steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
+    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0) * drifts[:, None]
+    points = corners[:, None, :] + shifts[:, :, None]
+    both = np.concatenate([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2 * corners.shape[1])
     near = (
         (both.real.max(axis=1) >= window[0])
         & (both.imag.max(axis=1) >= window[1])

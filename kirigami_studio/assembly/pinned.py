@@ -12,11 +12,13 @@ from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
-from kirigami_studio.assembly.rim_pieces import EndState, extend_to, label_place, trim_to
+from kirigami_studio.assembly.rim_pieces import EndState, extend_to, label_place, round_off, trim_to
 from kirigami_studio.assembly.shaping import Shaping
 from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
@@ -39,6 +41,12 @@ class PinnedPlan:
         The outlines to show in both end states, frame of the deployment, mm.
     broken : tuple of str
         Pieces whose ears do not hang together.
+    gap_mm : float
+        Least distance over the motion of two pins in one layer, in different pieces.
+    gap_at : (x, y), mm
+        Where the first of them is in the flat sheet.
+    tight : int
+        Pairs of pins that are nearer than ear and clearance need.
     """
 
     assembly: Assembly
@@ -47,6 +55,9 @@ class PinnedPlan:
     opened: Polygon
     flat: Polygon
     broken: tuple[str, ...]
+    gap_mm: float
+    gap_at: tuple[float, float]
+    tight: int
 
 
 def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOptions | None = None) -> PinnedPlan:
@@ -60,32 +71,57 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     width_mm : float
         Of the flat assembly, with its margin.
     options : PinOptions, optional
+
+    Raises
+    ------
+    UsageError
+        The sheet is not wider than its margins.
     """
     options = options or PinOptions()
     deployment, phi, margin = design.deployment, design.phi_target, options.rim_mm
+    if not (math.isfinite(width_mm) and width_mm > 4.0 * margin):
+        raise UsageError("pins.sheet_too_narrow", width_mm=width_mm, margin_mm=margin)
     cell_mm = (width_mm - 2.0 * margin) / float(np.ptp(deployment.compact[:, 0]))
     shown = Polygon(design.pose.inverse().apply(target.points) * cell_mm)
     # The target is so much larger that its area is that of an outline all round the margin farther out.
     scale = math.sqrt(1.0 + margin * (shown.length + math.pi * margin) / shown.area)
-    pose = replace(design.pose, scale=design.pose.scale / scale, shift=tuple(x / scale for x in design.pose.shift))
+    x, y = design.pose.shift
+    pose = replace(design.pose, scale=design.pose.scale / scale, shift=(x / scale, y / scale))
     shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     shaping = Shaping.of(deployment, cell_mm, phi, options)
-    opened = EndState.of(deployment, phi, cell_mm, shaping.motion.opening, shown, options.reach_mm)
-    closed = EndState.of(deployment, math.pi, cell_mm, 0.0, flat, options.reach_mm)
+    opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
+    closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
     spare = (1.0 - options.least_flat) * flat.area
     spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
     trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
     spare -= extend_to(shaping, opened, closed, spare)
     extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+    round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
-    return PinnedPlan(assembly, options, pose, shown, flat, tuple(names[index] for index in sorted(shaping.broken)))
+    ears, _, distance = shaping.ear_distances
+    tight = distance < options.ear_mm + options.clearance_mm
+    nearest = int(np.argmin(distance))
+    at = shaping.motion.corners.ravel()[ears[nearest]]
+    return PinnedPlan(
+        assembly,
+        options,
+        pose,
+        shown,
+        flat,
+        tuple(names[index] for index in sorted(shaping.broken)),
+        float(distance[nearest]),
+        (float(at.real), float(at.imag)),
+        int(np.count_nonzero(tight)) // 2,
+    )
 
 
-def _start_outline(deployment: Deployment):
+def _start_outline(deployment: Deployment) -> FloatArray:
+    """Outline to show while flat, counter-clockwise, unit cells, frame of the deployment."""
     sheet = deployment.sheet
-    return RimPath(*sheet.grid, sheet.start, sheet.cell).outline()[::-1] - deployment.compact[0]
+    outline = RimPath(*sheet.grid, sheet.start, sheet.cell).outline()
+    return np.asarray(outline[::-1] - deployment.compact[0])
 
 
 def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: float) -> Assembly:
@@ -93,7 +129,8 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
     motion, options = shaping.motion, shaping.options
     columns = deployment.sheet.columns + 1
     number = [0, 0, 0]
-    pieces, owners = [], {}
+    pieces: list[Piece] = []
+    owners: dict[int, list[tuple[int, str, FloatArray]]] = {}
     origins = as_points(motion.corners.mean(axis=1))
     for index, body in enumerate(shaping.bodies):
         layer = int(motion.layer[index])
@@ -102,13 +139,14 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         shape = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
-        drilled = shape.difference(shapely.union_all(shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)))
+        drills = shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)
+        drilled = shape.difference(shapely.union_all(drills))
         place, room = label_place(drilled)
         pieces.append(
             Piece(
                 id=name,
                 layer=layer,
-                panel=divmod(index, columns),
+                panel=(index // columns, index % columns),
                 outline=shapely.get_coordinates(shape.exterior)[:-1],
                 holes=tuple(RoundHole(pin, options.pin_mm) for pin in pins[hinged]),
                 openings=tuple(shapely.get_coordinates(ring)[:-1] for ring in shape.interiors),

@@ -7,6 +7,7 @@ loses no more than they allow.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,8 @@ from kirigami_studio.lattice.deployment import Deployment
 
 #: Parts smaller than this, mm2, are neither cut off nor added.
 LEAST_PART = 0.5
+#: Nicks at the rim that are narrower than twice this, mm, are filled.
+NICK = 2.5
 #: What is nearer than this, mm, touches.
 TOUCHING = 1e-6
 #: Gaps that are nearer to a piece than this, mm, are beside it: as wide as gaps between sides are.
@@ -50,11 +53,11 @@ class EndState:
     shares: GeometryArray
 
     @classmethod
-    def of(cls, deployment: Deployment, phi: float, cell_mm: float, turn: float, outline: Polygon, reach_mm: float) -> EndState:
-        """The state of a design at ``phi``, where t is ``turn``."""
+    def of(cls, deployment: Deployment, phi: float, cell_mm: float, outline: Polygon, reach_mm: float) -> EndState:
+        """The state of a design at ``phi``."""
         voids = shapely.polygons(deployment.voids(phi).reshape(-1, 4, 2) * cell_mm)
         voids = voids[shapely.area(voids) > LEAST_PART]
-        return cls(turn, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
+        return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
 
 
 def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
@@ -153,93 +156,82 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
     -------
     spent : float, mm2
     """
-    spent = 0.0
+    reach, spent = shaping.options.reach_mm, 0.0
+    placed = shaping.placed(state.turn)
+    gaps = shapely.get_parts(less(less(state.outline, united(*placed)), state.voids))
+    gaps = gaps[shapely.area(gaps) > LEAST_PART]
+    rims = shapely.intersects(gaps, state.outline.exterior)
     for by_shares in (True, False):
-        placed = shaping.placed(state.turn)
-        missing = _missing(state, placed)
-        wanted = _wanted(state, placed, missing, by_shares, shaping.options.reach_mm)
-        areas = shapely.area(shapely.intersection(wanted, missing))
-        for index in np.argsort(-areas):
-            if areas[index] < LEAST_PART:
-                break
-            still = shared(missing, wanted[index])
-            if still.area < LEAST_PART:
+        piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
+        worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))
+        for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
+            near = gap[piece == index]
+            beside = near[rims[near]]
+            at_rim = united(*gaps[beside]).intersection(placed[index].buffer(reach))
+            if by_shares:
+                inside = united(*gaps[near[~rims[near]]])
+                needed = united(inside, shared(at_rim, state.shares[index]))
+                share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach)))
+                want = united(needed, share)
+            else:
+                near, needed, want = beside, at_rim, at_rim
+            if needed.area < LEAST_PART:
                 continue
-            want = wanted[index] if by_shares else still
-            added, beyond = _extended(shaping, int(index), state, other, want, still, spare - spent)
+            added, beyond = _extended(shaping, index, state, other, want, needed, spare - spent)
             if added is not None:
                 spent += beyond
-                missing = less(missing, added)
+                gaps[near] = [less(one, added) for one in gaps[near]]
     return spent
 
 
-def _missing(state: EndState, placed: GeometryArray) -> BaseGeometry:
-    """The outline's area that no piece covers, and that is not open on purpose; without slivers."""
-    gaps = shapely.get_parts(less(less(state.outline, united(*placed)), state.voids))
-    return shapely.multipolygons(gaps[shapely.area(gaps) > LEAST_PART])
-
-
-def _wanted(
-    state: EndState, placed: GeometryArray, missing: BaseGeometry, by_shares: bool, reach_mm: float
-) -> GeometryArray:
-    """Areas (P,) that pieces could take, frame of the deployment: gaps that they touch, at the rim their shares."""
-    gaps = shapely.get_parts(missing)
-    rims = shapely.intersects(gaps, state.outline.exterior)
-    piece, gap = shapely.STRtree(gaps).query(placed, predicate="dwithin", distance=TOUCHED)
-    wanted: GeometryArray = np.array([Polygon()] * len(placed), dtype=object)
-    for index in np.unique(piece):
-        near = gap[piece == index]
-        if by_shares:
-            share = [shared(state.shares[index], state.outline)] if np.any(rims[near]) else []
-            parts = [*gaps[near[~rims[near]]], *share]
-        else:
-            parts = list(gaps[near])
-        wanted[index] = shared(united(*parts), placed[index].buffer(reach_mm))
-    return wanted
-
-
 def _extended(
-    shaping: Shaping, index: int, state: EndState, other: EndState, want: BaseGeometry, still: BaseGeometry, spare: float
+    shaping: Shaping,
+    index: int,
+    state: EndState,
+    other: EndState,
+    want: BaseGeometry,
+    needed: BaseGeometry,
+    spare: float,
 ) -> tuple[BaseGeometry | None, float]:
     """Add to a piece as much of an area as is free: the part added, where it is in the state, and mm2 beyond the other.
 
     None where that is not worth it.
     """
-    motion, options, body, here = shaping.motion, shaping.options, shaping.bodies[index], np.array([index])
-    mine, needed = motion.brought_back(np.array([want, still], dtype=object), here[[0, 0]], state.turn)
-    mine = mine.buffer(OVERLAP)
-    mine = less(mine, shaping.blocked(index, less(mine, body)))
+    motion, body, here = shaping.motion, shaping.bodies[index], np.array([index])
+    mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
     limit = motion.brought_back(np.array([other.outline], dtype=object), here, other.turn)[0]
-    for room in (mine, shared(mine, limit)):
+    mine = mine.buffer(OVERLAP)
+    inside = shared(mine, limit)
+    free = less(mine, shaping.blocked(index, less(mine, body)))
+    may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and mine.area - inside.area > LEAST_PART
+    for room in (free, shared(free, inside)) if may_stick_out else (shared(free, inside),):
         best = shaping.held_together(index, united(body, room))
         if best is None:
             continue
-        best = shaping.held_together(index, united(best, body)) or best
         added = less(best, body)
         beyond = less(added, limit).area
-        if beyond > LEAST_PART and (beyond > spare or options.weight <= 0.5):
-            continue
-        if shared(added, needed).area > LEAST_PART:
+        if (beyond <= LEAST_PART or beyond <= spare) and shared(added, missed).area > LEAST_PART:
             shaping.add(index, best)
             return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond
     return None, 0.0
 
 
-def lacking(shaping: Shaping, state: EndState) -> tuple[float, float]:
-    """Area missing of a state's outline and area sticking out of it, mm2, holes filled."""
-    silhouette = filled(shapely.union_all(shaping.placed(state.turn)))
-    return state.outline.difference(silhouette).area, silhouette.difference(state.outline).area
-
-
-def filled(shape: BaseGeometry) -> BaseGeometry:
-    """The shape with its holes: silhouettes are compared like this."""
-    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
-
-
-def iou(one: BaseGeometry, other: BaseGeometry) -> float:
-    """Exact intersection over union."""
-    shared = one.intersection(other).area
-    return float(shared / (one.area + other.area - shared))
+def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
+    """Fill narrow nicks between extensions of pieces at the rim, where that sticks out of neither outline."""
+    motion = shaping.motion
+    for index in np.flatnonzero(~shapely.is_empty(states[0].shares) | ~shapely.is_empty(states[1].shares)).tolist():
+        body = shaping.bodies[index]
+        closed = body.buffer(NICK, join_style="mitre").buffer(-NICK, join_style="mitre")
+        room = less(closed, body)
+        for state in states:
+            outline = np.array([state.outline], dtype=object)
+            room = shared(room, motion.brought_back(outline, np.array([index]), state.turn)[0])
+        if room.area < LEAST_PART:
+            continue
+        room = room.buffer(OVERLAP)
+        best = shaping.held_together(index, united(body, less(room, shaping.blocked(index, room))))
+        if best is not None and best.area > body.area + LEAST_PART:
+            shaping.add(index, best)
 
 
 def label_place(shape: BaseGeometry) -> tuple[FloatArray, float]:

@@ -21,7 +21,7 @@ from kirigami_studio.lattice.deployment import Deployment
 #: Notches contain the exact sweep of ears and clearance, and exceed it by this at most, mm.
 NOTCH_TOLERANCE = 0.01
 #: Sagitta of the chords by which bodies are swept, mm: an extension keeps as much more distance than it has to.
-BODY_TOLERANCE = 0.04
+BODY_TOLERANCE = 0.08
 #: By this, mm, outlines of what is swept are coarser than the bodies.
 COARSE = 0.25
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
@@ -54,10 +54,8 @@ class Shaping:
     broken: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        self._parts = {1: _ConvexParts(), 2: _ConvexParts()}
-        for layer, parts in self._parts.items():
-            members = np.flatnonzero(self.motion.layer == layer)
-            parts.add(members, list(self.motion.corners[members]))
+        members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
+        self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
         self.bodies = np.array([Polygon()] * len(self.motion.layer), dtype=object)
 
     @classmethod
@@ -88,7 +86,7 @@ class Shaping:
     def _rubbing_sides(self, deployment: Deployment) -> GeometryArray:
         """Strips along the sides on which pieces of one layer meet, half of their gap wide: (P,) geometry."""
         motion, ratios = self.motion, deployment.field.ratio
-        rows, columns = ratios.shape
+        columns = deployment.sheet.columns
         strips: GeometryArray = np.array([Polygon()] * len(motion.layer), dtype=object)
         if self.options.side_mm <= 0.0:
             return strips
@@ -153,36 +151,32 @@ class Shaping:
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
         """The area near a window (flat) that other pieces of its layer need when piece ``index`` is there."""
         motion, options = self.motion, self.options
+        if window.is_empty:
+            return Polygon()
         grown = options.clearance_mm + BODY_TOLERANCE
         left, bottom, right, top = window.bounds
         box = (left - grown, bottom - grown, right + grown, top + grown)
-        middle, reach = 0.5 * complex(left + right, bottom + top), 0.5 * abs(complex(right - left, top - bottom)) + grown
+        middle, half = 0.5 * complex(left + right, bottom + top), 0.5 * abs(complex(right - left, top - bottom))
         turn = float(motion.sense[index]) * motion.opening
 
         def near(mover: IntArray, place: ComplexArray, radius: FloatArray | float) -> BoolArray:
             seen = np.full(len(mover), index)
-            return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= reach + radius
+            return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= half + grown + radius
 
-        parts = self._parts[int(motion.layer[index])]
+        parts = self._parts[motion.layer[index] - 1]
         moving = parts.owner != index
         moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
-        hulls = [
-            swept_hulls(
-                parts.corners[part],
-                complex(motion.drift[parts.owner[part]] - motion.drift[index]),
-                turn,
-                BODY_TOLERANCE,
-                box,
-            )
-            for part in np.flatnonzero(moving)
-        ]
-        bodies = shapely.buffer(shapely.union_all(np.concatenate(hulls)), grown) if hulls else Polygon()
+        drifts = motion.drift[parts.owner[moving]] - motion.drift[index]
+        hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, box)
+        zone = window.buffer(grown)
+        shapely.prepare(zone)
+        bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
         mover, seen = self._passing_ears
         mover = mover[seen == index]
         radius = 0.5 * options.ear_mm + options.clearance_mm
         mover = mover[near(mover // 4, motion.corners.ravel()[mover], radius)]
         ears = self._swept_ears(mover, np.full(len(mover), index), radius).ravel()
-        touching = ears[shapely.intersects(ears, window)]
+        touching = ears[shapely.intersects(zone, ears)]
         return shapely.union_all(np.append(shapely.clip_by_rect(touching, *box), bodies))
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
@@ -200,7 +194,8 @@ class Shaping:
         """Give a piece a larger shape; it is kept in mind by all that move past it later."""
         added = shapely.get_parts(less(shape, self.bodies[index]))
         parts = [convex for part in added[shapely.area(added) > TOO_SMALL] for convex in _convex_parts(part)]
-        self._parts[int(self.motion.layer[index])].add([index] * len(parts), parts)
+        layer = self.motion.layer[index] - 1
+        self._parts[layer] = self._parts[layer].with_more(index, parts)
         self.bodies[index] = shape
 
     def placed(self, turn: float) -> GeometryArray:
@@ -214,27 +209,24 @@ class _ConvexParts:
     Attributes
     ----------
     owner : (C,) int
-    corners : list of (K,) complex, mm
+    corners : (C, K) complex, mm
+        The last one repeated where there are fewer.
     centre : (C,) complex, mm
     radius : (C,) float, mm
         Of a circle round each.
     """
 
-    def __init__(self) -> None:
-        self.owner = np.zeros(0, dtype=np.int64)
-        self.corners: list[ComplexArray] = []
-        self.centre = np.zeros(0, dtype=np.complex128)
-        self.radius = np.zeros(0)
+    def __init__(self, owner: IntArray, corners: ComplexArray) -> None:
+        self.owner, self.corners = owner, corners
+        self.centre = corners.mean(axis=1)
+        self.radius = np.abs(corners - self.centre[:, None]).max(axis=1)
 
-    def add(self, owner: IntArray | Sequence[int], corners: Sequence[ComplexArray]) -> None:
-        """Add polygons (C,) with their owners."""
-        if not len(corners):
-            return
-        centre = np.array([part.mean() for part in corners])
-        radius = np.array([np.abs(part - place).max() for part, place in zip(corners, centre, strict=True)])
-        self.owner = np.concatenate([self.owner, np.asarray(owner, dtype=np.int64)])
-        self.corners += corners
-        self.centre, self.radius = np.concatenate([self.centre, centre]), np.concatenate([self.radius, radius])
+    def with_more(self, owner: int, parts: Sequence[ComplexArray]) -> _ConvexParts:
+        """These polygons and others of one piece."""
+        rows = [self.corners, *(part[np.newaxis] for part in parts)]
+        width = max(row.shape[1] for row in rows)
+        padded = [np.pad(row, ((0, 0), (0, width - row.shape[1])), mode="edge") for row in rows]
+        return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate(padded))
 
 
 def opened(shape: BaseGeometry, width: float) -> BaseGeometry:
@@ -255,7 +247,7 @@ def shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
 
 def united(*shapes: BaseGeometry) -> BaseGeometry:
     """The areas of several shapes together."""
-    return _areas(shapely.union_all(shapes))
+    return _areas(shapely.union_all(shapes)) if shapes else Polygon()
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:

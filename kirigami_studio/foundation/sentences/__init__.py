@@ -12,6 +12,7 @@ from pathlib import PurePath
 
 from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.sentences import (
+    assembly,
     designs,
     export,
     fabricate,
@@ -26,7 +27,17 @@ from kirigami_studio.foundation.words import fill, tr, tr_n
 #: Every sentence by the code of its problem.
 SENTENCES: Mapping[str, str | tuple[str, str]] = {
     code: text
-    for table in (designs, export, fabricate, interface, mechanics, outlines, project, training_and_benchmarks)
+    for table in (
+        assembly,
+        designs,
+        export,
+        fabricate,
+        interface,
+        mechanics,
+        outlines,
+        project,
+        training_and_benchmarks,
+    )
     for code, text in table.SENTENCES.items()
 }
 

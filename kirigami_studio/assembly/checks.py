@@ -1,0 +1,262 @@
+"""Findings on a pinned plan: one piece each, walls, necks, pins and heads, no collision, and what both ends show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from kirigami_studio.assembly.motion import GeometryArray
+from kirigami_studio.assembly.pieces import Assembly, Piece
+from kirigami_studio.assembly.pinned import PinnedPlan
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.lattice.deployment import Deployment
+
+#: Angles at which a plan is looked over for collisions, beside the swept areas that it is made by.
+ANGLES = 31
+#: Overlap within a layer, mm2, that rounding explains.
+OVERLAP_MM2 = 0.01
+#: How much (mm) polygons that stand for discs may lie inside of these.
+ROUNDNESS_MM = 0.02
+#: Below this IoU with the target a plan is warned of.
+LEAST_MATCH = 0.95
+#: Halvings when the narrowest neck is looked for.
+HALVINGS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class PinnedFigures:
+    """Measures of a pinned plan.
+
+    Attributes
+    ----------
+    match, flat_match : float, 0..1
+        Exact IoU of the assembled silhouette (both layers, holes filled) with the target, and of the flat one with the
+        start outline.
+    covered, flat_covered : float, 0..1
+        Share of both outlines that no hole or gap shows through.
+    lost_flat, beyond_flat : float, 0..1
+        Area missing of the start outline, and sticking out of it, relative to it.
+    gap_mm : float
+        Least distance over the motion of two pins in one layer, in different pieces.
+    pins_apart_mm : float
+        Least distance of any two pins over the motion.
+    wall_mm : float
+        Least material round a hole.
+    neck_mm : float
+        Least width of a connection between ears; at most as wide as ears allow to measure.
+    overlap_mm2 : float
+        Largest overlap within a layer at any angle looked at.
+    kept, least_kept : float
+        Area of pieces relative to their panels: mean and least.
+    """
+
+    match: float
+    flat_match: float
+    covered: float
+    flat_covered: float
+    lost_flat: float
+    beyond_flat: float
+    gap_mm: float
+    pins_apart_mm: float
+    wall_mm: float
+    neck_mm: float
+    overlap_mm2: float
+    kept: float
+    least_kept: float
+
+
+@dataclass(frozen=True, slots=True)
+class PinnedReport:
+    """Figures and problems of a pinned plan; places are in the flat sheet, mm."""
+
+    figures: PinnedFigures
+    problems: tuple[Problem, ...]
+
+
+def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
+    """Measure a plan and list its problems, worst first.
+
+    Parameters
+    ----------
+    plan : PinnedPlan
+    angles : int, at least 2
+        How many angles from flat to target are looked at for collisions.
+    """
+    assembly, options = plan.assembly, plan.options
+    phi = assembly.phi_target
+    bodies = [body_of(piece) for piece in assembly.pieces]
+    overlap, worst_phi = largest_overlap(assembly, np.linspace(math.pi, phi, angles).tolist())
+    opened, flat = (shapely.union_all(placed_bodies(assembly, bodies, angle)) for angle in (phi, math.pi))
+    walls = [wall_mm(piece, body) for piece, body in zip(assembly.pieces, bodies, strict=True)]
+    necks = [
+        0.0 if piece.id in plan.broken else neck_mm(piece, body, options.neck_mm, 2.0 * options.keep_mm)
+        for piece, body in zip(assembly.pieces, bodies, strict=True)
+    ]
+    panels = shapely.area(shapely.polygons(assembly.deployment.panels(math.pi).reshape(-1, 4, 2) * assembly.cell_mm))
+    kept = shapely.area(bodies) / panels
+    apart, pair = pins_apart(assembly.deployment, [hinge.node for hinge in assembly.hinges], assembly.cell_mm, phi)
+    silhouette, flat_silhouette = filled(opened), filled(flat)
+    figures = PinnedFigures(
+        match=iou(silhouette, plan.opened),
+        flat_match=iou(flat_silhouette, plan.flat),
+        covered=float(plan.opened.intersection(opened).area / plan.opened.area),
+        flat_covered=float(plan.flat.intersection(flat).area / plan.flat.area),
+        lost_flat=float(plan.flat.difference(flat_silhouette).area / plan.flat.area),
+        beyond_flat=float(flat_silhouette.difference(plan.flat).area / plan.flat.area),
+        gap_mm=plan.gap_mm,
+        pins_apart_mm=apart,
+        wall_mm=min(walls),
+        neck_mm=min(necks),
+        overlap_mm2=overlap,
+        kept=float(kept.mean()),
+        least_kept=float(kept.min()),
+    )
+    places = _Places(assembly)
+    problems = [Problem.error("pinned.falls_apart", places.of(name), piece=name) for name in plan.broken]
+    needed = options.ear_mm + options.clearance_mm
+    if plan.gap_mm < needed - ROUNDNESS_MM:
+        problems.append(
+            Problem.warning("pinned.ears_meet", plan.gap_at, count=plan.tight, gap_mm=plan.gap_mm, needed_mm=needed)
+        )
+    if overlap > OVERLAP_MM2:
+        problems.append(Problem.error("pinned.pieces_collide", overlap_mm2=overlap, angle_deg=math.degrees(worst_phi)))
+    least_wall = options.asked_wall_mm
+    problems += [
+        Problem.error("pinned.wall_too_thin", places.of(piece.id), piece=piece.id, wall_mm=wall, needed_mm=least_wall)
+        for piece, wall in zip(assembly.pieces, walls, strict=True)
+        if wall < least_wall - ROUNDNESS_MM
+    ]
+    problems += [
+        Problem.warning("pinned.neck_too_narrow", places.of(piece.id), piece=piece.id, neck_mm=neck, needed_mm=least)
+        for piece, neck, least in zip(assembly.pieces, necks, [options.neck_mm] * len(necks), strict=True)
+        if 0.0 < neck < least - ROUNDNESS_MM
+    ]
+    if apart < options.head_mm:
+        where = tuple(assembly.deployment.nodes(math.pi)[pair].mean(axis=0) * assembly.cell_mm)
+        problems.append(
+            Problem.error("pinned.heads_meet", (where[0], where[1]), apart_mm=apart, head_mm=options.head_mm)
+        )
+    if figures.flat_match < options.least_flat:
+        problems.append(
+            Problem.warning(
+                "pinned.flat_outline_spoilt", lost=100.0 * figures.lost_flat, beyond=100.0 * figures.beyond_flat
+            )
+        )
+    if figures.match < LEAST_MATCH:
+        missing, beyond = plan.opened.difference(silhouette).area, silhouette.difference(plan.opened).area
+        problems.append(
+            Problem.warning(
+                "pinned.target_missed",
+                lost=100.0 * missing / plan.opened.area,
+                beyond=100.0 * beyond / plan.opened.area,
+            )
+        )
+    return PinnedReport(figures, tuple(sorted(problems, key=lambda problem: problem.severity is Severity.WARNING)))
+
+
+class _Places:
+    """Middles of pieces in the flat sheet, mm, by id."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        poses = assembly.poses(math.pi)
+        self._places = {piece.id: (float(x), float(y)) for piece, (x, y, _) in zip(assembly.pieces, poses, strict=True)}
+
+    def of(self, name: str) -> tuple[float, float]:
+        return self._places[name]
+
+
+def body_of(piece: Piece) -> Polygon:
+    """A piece as a polygon with its openings, its round holes not drilled."""
+    return Polygon(piece.outline, piece.openings)
+
+
+def placed_bodies(assembly: Assembly, bodies: Sequence[BaseGeometry], phi: float) -> GeometryArray:
+    """Bodies of all pieces where they are at ``phi``, frame of the deployment, mm."""
+    x, y, turn = assembly.poses(phi).T
+    points, owner = shapely.get_coordinates(bodies, return_index=True)
+    moved = as_plane(points) * np.exp(1j * turn)[owner] + (x + 1j * y)[owner]
+    placed: GeometryArray = shapely.set_coordinates(np.array(bodies, dtype=object), as_points(moved))
+    return placed
+
+
+def largest_overlap(assembly: Assembly, angles: Sequence[float]) -> tuple[float, float]:
+    """Largest overlap within a layer, mm2, over some angles (radians), and the angle where it is."""
+    bodies = [body_of(piece) for piece in assembly.pieces]
+    layer = np.array([piece.layer for piece in assembly.pieces])
+    worst, at = 0.0, math.pi
+    for phi in angles:
+        placed = placed_bodies(assembly, bodies, phi)
+        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
+        close = (one < other) & (layer[one] == layer[other])
+        shared = shapely.area(shapely.intersection(placed[one[close]], placed[other[close]]))
+        total = max(float(shared[layer[one[close]] == number].sum()) for number in (1, 2))
+        if total > worst:
+            worst, at = total, phi
+    return worst, at
+
+
+def wall_mm(piece: Piece, body: Polygon) -> float:
+    """Least material between a hole and the edge of its piece, or another hole."""
+    centres = np.array([hole.centre for hole in piece.holes])
+    radii = np.array([0.5 * hole.diameter_mm for hole in piece.holes])
+    walls = shapely.distance(body.boundary, shapely.points(centres)) - radii
+    walls[~shapely.contains(body, shapely.points(centres))] = 0.0
+    between = np.abs(as_plane(centres)[:, None] - as_plane(centres)) - radii[:, None] - radii
+    np.fill_diagonal(between, np.inf)
+    return float(min(walls.min(), between.min()))
+
+
+def neck_mm(piece: Piece, body: Polygon, least: float, most: float) -> float:
+    """Width of the narrowest connection between ears, mm, as far as it is between 0 and ``most``."""
+    centres = shapely.points([hole.centre for hole in piece.holes])
+
+    def holds(width: float) -> bool:
+        core = shapely.buffer(body, -0.5 * width)
+        return any(np.all(shapely.contains(part, centres)) for part in shapely.get_parts(core))
+
+    low, high = (least, 0.999 * most) if holds(least) else (0.0, least)
+    if holds(high):
+        return high
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
+
+
+def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi: float) -> tuple[float, list[int]]:
+    """Least distance of any two pins on the way from flat to ``phi``, mm, exactly, and their nodes.
+
+    The difference of two nodes is R(-a) u + R(+a) v: its square is |u|^2 + |v|^2 + 2 |u| |v| cos(t + arg v - arg u)
+    with t = 2 a.
+    """
+    index = np.array(nodes)
+    even, odd = as_plane(deployment.even_part)[index] * cell_mm, as_plane(deployment.odd_part)[index] * cell_mm
+    one, other = np.triu_indices(len(index), 1)
+    u, v = even[one] - even[other], odd[one] - odd[other]
+    turned = np.mod(np.angle(v) - np.angle(u), 2.0 * math.pi)
+    opening = math.pi - phi
+    # The cosine is least at pi, if that is on the way.
+    ends = np.minimum(np.cos(turned), np.cos(turned + opening))
+    passed = (turned <= math.pi) & (turned + opening >= math.pi) | (turned + opening >= 3.0 * math.pi)
+    least = np.abs(u) ** 2 + np.abs(v) ** 2 + 2.0 * np.abs(u) * np.abs(v) * np.where(passed, -1.0, ends)
+    nearest = int(np.argmin(least))
+    pair = [int(index[one[nearest]]), int(index[other[nearest]])]
+    return math.sqrt(max(float(least[nearest]), 0.0)), pair
+
+
+def filled(shape: BaseGeometry) -> BaseGeometry:
+    """The shape with its holes: silhouettes are compared like this."""
+    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
+
+
+def iou(one: BaseGeometry, other: BaseGeometry) -> float:
+    """Exact intersection over union."""
+    shared = one.intersection(other).area
+    return float(shared / (one.area + other.area - shared))
