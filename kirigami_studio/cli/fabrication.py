@@ -186,7 +186,7 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
     pieces, verdict = found.pieces, found.verdict
     assert pieces is not None and verdict is not None
     assembly, beds, report = pieces.made.assembly, pieces.job.beds, pieces.report
-    warnings = list(dict.fromkeys(note.text for note in (*report.problems, *report.notes, *pieces.job.notes)))
+    warnings = list(dict.fromkeys(note.text for note in (*report.problems, *pieces.job.notes)))
     if as_json:
         print_json(
             {
@@ -197,8 +197,8 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
                 "pieces": len(assembly.pieces),
                 "pins": len(assembly.hinges),
                 "beds": len(beds),
-                "iou": report.opened_iou,
-                "flat_iou": report.flat_iou,
+                "iou": report.figures.match,
+                "flat_iou": report.figures.flat_match,
                 **jam_json(verdict.as_cut),
                 "warnings": warnings,
                 "verified": [_summary(one) for one in found.verifications],

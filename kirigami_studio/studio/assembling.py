@@ -100,7 +100,7 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
         plan = pinned(design, target, settings.width_mm, options)
         report = check_pinned(plan)
-        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.opened_iou))
+        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match))
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)

@@ -529,7 +529,7 @@ def judge_assembled(candidate: Candidate, made: Assembled, verifications: Sequen
     told = {problem.text for problem in problems}
     return Verdict(
         _worst_first(problems),
-        tuple(note for note in _once([*made.report.notes, *notes]) if note.text not in told),
+        tuple(note for note in _once(notes) if note.text not in told),
         Source.SIMULATION,
         made.as_cut,
         made.as_cut.iou,

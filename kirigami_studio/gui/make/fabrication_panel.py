@@ -318,7 +318,7 @@ class FabricationPanel(Card):
             "length": readable_length(made.cut_length_mm),
             "time": readable_range(sum(work.times.low for work in works), sum(work.times.high for work in works)),
             "pieces": tr("{pieces} + {pins} pins", pieces=pieces, pins=pins),
-            "ligament": tr("{width_mm:.2f} mm", width_mm=made.report.least_neck_mm),
+            "ligament": tr("{width_mm:.2f} mm", width_mm=made.report.figures.neck_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
