@@ -19,7 +19,7 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
-from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
+from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
 from kirigami_studio.foundation.words import tr, tr_n
@@ -385,7 +385,10 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     if request.is_pinned:
         _write_pictures(request, None, paths)
         paths["cut"] = folder / "cut"
-        verdict = written_pieces(request, Output(paths["cut"], "cut")).verdict
+        try:
+            verdict = written_pieces(request, Output(paths["cut"], "cut")).verdict
+        except (ExportError, UsageError, FabricationError) as error:
+            raise FabricationError("design.not_cut", project=paths["project"], reason=str(error)) from error
         assert verdict is not None  # pieces are judged
         return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
     try:

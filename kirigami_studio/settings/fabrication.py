@@ -476,6 +476,11 @@ class PinSizes:
     head_mm: float
 
     @property
+    def margin_mm(self) -> float:
+        """Distance of the pins at the rim from both outlines: all of their ears lies inside."""
+        return 0.5 * self.ear_mm
+
+    @property
     def apart_mm(self) -> float:
         """Least distance of pins on one piece and of those that come nearest in the closed states."""
         return self.ear_mm + self.clearance_mm
@@ -498,10 +503,22 @@ def pin_sizes(settings: FabricationSettings) -> PinSizes:
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:
-    """Return how far apart pins have to stay in the closed states, mm; 0 unless the sheet is pinned."""
+    """Return how far apart pins have to stay in the closed states; 0 unless the sheet is pinned.
+
+    In mm of a lattice as wide as the sheet: the pieces' own is narrower by the margin on either side.
+
+    Raises
+    ------
+    UsageError
+        An ear that is no wider than its hole, or a sheet that has no room for the margin.
+    """
     if construction_for(settings) is not Construction.PINNED:
         return 0.0
-    return pin_sizes(settings).apart_mm
+    sizes = pin_sizes(settings)
+    inside = settings.width_mm - 2.0 * sizes.margin_mm
+    if inside <= sizes.ear_mm:
+        raise UsageError("pins.sheet_too_narrow", width_mm=settings.width_mm, margin_mm=sizes.margin_mm)
+    return sizes.apart_mm * settings.width_mm / inside
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:

@@ -48,6 +48,7 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
         clearance_mm=sizes.clearance_mm,
         neck_mm=max(material.min_ligament_mm, material.min_panel_mm),
         head_mm=sizes.head_mm,
+        margin_mm=sizes.margin_mm,
     )
 
 

@@ -15,6 +15,7 @@ import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
+from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
     Cancelled,
@@ -423,7 +424,13 @@ def written_pieces(request: CutRequest, output: Output) -> ExportedFiles:
     def level(verifications: Sequence[Verification]) -> str:
         return judge_assembled(request.candidate, pieces.made, verifications).level.value
 
-    found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
+    try:
+        found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
+    except ExportError as error:
+        broken = next((one for one in pieces.report.problems if one.severity is Severity.ERROR), None)
+        if broken is None:
+            raise
+        raise ExportError("export.cannot_be_cut", reason=broken.text) from error
     verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
     return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
