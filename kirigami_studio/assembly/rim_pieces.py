@@ -167,7 +167,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
             near = gap[piece == index]
             beside = near[rims[near]]
-            at_rim = united(*gaps[beside]).intersection(placed[index].buffer(reach))
+            at_rim = shared(united(*gaps[beside]), placed[index].buffer(reach))
             if by_shares:
                 inside = united(*gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
@@ -205,7 +205,7 @@ def _extended(
     free = less(mine, shaping.blocked(index, less(mine, body)))
     may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and mine.area - inside.area > LEAST_PART
     for room in (free, shared(free, inside)) if may_stick_out else (shared(free, inside),):
-        best = shaping.held_together(index, united(body, room))
+        best = shaping.held_together(index, united(body, room)) if shared(room, missed).area > LEAST_PART else None
         if best is None:
             continue
         added = less(best, body)

@@ -223,10 +223,12 @@ class _ConvexParts:
 
     def with_more(self, owner: int, parts: Sequence[ComplexArray]) -> _ConvexParts:
         """These polygons and others of one piece."""
-        rows = [self.corners, *(part[np.newaxis] for part in parts)]
-        width = max(row.shape[1] for row in rows)
-        padded = [np.pad(row, ((0, 0), (0, width - row.shape[1])), mode="edge") for row in rows]
-        return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate(padded))
+        if not parts:
+            return self
+        width = max(self.corners.shape[1], *map(len, parts))
+        more = np.array([[*part, *[part[-1]] * (width - len(part))] for part in parts])
+        here = np.pad(self.corners, ((0, 0), (0, width - self.corners.shape[1])), mode="edge")
+        return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate([here, more]))
 
 
 def opened(shape: BaseGeometry, width: float) -> BaseGeometry:

@@ -1,0 +1,202 @@
+"""Pinned designs: every piece whole, walls and necks, no collision, both outlines; each planted fault is found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
+from kirigami_studio.assembly.options import PinOptions
+from kirigami_studio.assembly.pieces import Piece, RoundHole
+from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.outlines.outline import Outline
+from tests.unit.assembly.pinned_designs import bodies_at, overlap_at, pinwheel
+
+WIDTH_MM = 150.0
+#: Of designs of 3 x 3 voids.
+SMALL_MM = 120.0
+#: Angles at which pieces of one layer may not overlap; random ones, beside those of the checks.
+ANGLES = np.random.default_rng(5).uniform(0.0, math.pi, 41)
+
+
+@pytest.fixture(scope="module")
+def plan() -> PinnedPlan:
+    return pinned(*pinwheel(), WIDTH_MM)
+
+
+@pytest.fixture(scope="module")
+def report(plan: PinnedPlan) -> PinnedReport:
+    return check_pinned(plan)
+
+
+def codes(report: PinnedReport) -> set[str]:
+    return {problem.code for problem in report.problems}
+
+
+def test_that_a_pinwheel_has_no_problems_and_shows_both_outlines(report: PinnedReport) -> None:
+    assert report.problems == ()
+    assert report.figures.match > 0.99 and report.figures.flat_match > 0.98
+    assert report.figures.covered > 0.985 and report.figures.flat_covered > 0.985
+    assert report.figures.overlap_mm2 < 0.01
+
+
+def test_that_figures_are_those_of_the_pieces_as_posed(plan: PinnedPlan, report: PinnedReport) -> None:
+    for phi, outline, found in (
+        (0.0, plan.opened, report.figures.match),
+        (math.pi, plan.flat, report.figures.flat_match),
+    ):
+        united = shapely.union_all([body for _, body in bodies_at(plan.assembly, phi)])
+        whole = shapely.union_all([shapely.Polygon(part.exterior) for part in shapely.get_parts(united)])
+        assert found == pytest.approx(whole.intersection(outline).area / whole.union(outline).area, abs=1e-9)
+    assert np.ptp(plan.flat.exterior.coords, axis=0)[0] == pytest.approx(WIDTH_MM)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_that_pieces_of_uneven_pinwheels_are_whole_and_never_overlap_in_their_layer(seed: int) -> None:
+    design, target = pinwheel(3, 4, 0.24, 0.06, seed, phi=(0.0, 0.5)[seed - 1])
+    assembly = pinned(design, target, WIDTH_MM).assembly
+    assert all(shapely.Polygon(piece.outline, piece.openings).is_valid for piece in assembly.pieces)
+    opening = math.pi - assembly.phi_target
+    assert max(overlap_at(assembly, float(math.pi - opening * share)) for share in ANGLES / math.pi) < 1e-6
+
+
+def test_that_pins_stay_in_both_of_their_pieces_at_all_angles(plan: PinnedPlan) -> None:
+    assembly = plan.assembly
+    assert len(assembly.hinges) == 40
+    for phi in (0.0, 1.0, 2.5, math.pi):
+        poses = {piece.id: pose for piece, pose in zip(assembly.pieces, assembly.poses(phi), strict=True)}
+        for hinge in assembly.hinges:
+            places = []
+            for name, (x, y) in zip(hinge.pieces, hinge.at, strict=True):
+                left, up, turn = poses[name]
+                places.append(complex(left, up) + complex(x, y) * np.exp(1j * turn))
+                holes = [hole.centre for hole in assembly.by_id[name].holes]
+                assert np.min(np.abs(np.array(holes) - (x, y)).max(axis=1)) < 1e-9
+            assert abs(places[0] - places[1]) < 1e-6
+
+
+def test_that_layers_alternate_and_names_count_in_reading_order(plan: PinnedPlan) -> None:
+    assert [piece.id for piece in plan.assembly.pieces[:7]] == ["A1", "B1", "A2", "B2", "A3", "B3", "A4"]
+    assert {piece.layer for piece in plan.assembly.pieces if sum(piece.panel) % 2 == 0} == {1}
+    for piece in plan.assembly.pieces:
+        body = shapely.Polygon(piece.outline, piece.openings)
+        drilled = body.difference(
+            shapely.union_all([shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm) for hole in piece.holes])
+        )
+        assert drilled.contains(shapely.Point(piece.label_at).buffer(0.5 * piece.label_mm))
+        assert piece.label_mm > 3.0
+
+
+def test_that_extensions_draw_the_outlines_that_panels_alone_do_not(report: PinnedReport) -> None:
+    short = check_pinned(pinned(*pinwheel(), WIDTH_MM, PinOptions(reach_mm=0.0, margin_mm=0.0)), 2)
+    assert report.figures.match > short.figures.match + 0.01
+    assert report.figures.kept > short.figures.kept + 0.1
+
+
+def test_that_pieces_are_cut_along_another_target_and_the_flat_outline_limits_it() -> None:
+    design, _ = pinwheel(3, 3)
+    angle = 2.0 * math.pi * np.arange(60) / 60
+    circle = Outline.from_points(np.column_stack([np.cos(angle), np.sin(angle)]), "circle")
+    loose, firm = (
+        check_pinned(pinned(design, circle, SMALL_MM, PinOptions(least_flat=least)), 2).figures for least in (0.5, 0.99)
+    )
+    assert loose.match > firm.match + 0.02
+    assert loose.flat_match < firm.flat_match - 0.002
+    assert firm.lost_flat < 0.03
+
+
+def test_that_the_weight_decides_which_outline_pieces_may_stick_out_of() -> None:
+    design, _ = pinwheel(3, 3)
+    target = Outline.from_points([(0, 0), (1.12, 0), (1, 1), (0, 1)], "wedge")
+    flat, even, opened = (
+        check_pinned(pinned(design, target, SMALL_MM, PinOptions(weight=weight)), 2).figures
+        for weight in (0.2, 0.5, 0.9)
+    )
+    assert flat.match < even.match <= opened.match + 1e-9
+    assert opened.beyond_flat > even.beyond_flat + 1e-4
+    assert flat.flat_match > even.flat_match
+
+
+def test_that_too_small_a_gap_is_found_with_its_place(plan: PinnedPlan) -> None:
+    tight = check_pinned(pinned(*pinwheel(3, 3, 0.06), SMALL_MM), 5)
+    assert {"pinned.ears_meet", "pinned.wall_too_thin"} <= codes(tight)
+    found = next(problem for problem in tight.problems if problem.code == "pinned.ears_meet")
+    assert found.where is not None and plan.flat.contains(shapely.Point(found.where))
+    assert found.fields["gap_mm"] < found.fields["needed_mm"] == pytest.approx(9.8)
+    assert tight.figures.overlap_mm2 < 0.01
+
+
+def test_that_pieces_that_fall_apart_are_found() -> None:
+    assert "pinned.falls_apart" in codes(check_pinned(pinned(*pinwheel(3, 3, 0.02), 70.0), 2))
+
+
+def test_that_a_planted_collision_is_found(plan: PinnedPlan) -> None:
+    pieces = list(plan.assembly.pieces)
+    pieces[12] = replace(pieces[12], outline=pieces[12].outline * 1.4)
+    faulty = replace(plan, assembly=replace(plan.assembly, pieces=tuple(pieces)))
+    assert "pinned.pieces_collide" in codes(check_pinned(faulty, 7))
+
+
+def test_that_wide_heads_and_wide_necks_are_found(plan: PinnedPlan) -> None:
+    assert "pinned.heads_meet" in codes(check_pinned(replace(plan, options=replace(plan.options, head_mm=20.0)), 2))
+    assert "pinned.neck_too_narrow" in codes(check_pinned(replace(plan, options=replace(plan.options, neck_mm=9.1)), 2))
+
+
+def test_that_the_distance_of_pins_is_exact_over_the_motion(plan: PinnedPlan) -> None:
+    assembly = plan.assembly
+    nodes = [hinge.node for hinge in assembly.hinges]
+    for phi in (0.0, 1.2, 2.9):
+        found, pair = pins_apart(assembly.deployment, nodes, assembly.cell_mm, phi)
+        least = math.inf
+        for angle in np.linspace(phi, math.pi, 301):
+            x, y = (assembly.deployment.nodes(float(angle))[nodes] * assembly.cell_mm).T
+            apart = np.abs(np.subtract.outer(x + 1j * y, x + 1j * y))
+            least = min(least, float(apart[np.triu_indices(len(nodes), 1)].min()))
+        assert found <= least + 1e-9 and found == pytest.approx(least, abs=0.01)
+        assert set(pair) <= set(nodes)
+
+
+def test_that_walls_and_necks_are_measured() -> None:
+    dumbbell = shapely.union_all([shapely.box(0, 0, 10, 10), shapely.box(9, 3, 21, 7.5), shapely.box(20, 0, 30, 10)])
+    holes = (RoundHole(np.array([5.0, 5.0]), 3.0), RoundHole(np.array([26.0, 5.0]), 3.0))
+    piece = Piece("A1", 1, (0, 0), shapely.get_coordinates(dumbbell)[:-1], holes)
+    assert wall_mm(piece, dumbbell) == pytest.approx(2.5)
+    assert neck_mm(piece, dumbbell, 3.0, 8.0) == pytest.approx(4.5, abs=0.1)
+    assert neck_mm(piece, dumbbell, 6.0, 8.0) == pytest.approx(4.5, abs=0.1)
+    outside = replace(piece, holes=(RoundHole(np.array([40.0, 5.0]), 3.0),))
+    assert wall_mm(outside, dumbbell) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "code"),
+    [
+        ({"pin_mm": -1.0}, "pins.out_of_range"),
+        ({"clearance_mm": math.nan}, "pins.out_of_range"),
+        ({"weight": 1.5}, "pins.out_of_range"),
+        ({"ear_mm": 3.0}, "pins.ear_within_hole"),
+    ],
+)
+def test_that_sizes_that_make_no_sense_are_refused(wrong: dict[str, float], code: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        PinOptions(**wrong)
+    assert refused.value.code == code
+
+
+def test_that_a_sheet_without_room_for_its_margins_is_refused() -> None:
+    with pytest.raises(UsageError) as refused:
+        pinned(*pinwheel(), 15.0)
+    assert refused.value.code == "pins.sheet_too_narrow"
+
+
+def test_that_the_margin_keeps_the_pins_of_the_rim_inside_of_both_outlines(plan: PinnedPlan) -> None:
+    for phi, outline in ((0.0, plan.opened), (math.pi, plan.flat)):
+        nodes = plan.assembly.deployment.nodes(phi) * plan.assembly.cell_mm
+        pins = shapely.points(nodes[[hinge.node for hinge in plan.assembly.hinges]])
+        assert np.all(shapely.contains(outline, pins))
+        assert shapely.distance(outline.exterior, pins).min() > 0.5 * plan.options.pin_mm + 1.0
+    assert iou(plan.flat, plan.flat.envelope) == pytest.approx(1.0)
