@@ -235,6 +235,8 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
 
 
 def label_place(shape: BaseGeometry) -> tuple[FloatArray, float]:
-    """Centre and radius of the largest circle in a shape, mm."""
+    """Centre and radius of the largest circle in a shape, mm; 0 in an empty one."""
+    if shape.is_empty:
+        return np.zeros(2), 0.0
     line = shapely.maximum_inscribed_circle(shape, tolerance=0.5)
     return shapely.get_coordinates(line)[0], float(line.length)

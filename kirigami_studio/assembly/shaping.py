@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -26,6 +26,8 @@ BODY_TOLERANCE = 0.08
 COARSE = 0.25
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
+#: Grid (mm) of overlays that fail in floating point, where edges nearly coincide.
+SNAPPED_MM = 1e-6
 #: Parts added to a piece overlap it by this, mm, so that they hold together in floating point.
 OVERLAP = 0.004
 #: Differences between polygons that are smaller, mm2, are those of rounding.
@@ -239,17 +241,25 @@ def opened(shape: BaseGeometry, width: float) -> BaseGeometry:
 
 def less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas of a shape outside of another."""
-    return _areas(shape.difference(other))
+    return _areas(_overlay(shapely.difference, shape, other))
 
 
 def shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas that two shapes share."""
-    return _areas(shape.intersection(other))
+    return _areas(_overlay(shapely.intersection, shape, other))
 
 
 def united(*shapes: BaseGeometry) -> BaseGeometry:
     """The areas of several shapes together."""
-    return _areas(shapely.union_all(shapes)) if shapes else Polygon()
+    return _areas(_overlay(shapely.union_all, shapes)) if shapes else Polygon()
+
+
+def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Sequence[BaseGeometry]) -> BaseGeometry:
+    """An overlay in floating point, or on a fine grid where that fails."""
+    try:
+        return overlay(*shapes)
+    except shapely.GEOSException:
+        return overlay(*shapes, grid_size=SNAPPED_MM)
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:
