@@ -17,6 +17,7 @@ from types import MappingProxyType
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.words import mark
 
 RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
 
@@ -86,32 +87,32 @@ class Profile:
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
 _BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
 _TABLE = (
-    Profile("any", "Any machine: everything red, cut in file order", _ALL_RED),
+    Profile("any", mark("Any machine: everything red, cut in file order"), _ALL_RED),
     Profile(
         "lightburn",
-        "LightBurn: one colour for each layer",
+        mark("LightBurn: one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.only_red_is_cut"),
         name_colour=WHITE,
     ),
-    Profile("k40", "MeerK40t, K40 Whisperer: everything red, arcs as chords", _ALL_RED, flatten=True),
+    Profile("k40", mark("MeerK40t, K40 Whisperer: everything red, arcs as chords"), _ALL_RED, flatten=True),
     Profile(
         "single",
-        "One colour, one layer: for programs that sort by colour or layer",
+        mark("One colour, one layer: for programs that sort by colour or layer"),
         _ALL_RED,
         one_layer=True,
         name_colour=None,
     ),
     Profile(
         "layers",
-        "One file for each layer, in a folder (CircuitPro)",
+        mark("One file for each layer, in a folder (CircuitPro)"),
         _ALL_RED,
         file_per_layer=True,
         note=Note.of("profile.one_origin"),
     ),
     Profile(
         "slots",
-        "Cutting service: closed contours only, every slit as a slot",
+        mark("Cutting service: closed contours only, every slit as a slot"),
         _BY_LAYER,
         slots=True,
         note=Note.of("profile.kerf_is_theirs"),
@@ -120,7 +121,7 @@ _TABLE = (
     # One colour: Design Space lays every colour on a mat of its own.
     Profile(
         "cricut",
-        "Cricut Design Space: SVG in one colour, counted at 72 dpi",
+        mark("Cricut Design Space: SVG in one colour, counted at 72 dpi"),
         _ALL_RED,
         one_layer=True,
         note=Note.of("profile.attach_and_measure"),
@@ -129,7 +130,7 @@ _TABLE = (
     ),
     Profile(
         "silhouette",
-        "Silhouette Studio: everything red, arcs as chords",
+        mark("Silhouette Studio: everything red, arcs as chords"),
         _ALL_RED,
         flatten=True,
         note=Note.of("profile.measure"),
@@ -138,7 +139,7 @@ _TABLE = (
     ),
     Profile(
         "glowforge",
-        "Glowforge: SVG with one colour for each layer",
+        mark("Glowforge: SVG with one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.order_of_steps"),
         name_colour=WHITE,
@@ -146,7 +147,7 @@ _TABLE = (
     ),
     Profile(
         "xtool",
-        "xTool Studio: SVG with one colour for each layer",
+        mark("xTool Studio: SVG with one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.order_of_steps"),
         name_colour=WHITE,
