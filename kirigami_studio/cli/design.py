@@ -118,47 +118,26 @@ def design(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class DesignJob:
-    """One target to design.
+    """One target to design."""
 
-    Attributes
-    ----------
-    request : Request
-        Its grid may be open.
-    fabrication : FabricationSettings
-    least_panel_mm : float
-    files : bool
-        Whether the design comes with its files.
-    name : str
-        Of the best design; "" for the name that it gets by itself.
-    """
-
-    request: Request
+    request: Request  #: its grid may be open
     fabrication: FabricationSettings
     least_panel_mm: float
-    files: bool
-    name: str = ""
+    files: bool  #: whether the design comes with its files
+    name: str = ""  #: of the best design; "" for the name that it gets by itself
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DesignOutcome:
-    """The designs of a job.
-
-    Attributes
-    ----------
-    result : Result
-    request : CutRequest
-        The best design that can be cut in its project, and how it is cut.
-    verdict : Verdict
-    files : mapping of str to (str, bytes)
-        Name and content by role, of a design from elsewhere that was asked for with its files.
-    notes : tuple of Note
-        What is not as it was asked for: no design is trimmed, or another one than the best is cut.
-    """
+    """The designs of a job."""
 
     result: Result
-    request: CutRequest
+    request: CutRequest  #: the best design that can be cut in its project, and how it is cut
     verdict: Verdict
+    #: mapping of str to (str, bytes); name and content by role, of a design from elsewhere that was asked for with its
+    #: files.
     files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
+    #: What is not as it was asked for: no design is trimmed, or another one than the best is cut.
     notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:

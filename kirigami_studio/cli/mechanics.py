@@ -60,26 +60,15 @@ def mechanics(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Cut:
-    """A sheet as it is cut.
+    """A sheet as it is cut."""
 
-    Attributes
-    ----------
-    design, deployment : Deployment
-        As designed, and as it is cut.
-    sheet : SheetNetwork
-    settings : FabricationSettings
-    target : Outline or None
-    phi : float, radians
-        At which the sheet is meant to show the target.
-    material : Material
-    """
-
+    #: design, deployment: as designed, and as it is cut.
     design: Deployment
     deployment: Deployment
     sheet: SheetNetwork
     settings: FabricationSettings
     target: Outline | None
-    phi: float
+    phi: float  #: radians; at which the sheet is meant to show the target
     material: Material
 
 

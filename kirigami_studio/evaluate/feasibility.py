@@ -37,18 +37,10 @@ CONTACT_ACCURACY = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """First self-contact of the outline on the way from the compact sheet to the target angle.
+    """First self-contact of the outline on the way from the compact sheet to the target angle."""
 
-    Attributes
-    ----------
-    phi : float, radians
-        Largest angle found at which the outline crosses itself, exact to 1e-4.
-    where : (x, y) float, unit cells
-        Place of the crossing in the layout's own frame at that angle.
-    """
-
-    phi: float
-    where: tuple[float, float]
+    phi: float  #: radians; largest angle found at which the outline crosses itself, exact to 1e-4
+    where: tuple[float, float]  #: (x, y), unit cells; place of the crossing in the layout's own frame at that angle
 
     def to_json(self) -> dict[str, object]:
         """Plain numbers: ``phi`` (radians) and ``where`` [x, y]."""

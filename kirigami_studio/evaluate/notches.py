@@ -64,18 +64,10 @@ EIGHT_WAYS = np.ones((3, 3), dtype=np.intp)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DeepCut:
-    """What stays of all panels.
+    """What stays of all panels."""
 
-    Attributes
-    ----------
-    kept : KeptPanels
-        Of every panel of the sheet, row by row.
-    voids : (m, n) bool
-        The voids that stay.
-    """
-
-    kept: KeptPanels
-    voids: BoolArray
+    kept: KeptPanels  #: of every panel of the sheet, row by row
+    voids: BoolArray  #: (m, n); the voids that stay
 
 
 def deep_cut(

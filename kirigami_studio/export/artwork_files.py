@@ -59,18 +59,6 @@ OPENED_OVERLAP = 4e-4
 class ArtworkJob:
     """The contents of the files of a printed sheet.
 
-    Attributes
-    ----------
-    artwork : Artwork
-    job : ExportJob
-        With its plan.
-    dpi : float
-        Of the PNG.
-    bleed_mm : float
-        How far panels at the sheet's edge are printed beyond it.
-    margin_mm : float
-        Around the frame of the cut file; 0 for pages that are exactly that frame.
-
     Raises
     ------
     ExportError
@@ -78,10 +66,10 @@ class ArtworkJob:
     """
 
     artwork: Artwork
-    job: ExportJob
-    dpi: float = USUAL_DPI
-    bleed_mm: float = USUAL_BLEED_MM
-    margin_mm: float = USUAL_MARGIN_MM
+    job: ExportJob  #: with its plan
+    dpi: float = USUAL_DPI  #: of the PNG
+    bleed_mm: float = USUAL_BLEED_MM  #: how far panels at the sheet's edge are printed beyond it
+    margin_mm: float = USUAL_MARGIN_MM  #: around the frame of the cut file; 0 for pages that are exactly that frame
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.margin_mm <= MOST_MARGIN_MM:

@@ -179,20 +179,11 @@ def draw_polygons(
 
 @dataclass(frozen=True, slots=True)
 class PictureFrame:
-    """Which part of the plane a picture shows.
+    """Which part of the plane a picture shows."""
 
-    Attributes
-    ----------
-    low : (x, y)
-        Lower left corner, in the frame of the drawing.
-    scale : float
-        Pixels per unit.
-    pixels : (width, height)
-    """
-
-    low: tuple[float, float]
-    scale: float
-    pixels: tuple[int, int]
+    low: tuple[float, float]  #: (x, y); lower left corner, in the frame of the drawing
+    scale: float  #: pixels per unit
+    pixels: tuple[int, int]  #: (width, height)
 
     @classmethod
     def around(cls, clouds: Sequence[FloatArray], longest: int, margin: float = 0.05) -> PictureFrame:

@@ -41,40 +41,21 @@ NAME_LAYER = "NAME"
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What one kind of program or service wants.
+    """What one kind of program or service wants."""
 
-    Attributes
-    ----------
-    key, name : str
-        For the command line, and for the user.
-    colour : mapping of Layer to int
-        AutoCAD colour index.
-    one_layer : bool
-        Everything on the layer ``ONE_LAYER``, in file order.
-    flatten : bool
-        Arcs as chords.
-    file_per_layer : bool
-        A folder of files instead of one file.
-    slots : bool
-        Closed contours only: every slit becomes the outline of the slot that it burns.
-    note : Note or None
-        What to know before importing.
-    svg_dpi : float
-        Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width
-        and height say mm in any case.
-    name_colour : int or None
-        AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
-    """
-
+    #: key, name: for the command line, and for the user.
     key: str
     name: str
-    colour: Mapping[Layer, int]
-    one_layer: bool = False
-    flatten: bool = False
-    file_per_layer: bool = False
-    slots: bool = False
-    note: Note | None = None
+    colour: Mapping[Layer, int]  #: AutoCAD colour index
+    one_layer: bool = False  #: everything on the layer ``ONE_LAYER``, in file order
+    flatten: bool = False  #: arcs as chords
+    file_per_layer: bool = False  #: a folder of files instead of one file
+    slots: bool = False  #: closed contours only: every slit becomes the outline of the slot that it burns
+    note: Note | None = None  #: what to know before importing
+    #: AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
     name_colour: int | None = BLUE
+    #: Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width and
+    #: height say mm in any case.
     svg_dpi: float = MM_DPI
 
     def layer_name(self, layer: Layer) -> str:

@@ -33,25 +33,13 @@ TIP_CHORD_MM = 5e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """One curve as a file holds it.
+    """One curve as a file holds it."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        The first point of a closed stroke is not repeated.
-    closed : bool
-    layer : str
-        Name in the file.
-    colour : int
-        AutoCAD colour index.
-    bulges : (P,) float or None
-        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
-    """
-
-    points: FloatArray
+    points: FloatArray  #: (P, 2), mm; the first point of a closed stroke is not repeated
     closed: bool
-    layer: str
-    colour: int
+    layer: str  #: name in the file
+    colour: int  #: AutoCAD colour index
+    #: (P,); arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
     bulges: FloatArray | None = None
 
     def travelled(self, chord_mm: float = CHORD_MM) -> FloatArray:
@@ -139,19 +127,10 @@ def _chord_line(path: CutPath, plan: CutPlan) -> LineString:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What the machine does for a file, which need not be what it would do for the plan: slots are twice as long.
+    """What the machine does for a file, which need not be what it would do for the plan: slots are twice as long."""
 
-    Attributes
-    ----------
-    cut_length_mm : float
-        Of one pass.
-    travel_mm : float
-        Way with the beam off, from the origin to the first cut and between cuts.
-    times : CutTimes
-    """
-
-    cut_length_mm: float
-    travel_mm: float
+    cut_length_mm: float  #: of one pass
+    travel_mm: float  #: way with the beam off, from the origin to the first cut and between cuts
     times: CutTimes
 
 

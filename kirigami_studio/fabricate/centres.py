@@ -42,33 +42,16 @@ ON_NODE_MM = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Centres:
-    """Where all connectors of a sheet turn.
+    """Where all connectors of a sheet turn."""
 
-    Attributes
-    ----------
-    position : (H, 2) float, mm
-        In the frame of the lines.
-    bodies : (C, 2, 2) float, mm
-        The cuts from centre to centre.
-    normal : (H, 2) float
-        Unit vectors away from the through cut on the slit's side.
-    height_mm : (H,) float
-        How far the centre is from the centre line of the through cut, or of the outline, on the slit's side.
-    slant : (H,) float, radians
-        Angle of the slit from the normal towards a quarter turn to the left of it.
-    span_mm : (H,) float
-        Finished width and kerf together.
-    facing : (S,) bool
-        Slits whose two connectors, one on each side, had to move apart.
-    """
-
-    position: FloatArray
-    bodies: FloatArray
-    normal: FloatArray
+    position: FloatArray  #: (H, 2), mm; in the frame of the lines
+    bodies: FloatArray  #: (C, 2, 2), mm; the cuts from centre to centre
+    normal: FloatArray  #: (H, 2); unit vectors away from the through cut on the slit's side
+    #: (H,); how far the centre is from the centre line of the through cut, or of the outline, on the slit's side.
     height_mm: FloatArray
-    slant: FloatArray
-    span_mm: FloatArray
-    facing: BoolArray
+    slant: FloatArray  #: (H,), radians; angle of the slit from the normal towards a quarter turn to the left of it
+    span_mm: FloatArray  #: (H,); finished width and kerf together
+    facing: BoolArray  #: (S,); slits whose two connectors, one on each side, had to move apart
 
     @property
     def circle(self) -> tuple[FloatArray, FloatArray]:

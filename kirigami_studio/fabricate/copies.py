@@ -24,24 +24,12 @@ SAME_MM = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Copies:
-    """Where the copies lie.
+    """Where the copies lie."""
 
-    Attributes
-    ----------
-    places : (C, 2) float, mm
-        Lower left corners, row by row from the bottom; the first is (0, 0).
-    size_mm : (width, height)
-        All that is cut of one copy.
-    gap_mm : float
-        Between the cuts of neighbours.
-    notes : tuple of Note
-        Where there are fewer than asked for.
-    """
-
-    places: FloatArray
-    size_mm: tuple[float, float]
-    gap_mm: float
-    notes: tuple[Note, ...] = ()
+    places: FloatArray  #: (C, 2), mm; lower left corners, row by row from the bottom; the first is (0, 0)
+    size_mm: tuple[float, float]  #: (width, height); all that is cut of one copy
+    gap_mm: float  #: between the cuts of neighbours
+    notes: tuple[Note, ...] = ()  #: where there are fewer than asked for
 
     def __len__(self) -> int:
         return len(self.places)

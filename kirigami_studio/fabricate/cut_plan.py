@@ -62,66 +62,38 @@ WHY_STRAIGHT = {
 
 @dataclass(frozen=True, eq=False)
 class CutPlan:
-    """A job for the cutter.
+    """A job for the cutter."""
 
-    Attributes
-    ----------
-    paths : tuple of CutPath
-        In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
-        are tabs).  Smallest coordinates are 0, y up.
-    size_mm : (width, height)
-        The finished sheet; of a trimmed one, what it was before.
-    connector_mm, kerf_mm, overcut_mm : float
-        Finished connector width asked for, full cut width, reach of edge cuts beyond the outline.
-    hinges : Hinges
-    material : Material
-    design_hash : str
-        Identifies the sheet that the plan was made from, and what was trimmed off it.
-    options : CutOptions
-    notes : tuple of Note
-        Notes to read before cutting.
-    panels : tuple of (P, 2) float, mm
-        Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
-    centres : (H, 2) float or None, mm
-        Where the connectors turn; None for styles that do not place them.
-    void_miss_mm : float or None
-        By how much a void misses being a parallelogram of its centres, at most; None without centres.
-    made : Deployment or None
-        The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
-    origin : mapping of str to str
-        Where the design comes from, repeated in every file of the plan; decides nothing.
-    engraving : Engraving or None
-        A name on the sheet, which is engraved before anything is cut and counts as no cut.
-    name : str
-        That was to be engraved, "" for none; the sheet may have no room for it.
-    trimmed : int
-        Panels of which something was trimmed off.
-    verdict : str
-        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
-    chosen_machine : Machine or None
-        That was asked for; None for the one that the material is for.
-    """
-
+    #: In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
+    #: are tabs).  Smallest coordinates are 0, y up.
     paths: tuple[CutPath, ...]
-    size_mm: tuple[float, float]
+    size_mm: tuple[float, float]  #: (width, height); the finished sheet; of a trimmed one, what it was before
+    #: connector_mm, kerf_mm, overcut_mm: finished connector width asked for, full cut width, reach of edge cuts beyond
+    #: the outline.
     connector_mm: float
     kerf_mm: float
     overcut_mm: float
     hinges: Hinges
     material: Material
-    design_hash: str
+    design_hash: str  #: identifies the sheet that the plan was made from, and what was trimmed off it
     options: CutOptions = STRAIGHT
-    notes: tuple[Note, ...] = ()
+    notes: tuple[Note, ...] = ()  #: notes to read before cutting
+    #: tuple of (P, 2) float, mm; panels between the centre lines of the cuts, row by row; four corners each unless
+    #: trimmed.
     panels: tuple[FloatArray, ...] = ()
-    centres: FloatArray | None = None
+    centres: FloatArray | None = None  #: (H, 2), mm; where the connectors turn; None for styles that do not place them.
+    #: By how much a void misses being a parallelogram of its centres, at most; None without centres.
     void_miss_mm: float | None = None
+    #: The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
     made: Deployment | None = None
+    #: Where the design comes from, repeated in every file of the plan; decides nothing.
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
+    #: A name on the sheet, which is engraved before anything is cut and counts as no cut.
     engraving: Engraving | None = None
-    name: str = ""
-    trimmed: int = 0
-    verdict: str = ""
-    chosen_machine: Machine | None = None
+    name: str = ""  #: that was to be engraved, "" for none; the sheet may have no room for it
+    trimmed: int = 0  #: panels of which something was trimmed off
+    verdict: str = ""  #: level of the verdict on the sheet, repeated in every file of the plan; decides nothing
+    chosen_machine: Machine | None = None  #: That was asked for; None for the one that the material is for.
 
     @cached_property
     def machine(self) -> Machine:

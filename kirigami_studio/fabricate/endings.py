@@ -41,31 +41,18 @@ APEX_RADII = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Seat:
-    """The frame in which the end of one slit is drawn.
+    """The frame in which the end of one slit is drawn."""
 
-    Attributes
-    ----------
-    junction : (2,) float, mm
-        The T-junction, on the centre line of the through cut (or on the nominal edge of the sheet).
-    normal, side : (2,) float
-        Unit vectors away from the through cut on the slit's side, and along it, a quarter turn to the left of it.
-    slant : float, radians
-        Angle of the slit from the normal towards ``side``.
-    gap_mm : float
-        Perpendicular distance from the through cut (or the nominal edge) that leaves the finished width.
-    span_mm : float
-        Finished width and kerf together: the measure of all lengths at this hinge.
-    reach_mm : (2,) float
-        How far the through cut goes on from the junction, against ``side`` and along it.
-    """
-
+    #: (2,), mm; the T-junction, on the centre line of the through cut (or on the nominal edge of the sheet).
     junction: FloatArray
+    #: normal, side: (2,); unit vectors away from the through cut on the slit's side, and along it, a quarter turn to
+    #: the left of it.
     normal: FloatArray
     side: FloatArray
-    slant: float
-    gap_mm: float
-    span_mm: float
-    reach_mm: FloatArray
+    slant: float  #: radians; angle of the slit from the normal towards ``side``
+    gap_mm: float  #: perpendicular distance from the through cut (or the nominal edge) that leaves the finished width
+    span_mm: float  #: finished width and kerf together: the measure of all lengths at this hinge
+    reach_mm: FloatArray  #: (2,); how far the through cut goes on from the junction, against ``side`` and along it
 
     def at(self, angle: float, radius: float) -> FloatArray:
         """The point (2,) in a direction (radians from the normal towards ``side``) from the junction."""
@@ -124,26 +111,13 @@ def seats(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ending:
-    """The end of one slit.
+    """The end of one slit."""
 
-    Attributes
-    ----------
-    tip : (2,) float, mm
-        Where the slit ends; one of ``points``.
-    points : (P, 2) float, mm
-    bulges : (P,) float or None
-        See :mod:`~kirigami_studio.fabricate.cut_path`.
-    closed : bool
-        A relief hole, whose inside falls out.
-    flexure_mm : float
-        Length over which the connector bends.
-    """
-
-    tip: FloatArray
-    points: FloatArray
-    bulges: FloatArray | None
-    closed: bool
-    flexure_mm: float
+    tip: FloatArray  #: (2,), mm; where the slit ends; one of ``points``
+    points: FloatArray  #: (P, 2), mm
+    bulges: FloatArray | None  #: (P,); see :mod:`~kirigami_studio.fabricate.cut_path`
+    closed: bool  #: a relief hole, whose inside falls out
+    flexure_mm: float  #: length over which the connector bends
 
 
 def attempts(style: ConnectorStyle) -> int:

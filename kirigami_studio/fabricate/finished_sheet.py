@@ -30,34 +30,18 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Ligament:
-    """The narrowest place between two cuts.
+    """The narrowest place between two cuts."""
 
-    Attributes
-    ----------
-    width_mm : float
-        Finished width; negative where the cuts run into each other.
-    where : (x, y), mm
-        Middle of the shortest connection.
-    """
-
-    width_mm: float
-    where: tuple[float, float]
+    width_mm: float  #: finished width; negative where the cuts run into each other
+    where: tuple[float, float]  #: (x, y), mm; middle of the shortest connection
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatedCut:
-    """Places that are cut more than once.
+    """Places that are cut more than once."""
 
-    Attributes
-    ----------
-    length_mm : float
-        Altogether.
-    where : (x, y) or None, mm
-        Middle of the longest stretch.
-    """
-
-    length_mm: float
-    where: tuple[float, float] | None
+    length_mm: float  #: altogether
+    where: tuple[float, float] | None  #: (x, y), mm; middle of the longest stretch
 
 
 def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[BaseGeometry], kerf_mm: float) -> list[Polygon]:

@@ -42,29 +42,14 @@ BESIDE_GAPS = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HingedCuts:
-    """Cuts and what their ends are.
+    """Cuts and what their ends are."""
 
-    Attributes
-    ----------
-    pieces : tuple of CutPiece
-        Slits and edge cuts, then the shapes at their ends.
-    seats : tuple of Seat
-        Of every hinge.
-    places : tuple of Place
-        Where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took.
-    shapes : mapping of hinge to int
-        Number of the piece that is the shape at a hinge, for those that have one.
-    flexure_mm : (H,) float
-        Length over which each connector bends.
-    straight : Counter of Obstacle
-        How many hinges stayed straight although a style was asked for, by what was in the way.
-    """
-
-    pieces: tuple[CutPiece, ...]
-    seats: tuple[Seat, ...]
-    places: tuple[Place, ...]
-    shapes: Mapping[int, int]
-    flexure_mm: FloatArray
+    pieces: tuple[CutPiece, ...]  #: slits and edge cuts, then the shapes at their ends
+    seats: tuple[Seat, ...]  #: of every hinge
+    places: tuple[Place, ...]  #: where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took
+    shapes: Mapping[int, int]  #: number of the piece that is the shape at a hinge, for those that have one
+    flexure_mm: FloatArray  #: (H,); length over which each connector bends
+    #: How many hinges stayed straight although a style was asked for, by what was in the way.
     straight: Counter[Obstacle]
 
     def moved(self, move: Callable[[FloatArray], FloatArray]) -> HingedCuts:
@@ -268,18 +253,10 @@ def _outwards(foot: FloatArray, outline: Polygon) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SlitEnd:
-    """What is cut at one hinge.
+    """What is cut at one hinge."""
 
-    Attributes
-    ----------
-    line : LineString, mm
-        The shape that the slit ends in, or the half of its last straight piece.
-    places : (P, 2) float, mm
-        The points of the shape, or the slit's tip.
-    """
-
-    line: LineString
-    places: FloatArray
+    line: LineString  #: mm; the shape that the slit ends in, or the half of its last straight piece
+    places: FloatArray  #: (P, 2), mm; the points of the shape, or the slit's tip
 
 
 def straight_end(piece: CutPiece, last: bool) -> SlitEnd:

@@ -59,26 +59,13 @@ LONGEST_NOTCH = 15.0
 
 @dataclass(frozen=True, eq=False)
 class CutPiece:
-    """What remains of one cut.
+    """What remains of one cut."""
 
-    Attributes
-    ----------
-    cut : int
-        Number in :class:`CutTable`.
-    points : (P, 2) float, mm
-    opens : bool
-        Whether it crosses the outline; it then begins outside.
-    bulges : (P,) float or None
-        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`.
-    closed : bool
-        Whether it is a relief hole; its first point is not repeated.
-    """
-
-    cut: int
-    points: FloatArray
-    opens: bool
-    bulges: FloatArray | None = None
-    closed: bool = False
+    cut: int  #: number in :class:`CutTable`
+    points: FloatArray  #: (P, 2), mm
+    opens: bool  #: whether it crosses the outline; it then begins outside
+    bulges: FloatArray | None = None  #: (P,); arcs, see :mod:`~kirigami_studio.fabricate.cut_path`
+    closed: bool = False  #: whether it is a relief hole; its first point is not repeated
 
     @cached_property
     def line(self) -> LineString:

@@ -32,17 +32,10 @@ MOST_LOST = 3
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """Who does pieces of work.
+    """Who does pieces of work."""
 
-    Attributes
-    ----------
-    processes : int
-        Pieces at a time; with 1 everything is done in this process, in order.
-    scheduler : str
-        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``: its workers then do everything.  Empty for none.
-    """
-
-    processes: int = 1
+    processes: int = 1  #: pieces at a time; with 1 everything is done in this process, in order
+    #: Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``: its workers then do everything.  Empty for none.
     scheduler: str = ""
 
 

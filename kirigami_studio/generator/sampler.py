@@ -58,20 +58,12 @@ def one_pose(index: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Near:
-    """A design that samples are to be like.
-
-    Attributes
-    ----------
-    field : RatioField
-    angle : float, radians
-        Rotation that brings the target into the pose in which the design shows it; all samples see it so.
-    nearness : float, in [0, 1)
-        Time of the flow at which samples start from the design.
-    """
+    """A design that samples are to be like."""
 
     field: RatioField
+    #: radians; rotation that brings the target into the pose in which the design shows it; all samples see it so.
     angle: float
-    nearness: float
+    nearness: float  #: in [0, 1); time of the flow at which samples start from the design
 
 
 def sample_fields(

@@ -39,22 +39,12 @@ UNFIT = (SafetensorError, ArithmeticError, LookupError, RuntimeError, TypeError,
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A network ready to sample.
-
-    Attributes
-    ----------
-    variant : str
-    network : Network
-        In evaluation mode, float32.
-    digest : str
-        SHA-256 of the weight file, recorded in every project and export.
-    preference : float
-        What the variant prefers, from match (0) to regularity (1), where its network has the choice.
-    """
+    """A network ready to sample."""
 
     variant: str
-    network: Network
-    digest: str
+    network: Network  #: in evaluation mode, float32
+    digest: str  #: SHA-256 of the weight file, recorded in every project and export
+    #: What the variant prefers, from match (0) to regularity (1), where its network has the choice.
     preference: float = 0.0
 
     @property

@@ -115,22 +115,12 @@ def turns(points: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assigned:
-    """Where sharp corners go.
+    """Where sharp corners go."""
 
-    Attributes
-    ----------
-    places : (P + 1,) float, unit cells
-        Of all vertices, the first again at the end.
-    corners : (K,) float, unit cells
-        Where the corners that have an anchor are by arc length, the first vertex left out.
-    anchors : (K,) int
-        Their anchors.
-    cost : float
-    """
-
-    places: FloatArray
+    places: FloatArray  #: (P + 1,), unit cells; of all vertices, the first again at the end
+    #: (K,), unit cells; where the corners that have an anchor are by arc length, the first vertex left out.
     corners: FloatArray
-    anchors: IntArray
+    anchors: IntArray  #: (K,); their anchors
     cost: float
 
 

@@ -37,29 +37,18 @@ TOLERATED_STRETCH = 0.45
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Closing:
-    """A sheet on its way from flat towards phi = 0.
-
-    Attributes
-    ----------
-    sheet : SheetNetwork
-    path : EquilibriumPath
-    phi : (S,) float, radians
-        Mean angle of the sheet: pi less the mean turn of its connectors.
-    stretch_mm : (S, H) float
-        How far the two panels at every connector were pulled apart or pushed off each other.
-    in_plane, out_of_plane : (S, H) float
-        Upper and lower figure of the strain in every connector, see :meth:`SheetNetwork.strains`.
-    asked : int
-        Number of steps that were asked for; more than S where the sheet got stuck.
-    """
+    """A sheet on its way from flat towards phi = 0."""
 
     sheet: SheetNetwork
     path: EquilibriumPath
-    phi: FloatArray
+    phi: FloatArray  #: (S,), radians; mean angle of the sheet: pi less the mean turn of its connectors
+    #: (S, H); how far the two panels at every connector were pulled apart or pushed off each other.
     stretch_mm: FloatArray
+    #: in_plane, out_of_plane: (S, H); upper and lower figure of the strain in every connector, see
+    #: :meth:`SheetNetwork.strains`.
     in_plane: FloatArray
     out_of_plane: FloatArray
-    asked: int
+    asked: int  #: number of steps that were asked for; more than S where the sheet got stuck
 
     @property
     def stretch(self) -> FloatArray:

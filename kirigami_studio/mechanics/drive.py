@@ -23,35 +23,21 @@ END_ROW = 0.5
 class Drive:
     """A path of prescribed values.
 
-    Attributes
-    ----------
-    freedoms : (D,) int
-        Prescribed degrees of freedom.
-    path : (S, D) float, mm and radians
-        Their values, step by step; a network at rest has zeros.
-    displacement : (S,) float
-        What the reaction force is measured against: mm of a grip, or radians of an angle.
-    rate : (S, D) float
-        Derivative of ``path`` by ``displacement``.
-    weights : (3 P,) float
-        A linear combination of all degrees of freedom that is prescribed as well; empty for none.
-    level : (S,) float
-        Its values, step by step; its derivative by ``displacement`` is ``level_rate``.
-    level_rate : (S,) float
-
     Raises
     ------
     MechanicsError
         Values of other shapes or that are not finite, or nothing that would keep the network in its place.
     """
 
-    freedoms: IntArray
-    path: FloatArray
-    displacement: FloatArray
-    rate: FloatArray
+    freedoms: IntArray  #: (D,); prescribed degrees of freedom
+    path: FloatArray  #: (S, D), mm and radians; their values, step by step; a network at rest has zeros
+    displacement: FloatArray  #: (S,); what the reaction force is measured against: mm of a grip, or radians of an angle
+    rate: FloatArray  #: (S, D); derivative of ``path`` by ``displacement``
+    #: (3 P,); a linear combination of all degrees of freedom that is prescribed as well; empty for none.
     weights: FloatArray = field(default_factory=lambda: np.zeros(0))
+    #: (S,); its values, step by step; its derivative by ``displacement`` is ``level_rate``.
     level: FloatArray = field(default_factory=lambda: np.zeros(0))
-    level_rate: FloatArray = field(default_factory=lambda: np.zeros(0))
+    level_rate: FloatArray = field(default_factory=lambda: np.zeros(0))  #: (S,)
 
     def __post_init__(self) -> None:
         steps = len(self.displacement)

@@ -25,26 +25,13 @@ ANGLES_DEG = (150.0, 115.0, 80.0, 45.0, 15.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StretchEstimate:
-    """Estimated stretch of every connector at some angles.
+    """Estimated stretch of every connector at some angles."""
 
-    Attributes
-    ----------
-    phi : (A,) float, radians
-        Falling.
-    motion : (A, P, 3) float, mm and radians
-    stretch : (A, H) float
-        In connector widths.
-    room : (A,) float, radians
-        The smallest void angle that is left before panels touch.
-    flat_room : float, radians
-        That of the flat sheet.
-    """
-
-    phi: FloatArray
-    motion: FloatArray
-    stretch: FloatArray
-    room: FloatArray
-    flat_room: float
+    phi: FloatArray  #: (A,), radians; falling
+    motion: FloatArray  #: (A, P, 3), mm and radians
+    stretch: FloatArray  #: (A, H); in connector widths
+    room: FloatArray  #: (A,), radians; the smallest void angle that is left before panels touch
+    flat_room: float  #: radians; that of the flat sheet
 
     def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
         """Angle at which a connector is stretched too far or panels touch; 0 if neither."""
@@ -100,18 +87,10 @@ def estimate_stretch(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Bands:
-    """Where the blocks of the ligaments go in a banded matrix: panels line by line along the shorter side.
+    """Where the blocks of the ligaments go in a banded matrix: panels line by line along the shorter side."""
 
-    Attributes
-    ----------
-    order : (3 P,) int
-        Place of every degree of freedom.
-    place : (L, 36) int
-        Entries of the flattened lower bands; those above the diagonal go to a last place that is dropped.
-    depth, size : int
-    """
-
-    order: np.ndarray
+    order: np.ndarray  #: (3 P,); place of every degree of freedom
+    #: (L, 36); entries of the flattened lower bands; those above the diagonal go to a last place that is dropped.
     place: np.ndarray
     depth: int
     size: int

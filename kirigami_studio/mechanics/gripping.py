@@ -37,21 +37,13 @@ FOLLOWS = math.radians(15.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Gripping:
-    """Panels to hold and to lead, and what comes of it.
+    """Panels to hold and to lead, and what comes of it."""
 
-    Attributes
-    ----------
-    held, moved : tuple of int
-        Panels, row by row.
-    closing : Closing
-    follows : bool
-        Whether the sheet keeps to the ideal path as far as it was led.
-    """
-
+    #: held, moved: panels, row by row.
     held: tuple[int, ...]
     moved: tuple[int, ...]
     closing: Closing
-    follows: bool
+    follows: bool  #: whether the sheet keeps to the ideal path as far as it was led
 
 
 def find_grips(

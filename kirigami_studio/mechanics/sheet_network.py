@@ -29,17 +29,9 @@ from kirigami_studio.mechanics.network import (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SheetNetwork:
-    """A sheet with its connectors as elastic joints.
+    """A sheet with its connectors as elastic joints."""
 
-    Attributes
-    ----------
-    network : PanelNetwork
-        At rest it is the flat sheet; ligament h is connector h.
-    connectors : SheetConnectors
-    sheet : ElasticSheet
-    """
-
-    network: PanelNetwork
+    network: PanelNetwork  #: at rest it is the flat sheet; ligament h is connector h
     connectors: SheetConnectors
     sheet: ElasticSheet
 

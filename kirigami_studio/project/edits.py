@@ -24,20 +24,11 @@ from kirigami_studio.settings.fabrication import FabricationChange, FabricationS
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A new document and what led to it.
+    """A new document and what led to it."""
 
-    Attributes
-    ----------
-    label : str
-        As it follows the word Undo: "Choose design 3".
-    document : Document
-    merge_key : str or None
-        Consecutive edits of one key are steps of one drag and undo together.
-    """
-
-    label: str
+    label: str  #: as it follows the word Undo: "Choose design 3"
     document: Document
-    merge_key: str | None = None
+    merge_key: str | None = None  #: consecutive edits of one key are steps of one drag and undo together
 
 
 class SettingsChange(DesignChange, total=False):

@@ -61,21 +61,11 @@ class ModelFound:
 
 @dataclass(frozen=True, slots=True)
 class Refitted:
-    """What a fit from a design's present sheet has found.
+    """What a fit from a design's present sheet has found."""
 
-    Attributes
-    ----------
-    decoded : Decoded
-        The fitted design with its motion, trimmed if the one it began with was.
-    better : bool
-        Whether it ranks before the one it began with, both untrimmed.
-    untrimmed : str
-        Why it could not be trimmed again, "" if that was not to be done or was.
-    """
-
-    decoded: Decoded
-    better: bool
-    untrimmed: str = ""
+    decoded: Decoded  #: the fitted design with its motion, trimmed if the one it began with was
+    better: bool  #: whether it ranks before the one it began with, both untrimmed
+    untrimmed: str = ""  #: why it could not be trimmed again, "" if that was not to be done or was
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,25 +88,13 @@ class FittedAgain:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownAsCut:
-    """What a run has found out about designs as cut, which holds as long as they are cut that way.
+    """What a run has found out about designs as cut, which holds as long as they are cut that way."""
 
-    Attributes
-    ----------
-    sheet : FabricationSettings
-        How the designs are cut, see :func:`one_sheet`.
-    jam_phi : mapping of Candidate to float, radians
-    refusals : mapping of Candidate to Note
-    losses : mapping of Candidate to float
-        As :class:`~kirigami_studio.pipeline.rank.Ranking` has them.
-    simulated : mapping of Candidate to AsCut
-        Those that were closed on their connectors in a close look.
-    """
-
-    sheet: FabricationSettings
-    jam_phi: Mapping[Candidate, float]
+    sheet: FabricationSettings  #: how the designs are cut, see :func:`one_sheet`
+    jam_phi: Mapping[Candidate, float]  #: radians
     refusals: Mapping[Candidate, Note]
-    losses: Mapping[Candidate, float]
-    simulated: Mapping[Candidate, AsCut]
+    losses: Mapping[Candidate, float]  #: as :class:`~kirigami_studio.pipeline.rank.Ranking` has them
+    simulated: Mapping[Candidate, AsCut]  #: those that were closed on their connectors in a close look
 
     @classmethod
     def of(cls, result: Result, cut: FabricationSettings) -> KnownAsCut:
