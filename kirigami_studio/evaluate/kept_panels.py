@@ -122,7 +122,6 @@ def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, 
 
     Parameters
     ----------
-    kept : KeptPanels
     corners, targets
         As for :func:`kept_panels`.
     whole : geometry

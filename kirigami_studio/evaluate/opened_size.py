@@ -49,10 +49,8 @@ def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width
 
     Parameters
     ----------
-    deployment : Deployment
     pose : Similarity
         Layout frame at the target angle (unit cells) -> target frame (area 1), as a score or a trim has it.
-    target : Outline
     width_mm : float
         Width of the flat sheet.
 

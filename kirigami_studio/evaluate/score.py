@@ -61,8 +61,6 @@ def evaluate(deployment: Deployment, outline: Outline, phi: float = 0.0) -> Scor
 
     Parameters
     ----------
-    deployment : Deployment
-    outline : Outline
     phi : float, radians, in [0, pi]
 
     Raises
@@ -100,10 +98,8 @@ def confirmed(deployments: Sequence[Deployment], scores: Sequence[Score], outlin
 
     Parameters
     ----------
-    deployments : sequence of Deployment
     scores : sequence of Score
         One for each.
-    outline : Outline
     """
     found = list(scores)
     kinds = [(deployment.sheet.grid, score.phi) for deployment, score in zip(deployments, scores, strict=True)]
@@ -155,8 +151,6 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
 
     Parameters
     ----------
-    deployment : Deployment
-    outline : Outline
     phi : float, radians, in [0, pi]
     pose : Similarity
         Layout frame at ``phi`` -> target frame, of the design before it was changed.

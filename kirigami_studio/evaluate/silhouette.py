@@ -75,7 +75,6 @@ def rasterise_in_frame(polygon: npt.ArrayLike, frame: RasterFrame) -> BoolArray:
     ----------
     polygon : (L, 2) float
         Parts outside the frame are cut off.
-    frame : RasterFrame
 
     Returns
     -------
@@ -100,7 +99,6 @@ def filled_in_frame(planes: ComplexArray, frame: RasterFrame) -> tuple[BoolArray
     ----------
     planes : (B, L) complex
         Vertices x + iy of closed polygons that cover more than a line.
-    frame : RasterFrame
 
     Returns
     -------

@@ -78,8 +78,6 @@ def trim(
 
     Parameters
     ----------
-    deployment : Deployment
-    target : Outline
     phi : float, radians, in [0, pi]
     pose : Similarity
         Layout frame at ``phi`` to target frame.

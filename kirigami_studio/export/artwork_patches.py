@@ -126,8 +126,6 @@ def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf
 
     Parameters
     ----------
-    artwork : Artwork
-    sheet : PrintedSheet
     bleed_mm : float
         How far panels at the edge are printed beyond it, and into gaps that trimming has left.
     kerf_mm : float

@@ -93,7 +93,6 @@ def placed(
 
     Parameters
     ----------
-    job : ExportJob
     goals : sequence of (Path, DxfVersion)
         Where they are to appear.
     judged : function or None

@@ -61,8 +61,6 @@ def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> N
 
     Parameters
     ----------
-    plan : CutPlan
-    path : str or Path
     markers : bool
         Also draw a circle around every connector, on the tool layer.
 

@@ -56,8 +56,6 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
 
     Parameters
     ----------
-    plan : CutPlan
-    path : str or Path
     paper : str
         "none" for one page as large as the sheet, or a paper size; several pages where one is too small.
 

@@ -63,8 +63,6 @@ def write_image(
 
     Parameters
     ----------
-    image : Image
-    path : Path
     facts : mapping of str to str
         Written as text chunks.
     dpi : float, optional

@@ -148,7 +148,6 @@ def write_sidecar(
     ----------
     job : ExportJob
         With its plan.
-    path : str or Path
     cut_files : sequence of Path
         Written files that the record names with their SHA-256.
     verdict : mapping, optional

@@ -128,10 +128,6 @@ class StraightSheet:
 def centred_cuts(sheet: StraightSheet) -> Arranged | None:
     """Arrange all cuts so that as many connectors as possible turn on their nodes.
 
-    Parameters
-    ----------
-    sheet : StraightSheet
-
     Returns
     -------
     arranged : Arranged or None

@@ -73,7 +73,6 @@ def bending_lengths(span_mm: FloatArray, kerf_mm: float, height_mm: FloatArray) 
     ----------
     span_mm : (H,) float, mm
         Finished widths and kerf.
-    kerf_mm : float
     height_mm : (H,) float, mm
         Of the centres above the through cut, see :class:`Centres`.
     """
@@ -121,12 +120,10 @@ def settled_centres(
     ----------
     lines : (C, 2, 2) float, mm
         Cuts from node to node.
-    table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge.
     spans : (H,) float, mm
         Finished widths and kerf.
-    kerf_mm : float
     flat : (H,) bool
         Hinges whose through cut has no room for a bulge: their centres are half a span above it.
     removed : tuple of int

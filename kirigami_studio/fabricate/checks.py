@@ -60,7 +60,6 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
 
     Parameters
     ----------
-    plan : CutPlan
     kerf_mm : float, optional
         The kerf the machine really has; the plan's own unless given.
     phi : float, radians, optional

@@ -121,7 +121,6 @@ def clearances(
     ----------
     nodes : (N, 2) float, mm
         Of the flat sheet.
-    table : CutTable
     spans : (H,) float, mm
         Finished widths and kerf, 0 for hinges without a connector.
     rim : (H, 2) float

@@ -69,7 +69,6 @@ def lay_out(size: tuple[float, float], bed: tuple[float, float], options: CutOpt
         0 and 0 for one of any size: there the rows make the sheets as square as they can.
     options : CutOptions
         Their number and the gap between them.
-    kerf_mm : float
 
     Raises
     ------
@@ -139,7 +138,6 @@ def alike(clouds: Sequence[FloatArray], gap_mm: float, tolerance_mm: float) -> b
         All points of each copy, in the order of the file.
     gap_mm : float
         Least distance between the boxes around any two.
-    tolerance_mm : float
     """
     lows, highs = (np.array([edge(cloud, axis=0) for cloud in clouds]) for edge in (np.min, np.max))
     first = clouds[0] - lows[0]

@@ -76,12 +76,7 @@ class CutPanels:
 
 @lru_cache(maxsize=16)
 def cut_panels(plan: CutPlan) -> CutPanels:
-    """Divide a sheet into the panels that its cuts leave.
-
-    Parameters
-    ----------
-    plan : CutPlan
-    """
+    """Divide a sheet into the panels that its cuts leave."""
     lines, owner = _lines(plan)
     necks = _necks(plan, lines, owner)
     noded = shapely.union_all([*lines, *necks])

@@ -110,8 +110,6 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
     bulges : (P,) float
         Of the edge from each point to the next, 0 for a straight one, positive for an arc to the left (counter-
         clockwise); the last one counts only where the path is closed.
-    closed : bool
-    chord_mm : float
 
     Returns
     -------

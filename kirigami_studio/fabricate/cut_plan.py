@@ -173,7 +173,6 @@ def plan_cuts(
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Width of the finished sheet, 5 to 3000 mm; the height follows from its shape.
     connector_mm, kerf_mm : float, optional
@@ -474,11 +473,8 @@ def plan_notes(
 
     Parameters
     ----------
-    hinges : Hinges
-    material : Material
     connector_mm, kerf_mm : float
         Finished width asked for, and full cut width.
-    style : ConnectorStyle
     straight : Counter of Obstacle
         How many hinges stayed straight although a style was asked for, by what was in the way.
     """

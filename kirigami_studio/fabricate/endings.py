@@ -84,12 +84,10 @@ def seats(
     ----------
     lines, shortened : (C, 2, 2) float, mm
         Cuts from junction to junction, and pulled back.
-    table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge.
     widths : (H,) float, mm
         Finished widths.
-    kerf_mm : float
     """
     junction = lines[table.hinge_cut, table.hinge_end]
     own = lines[table.hinge_cut, 1 - table.hinge_end] - junction
@@ -132,7 +130,6 @@ def ending(style: ConnectorStyle, seat: Seat, radius_mm: float, attempt: int = 0
     ----------
     style : ConnectorStyle
         Any but ``STRAIGHT``.
-    seat : Seat
     radius_mm : float
         Of relief holes.
     attempt : int

@@ -59,7 +59,6 @@ def engraved(plan: CutPlan, text: str) -> CutPlan:
 
     Parameters
     ----------
-    plan : CutPlan
     text : str
         Letters without strokes are left out, and a note says so.
     """

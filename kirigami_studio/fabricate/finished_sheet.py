@@ -78,7 +78,6 @@ def smallest_ligament(
     cuts : sequence of LineString (or MultiLineString where none are joined), mm
     outline : geometry, mm, optional
         Centre line of the outline cut; cuts that cross it on purpose (edge cuts) are not measured against it.
-    kerf_mm : float
     joined : collection of (int, int)
         Cuts that meet on purpose, by number, the lower one first; there is no ligament between these two.
 

@@ -114,8 +114,6 @@ def hinged_cuts(
         Slits and edge cuts, pulled back from their junctions.
     tips : (H, 2) float, mm
         Where they end at each hinge.
-    hinge_seats : sequence of Seat
-    table : CutTable
     outline : Polygon, mm
         Inside the centre line of the outline cut.
     options, material, kerf_mm, overcut_mm
@@ -279,13 +277,10 @@ def measured_widths(
     ----------
     ends : sequence of SlitEnd
         Of every hinge.
-    hinge_seats : sequence of Seat
-    table : CutTable
     pieces : sequence of CutPiece
         All cuts but the outline.
     outline : Polygon, mm
         Inside the centre line of the outline cut.
-    kerf_mm : float
 
     Returns
     -------

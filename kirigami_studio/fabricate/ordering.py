@@ -72,7 +72,6 @@ def in_cutting_order(
     ----------
     paths : sequence of CutPath
         In any order and direction; edge cuts from the mouth inwards.
-    order : CutOrder
     table : CutTable, optional
         The grid that ``cut`` of the paths refers to; without it rows are bands of the sheet.
 

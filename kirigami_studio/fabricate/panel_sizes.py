@@ -37,7 +37,6 @@ def panels_in_mm(
 
     Parameters
     ----------
-    deployment : Deployment
     kept : sequence of (P, 2) float or None, unit cells
         What stays of every panel, no points where nothing does; empty for an untrimmed sheet.
     width_mm : float

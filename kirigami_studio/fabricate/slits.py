@@ -107,7 +107,6 @@ def edge_sides(deployment: Deployment, width_mm: float) -> FloatArray:
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         As for :func:`sheet_lines`.
 
@@ -146,7 +145,6 @@ def sheet_lines(deployment: Deployment, width_mm: float) -> tuple[FloatArray, tu
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Finished width of the sheet; the height follows from its shape.
 

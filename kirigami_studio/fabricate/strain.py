@@ -84,7 +84,6 @@ def used_up(material: Material, width_mm: FloatArray, in_plane: FloatArray, out_
 
     Parameters
     ----------
-    material : Material
     width_mm : (H,) float
     in_plane, out_of_plane : (..., H) float
         Both figures of their strain.

@@ -78,7 +78,6 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
 
     Parameters
     ----------
-    deployment : Deployment
     kept : sequence of (P, 2) float or None, unit cells
         What stays of every panel, row by row, in the compact sheet's frame; None for a whole one.
     width_mm : float
@@ -112,7 +111,6 @@ def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table
     ----------
     deployment, kept
         As for :func:`kept_area`.
-    table : CutTable
     """
     nodes = deployment.topology.panel_nodes.reshape(-1, 4)
     reached = np.ones(nodes.shape, dtype=np.bool_)
@@ -193,10 +191,8 @@ def remaining_cuts(
     ----------
     lines : (C, 2, 2) float, mm
         Shortened cuts; edge cuts begin at the untrimmed sheet's edge.
-    table : CutTable
     outline : Polygon, mm
         As returned by :func:`outline_around`.
-    kerf_mm, overcut_mm : float
     lost : sequence of int
         Hinges that were given up.
 

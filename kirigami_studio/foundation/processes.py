@@ -54,7 +54,6 @@ def results_of(
         A function of a module, or a partial of one: other processes have to find it.
     items : iterator
         May be endless: it is read no further than there is somebody to do it.
-    workers : Workers
 
     Yields
     ------

@@ -118,7 +118,6 @@ def shortest_step(
 
     Parameters
     ----------
-    variables : int
     violated : callable
         The conditions that a step (V,) violates.
 

@@ -28,7 +28,6 @@ def integrate(network: Velocity, start: Tensor, code: Code, steps: int, late: La
 
     Parameters
     ----------
-    network : Velocity
     start : (B, cells) tensor
         Fields of the network's own grid at t = 0, or at the time of ``late``.
     code : Code of B targets, the network's own

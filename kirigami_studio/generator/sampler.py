@@ -87,12 +87,9 @@ def sample_fields(
 
     Parameters
     ----------
-    model : Model
-    target : Outline
     grid : (rows, columns)
         Other grids than the network's are reached by interpolation, see ``deployed_grid``; the network sees their
         exact geometry.
-    k, seed, steps : int
     phi : float, radians, in [0, pi)
     poses : callable
         Candidate's number -> rotation of the target, radians; ``one_pose`` shows it to all of them in one pose.

@@ -149,9 +149,6 @@ def store_model(variant: str, network: Network, folder: Path, about: dict[str, o
 
     Parameters
     ----------
-    variant : str
-    network : Network
-    folder : Path
     about : dict
         What the model card's table needs: how it was trained, what it scored.
 

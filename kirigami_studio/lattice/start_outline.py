@@ -79,7 +79,6 @@ def vertex_places(start: FloatArray, rows: int, columns: int, anchors: FloatArra
     ----------
     start : (P, 2) float, unit cells
         As in a :class:`~kirigami_studio.lattice.sheet.Sheet`: clockwise, its first vertex at place 0.
-    rows, columns : int
     anchors : (A,) float, unit cells
         Places of corners and mouths in the even rim, ascending from 0.
 

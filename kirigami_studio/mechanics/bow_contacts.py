@@ -66,10 +66,8 @@ def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: I
     panels : sequence of (Q, 2) float, mm
         All panels of the flat sheet between the centre lines of its cuts, row by row, in the frame of the connectors;
         no points for those that are not there.
-    connectors : SheetConnectors
     voids : (V, 4) int
         Connectors at the corners of every void, in turn; ``NONE`` where there is none.
-    kerf_mm : float
     """
     deep = DEEP * float(connectors.width_mm.mean())
     rigid = shapely.buffer(_polygons(panels), -0.5 * kerf_mm, join_style="mitre")

@@ -91,7 +91,6 @@ def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_en
         Falling.
     stretch : (S,) float
         In connector widths.
-    tolerated : float
     reached_end : bool
         Whether the sheet came as far as it was driven.
 
@@ -122,7 +121,6 @@ def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[
 
     Parameters
     ----------
-    sheet : SheetNetwork
     drive : Drive, optional
         The mean turn of the connectors, from the flat sheet to :data:`CLOSED`, unless given.
     """
@@ -158,10 +156,8 @@ def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float,
 
     Parameters
     ----------
-    deployment : Deployment
     network : PanelNetwork
         Its panels, row by row, at rest as the flat sheet of that width with its smallest coordinates at 0.
-    width_mm : float
     phi : float, radians
 
     The middle of the nodes stays where it is.

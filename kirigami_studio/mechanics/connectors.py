@@ -132,7 +132,6 @@ def junctions(deployment: Deployment, width_mm: float, nodes: IntArray | None = 
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Width of the flat sheet; its smallest coordinates are 0, y up.
     nodes : (H,) int, optional
@@ -197,10 +196,8 @@ def cut_connectors(
 
     Parameters
     ----------
-    found : Junctions
     width_mm : (H,) float
         Finished widths; 0 for a removed connector.
-    kerf_mm : float
     centres : (H, 2) or (H, 2, 2) float, mm, optional
         Rotation centres in the flat sheet, one place or a place on A and one on B; where connectors at straight slits
         have theirs unless given: off the junction on the slit's side.

@@ -117,14 +117,12 @@ def clamped_ends(network: PanelNetwork, ends: int, direction: int, distance_mm: 
 
     Parameters
     ----------
-    network : PanelNetwork
     ends : int
         0: the columns at the left and at the right; 1: the rows at the bottom and at the top.
     direction : int
         Along which axis, 0 for x and 1 for y, the right or upper end moves.
     distance_mm : float
         How far; negative in the other direction.
-    steps : int
     """
     place = network.centroids[:, ends]
     reach = END_ROW * network.panel_size
@@ -142,7 +140,6 @@ def mean_turn(network: PanelNetwork, signs: FloatArray, turns: FloatArray) -> Dr
 
     Parameters
     ----------
-    network : PanelNetwork
     signs : (L,) float
         +1 where a ligament's turn theta_B - theta_A grows as the network is driven, -1 where it falls.
     turns : (S,) float, radians

@@ -94,8 +94,6 @@ def follow_steps(
 
     Parameters
     ----------
-    network : PanelNetwork
-    drive : Drive
     start : (P, 3) float, optional
         Motion to begin with; at rest unless given.
     until_stuck : bool

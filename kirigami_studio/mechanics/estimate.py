@@ -61,10 +61,8 @@ def estimate_stretch(
 
     Parameters
     ----------
-    deployment : Deployment
     sheet : SheetNetwork
         Made of its panels, row by row, at that width.
-    width_mm : float
     angles_deg : tuple of float
         Falling.
     """

@@ -62,11 +62,7 @@ def grip_steps(
 
     Parameters
     ----------
-    deployment : Deployment
-    sheet : SheetNetwork
-    width_mm : float
     end : float, radians
-    steps : int
     """
     angles = np.linspace(math.pi, end, steps)
     order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
@@ -122,13 +118,9 @@ def grips(
 
     Parameters
     ----------
-    deployment : Deployment
-    sheet : SheetNetwork
-    width_mm : float
     held, moved : sequence of int
         Panels, row by row.  The middle of those that are held stays where it is.
     end : float, radians
-    steps : int
 
     Returns
     -------

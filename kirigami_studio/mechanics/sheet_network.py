@@ -73,8 +73,6 @@ def sheet_network(
     panels : (P, Q, 2) float, mm
         Their corners; where they have different numbers of corners, the last one is repeated.  Those that trimming took
         are not numbers (NaN).
-    connectors : SheetConnectors
-    sheet : ElasticSheet
     meetings : Meetings, optional
         Where panels with bows run into each other.
 

@@ -41,7 +41,7 @@ class Anchors:
     """A closed line through anchors."""
 
     places: FloatArray  #: (K, 2), mm; anchors, counter-clockwise
-    kinds: tuple[Kind, ...]
+    kinds: tuple[Kind, ...]  #: K of them
     #: (K, 2, 2), mm; from each anchor to its handles, towards the one before and towards the next; zero where there is
     #: none.
     handles: FloatArray
@@ -150,7 +150,6 @@ class Anchors:
 
         Parameters
         ----------
-        index : int
         side : int
             :data:`INTO` or :data:`OUT`.
         offset : (2,) float, mm

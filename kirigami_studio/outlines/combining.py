@@ -49,7 +49,6 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     target : Placed or None
         Without one the ring becomes the target.
     ring : (L, 2) float, mm
-    how : Combine
     name : str
         Of the new target where the ring is one by itself.
     notes : iterable of str

@@ -73,10 +73,8 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
 
     Parameters
     ----------
-    source : SourceParts
     parts : sequence of Part
         Of the source.
-    merging : Merging
 
     Raises
     ------

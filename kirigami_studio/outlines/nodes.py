@@ -39,7 +39,7 @@ class Nodes:
 
     #: (K,); index of each node's vertex, rising all the way round; at most one step goes past the last vertex.
     at: IntArray
-    kinds: tuple[Kind, ...]
+    kinds: tuple[Kind, ...]  #: K of them
     #: (K, 2, 2), units of the outline; from each node to its handle towards the node before, and to that towards the
     #: next; zero where there is none.
     handles: FloatArray

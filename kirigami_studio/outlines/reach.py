@@ -65,7 +65,6 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
 
     Parameters
     ----------
-    outline : Outline
     grid : (rows, columns) voids
 
     Raises
@@ -113,7 +112,6 @@ def reach_texts(reach: Reach, outline: Outline, scale_mm: float | None = None) -
 
     Parameters
     ----------
-    reach : Reach
     outline : Outline
         The one that was looked at.
     scale_mm : float, optional

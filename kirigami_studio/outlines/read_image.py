@@ -252,7 +252,6 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
 
     Parameters
     ----------
-    content : bytes
     formats : tuple of str
         Those that are read, as Pillow calls them.
     most_pixels : int, optional

@@ -30,7 +30,6 @@ def rounded(outline: Outline, count: int) -> list[shapely.Polygon]:
 
     Parameters
     ----------
-    outline : Outline
     count : int
         Number of shapes.
 

@@ -236,8 +236,6 @@ def mirrored_mean(target: Outline, axis: MirrorAxis, crossed: MirrorAxis | None 
 
     Parameters
     ----------
-    target : Outline
-    axis : MirrorAxis
     crossed : MirrorAxis, optional
         A second axis, at right angles to the first: the result has both.
 

@@ -346,10 +346,8 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
 
     Parameters
     ----------
-    document : Document
     hinges : collection of int
         Numbered as in ``slits.CutTable``.
-    width_mm : float
 
     Raises
     ------

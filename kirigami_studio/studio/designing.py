@@ -130,15 +130,12 @@ def request_for(
 
     Parameters
     ----------
-    target : Outline
-    wanted : DesignSettings
     cut : FabricationSettings
         The sheet's width, and what its material and connectors need.
     least_panel_mm : float
         Least panel edge and neck that is asked for.
     trim : bool
         Whether the best designs are trimmed.
-    budget_seconds : float, optional
 
     Raises
     ------
@@ -174,7 +171,6 @@ def run_design(
         Its grid may be open.
     cut : FabricationSettings
         How designs are cut.
-    cancel : callable
     least_panel_mm : float
         Least panel edge and neck that is asked for.
     beside : tuple of Candidate

@@ -66,7 +66,6 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
 
     Parameters
     ----------
-    source : object
     choice : PartChoice, optional
         Of the parts of a drawing.
     threshold : float, 0..1, optional
