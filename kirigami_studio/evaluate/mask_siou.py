@@ -352,13 +352,7 @@ class FittedMask:
 
 
 def _foreground(mask: npt.ArrayLike, number: int) -> BoolArray:
-    """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that).
-
-    Raises
-    ------
-    KirigamiError
-        Not 2-D, not numbers, not finite, or empty.
-    """
+    """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that)."""
     try:
         array = np.asarray(mask)
     except ValueError:

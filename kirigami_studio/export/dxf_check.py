@@ -198,13 +198,7 @@ def _read(path: Path) -> DxfContent:
 
 
 def _svg_content(path: Path) -> DxfContent:
-    """A cut SVG of this program, as if it were a DXF.
-
-    Raises
-    ------
-    ExportError
-        It is damaged, or another program wrote it.
-    """
+    """A cut SVG of this program, as if it were a DXF."""
     facts = facts_of_svg(path)
     if PROGRAM not in facts:
         raise ExportError("cut_file.foreign_svg", path=path)
@@ -230,13 +224,7 @@ def _svg_content(path: Path) -> DxfContent:
 
 
 def _lightburn_content(path: Path) -> DxfContent:
-    """A LightBurn project, as if it were a DXF.
-
-    Raises
-    ------
-    ExportError
-        It is missing or damaged, or holds other things than paths.
-    """
+    """A LightBurn project, as if it were a DXF."""
     try:
         found = read_lightburn(read_at_most(path, LARGEST_FILE), path)
     except OSError as error:

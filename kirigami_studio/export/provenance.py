@@ -261,13 +261,7 @@ def _entry(value: Any) -> Any:
 
 
 def _digests(path: Path) -> list[tuple[str, str]]:
-    """Name and SHA-256 of a file, or of the files of a folder with the folder's name in front.
-
-    Raises
-    ------
-    ExportError
-        The file cannot be read.
-    """
+    """Name and SHA-256 of a file, or of the files of a folder with the folder's name in front."""
     try:
         parts = sorted(path.iterdir()) if path.is_dir() else [path]
         return [

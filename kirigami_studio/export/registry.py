@@ -39,13 +39,7 @@ def _pdf(job: ExportJob, path: Path) -> None:
 
 
 def _lightburn(job: ExportJob, path: Path) -> None:
-    """Write the job's cut plan in LightBurn's own layers, whatever the profile.
-
-    Raises
-    ------
-    ExportError
-        The profile asks for closed slots, which such a project does not hold.
-    """
+    """Write the job's cut plan in LightBurn's own layers, whatever the profile."""
     if find_profile(job.profile).slots:
         raise ExportError("lightburn.open_cuts_only")
     write_lightburn(job.required_plan, path, job.markers)
