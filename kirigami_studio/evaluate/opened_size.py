@@ -51,8 +51,6 @@ def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width
     ----------
     pose : Similarity
         Layout frame at the target angle (unit cells) -> target frame (area 1), as a score or a trim has it.
-    width_mm : float
-        Width of the flat sheet.
 
     Raises
     ------

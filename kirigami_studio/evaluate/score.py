@@ -95,11 +95,6 @@ def confirmed(deployments: Sequence[Deployment], scores: Sequence[Score], outlin
     """Keep scores from a file that say what their designs have; designs with another score are scored again.
 
     A design is measured in the pose that its score names, which takes a hundredth of the time of scoring it.
-
-    Parameters
-    ----------
-    scores : sequence of Score
-        One for each.
     """
     found = list(scores)
     kinds = [(deployment.sheet.grid, score.phi) for deployment, score in zip(deployments, scores, strict=True)]

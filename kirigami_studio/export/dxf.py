@@ -98,8 +98,6 @@ def strokes_dxf(
     ----------
     size : (width, height), mm
         What the header says; the lower left corner is the origin.
-    facts : dict
-        About the making of the file.
     mark : function, optional
         Draws more; never for a cut file.
     record : bytes

@@ -358,8 +358,6 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
     ----------
     content : DxfContent
         Its facts hold ``TABS``, ``TAB_MM`` and ``KERF_MM``.
-    problems : list of Problem
-        Findings are added to it.
     """
     parts = [path for path in content.paths if path.layer == Layer.OUTLINE.value]
     if not parts and content.facts["TABS"].isdecimal():

@@ -142,14 +142,8 @@ def export_all(
 
     Parameters
     ----------
-    job : ExportJob
-        With its plan.
-    folder : str or Path
-        Made if it is missing.
     name : str
         Of the cut files, without extension.
-    sidecar : bool
-        Also write the record.
     on_written : function, optional
         Is called with each path once it is written; may raise to stop.
     judged : function, optional

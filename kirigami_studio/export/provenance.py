@@ -146,8 +146,6 @@ def write_sidecar(
 
     Parameters
     ----------
-    job : ExportJob
-        With its plan.
     cut_files : sequence of Path
         Written files that the record names with their SHA-256.
     verdict : mapping, optional

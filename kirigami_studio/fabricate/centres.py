@@ -111,8 +111,6 @@ def settled_centres(
     kerf_mm: float,
     flat: BoolArray,
     removed: tuple[int, ...] = (),
-    start: Centres | None = None,
-    rounds: int = ROUNDS,
 ) -> Centres:
     """Find the centres by one constrained least-squares problem, made linear a few times.
 
@@ -133,9 +131,7 @@ def settled_centres(
     held = flat.copy()
     facing = np.zeros(table.slit_count, dtype=np.bool_)
     shift = np.zeros((table.hinge_count, 2))
-    if start is not None:
-        facing, shift = start.facing.copy(), start.position - lines[table.hinge_cut, table.hinge_end]
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         now = problem.centres(shift)
         held |= now.height_mm > 0.5 * spans + ON_NODE_MM
         facing |= problem.overlap(now) > 0.0

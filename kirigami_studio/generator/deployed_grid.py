@@ -71,7 +71,6 @@ class GridTransfer:
         The network's grid.
     deployed : DeployedGrid
         Of the sheet.
-    device : torch.device
     """
 
     def __init__(self, own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> None:

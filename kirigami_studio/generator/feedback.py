@@ -53,7 +53,6 @@ class Feedback:
         The network's grid.
     grid : DeployedGrid
         Where the fields lie.
-    device : torch.device
     """
 
     def __init__(self, own: tuple[int, int], grid: DeployedGrid, device: torch.device) -> None:

@@ -80,11 +80,9 @@ class EquilibriumPath:
         return np.asarray(found[apart], dtype=np.float64)
 
 
-def follow(
-    network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
-) -> EquilibriumPath:
+def follow(network: PanelNetwork, drive: Drive) -> EquilibriumPath:
     """Find the equilibria along a drive, all in one go; see :func:`follow_steps`."""
-    return result_of(follow_steps(network, drive, start, until_stuck))
+    return result_of(follow_steps(network, drive))
 
 
 def follow_steps(

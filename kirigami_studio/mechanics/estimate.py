@@ -54,23 +54,19 @@ class StretchEstimate:
         return touching if touching > CLOSED else 0.0
 
 
-def estimate_stretch(
-    deployment: Deployment, sheet: SheetNetwork, width_mm: float, angles_deg: tuple[float, ...] = ANGLES_DEG
-) -> StretchEstimate:
+def estimate_stretch(deployment: Deployment, sheet: SheetNetwork, width_mm: float) -> StretchEstimate:
     """Estimate the stretch of all connectors.
 
     Parameters
     ----------
     sheet : SheetNetwork
         Made of its panels, row by row, at that width.
-    angles_deg : tuple of float
-        Falling.
     """
     network, energy = sheet.network, NetworkEnergy(sheet.network)
     tables = deployment.topology
     layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1, network.numbers)
     springs = np.stack([network.ligaments.stretching, network.ligaments.shearing], axis=1)
-    phis, motions, stretch, room = np.radians(angles_deg), [], [], []
+    phis, motions, stretch, room = np.radians(ANGLES_DEG), [], [], []
     correction = np.zeros((network.panel_count, 3))
     for phi in phis.tolist():
         ideal = ideal_motion(deployment, network, width_mm, phi)

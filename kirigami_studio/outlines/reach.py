@@ -63,10 +63,6 @@ class Reach:
 def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     """Mark what a grid can hardly show of a target.
 
-    Parameters
-    ----------
-    grid : (rows, columns) voids
-
     Raises
     ------
     TargetError

@@ -235,8 +235,6 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
     ----------
     formats : tuple of str
         Those that are read, as Pillow calls them.
-    most_pixels : int, optional
-        Default ``MOST_PIXELS``.
 
     Raises
     ------

@@ -67,8 +67,6 @@ def migrate(members: Members, version: int, path: Path) -> Members:
     ----------
     version : int
         Format of the file, by its manifest.
-    path : Path
-        Of the file, for messages.
 
     Raises
     ------

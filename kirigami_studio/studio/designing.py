@@ -134,8 +134,6 @@ def request_for(
         The sheet's width, and what its material and connectors need.
     least_panel_mm : float
         Least panel edge and neck that is asked for.
-    trim : bool
-        Whether the best designs are trimmed.
 
     Raises
     ------
@@ -169,8 +167,6 @@ def run_design(
     ----------
     request : Request
         Its grid may be open.
-    cut : FabricationSettings
-        How designs are cut.
     least_panel_mm : float
         Least panel edge and neck that is asked for.
     beside : tuple of Candidate
@@ -205,7 +201,7 @@ def run_design(
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
-        result = yield from _ranked_as_cut(result, cut, beside, cancel)
+        result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
 
 
@@ -232,18 +228,7 @@ def completed(run: Iterator[object], tell: Tell) -> Result:
     raise Cancelled("run.no_result")
 
 
-def ranked_as_cut(result: Result, cut: FabricationSettings, tell: Tell) -> Result:
-    """Rank the designs of a run by how they do as cut, all in one go, see :func:`run_design`."""
-    steps = _ranked_as_cut(result, cut, (), never)
-    while True:
-        try:
-            tell(next(steps))
-        except StopIteration as end:
-            found: Result = end.value
-            return found
-
-
-def _ranked_as_cut(
+def ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
 ) -> Generator[Progress, None, Result]:
     """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
@@ -436,7 +421,7 @@ def fitting_again(
         yield FittedAgain(report.done, report.total, report.before, report.after)
     if better:
         found = Result(request, tuple(better.get(one, one) for one in among), 0, 0.0)
-        yield KnownAsCut.of((yield from _ranked_as_cut(found, cut, (), cancel)), cut)
+        yield KnownAsCut.of((yield from ranked_as_cut(found, cut, (), cancel)), cut)
 
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
