@@ -45,6 +45,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import frozen
 
 SMALLEST_SHEET_MM = 5.0
 LARGEST_SHEET_MM = 3000.0
@@ -214,7 +215,7 @@ def plan_cuts(
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
     identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
-    left = _without(options, lost)
+    left = options.cut_through(lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
     _check_size(sheet_lines(deployment, width)[1])
     relief_radius(options.style, material)
@@ -285,7 +286,7 @@ def plan_cuts(
             *_narrowing_notes(hinges),
         ),
         panels=panels_in_mm(deployment, parts, width, origin),
-        centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
+        centres=None if arranged.centres is None else frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, left, table),
         made=made,
         chosen_machine=machine,
@@ -325,14 +326,6 @@ def _trimming(
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
     return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost)
-
-
-def _without(options: CutOptions, lost: Sequence[int]) -> CutOptions:
-    """The options with the hinges that trimming took removed, whatever width was asked for them."""
-    if not lost:
-        return options
-    widths = tuple((hinge, width) for hinge, width in options.hinge_mm if hinge not in lost)
-    return replace(options, hinge_mm=widths, removed=tuple(sorted({*options.removed, *lost})))
 
 
 def _plain_cuts(
@@ -391,11 +384,6 @@ def _paths(
     busy = np.concatenate([shapely.get_coordinates(over), on_edge])
     parts = tabbed(line, options.tabs, options.tab_mm + kerf, busy)
     return [*paths, *(CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts)]
-
-
-def _frozen(values: FloatArray) -> FloatArray:
-    values.setflags(write=False)
-    return values
 
 
 def _on_grid(points: FloatArray) -> FloatArray:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -165,19 +167,9 @@ def _upper_bound(lines: npt.NDArray[np.object_], group: IntArray) -> float:
 
 def _groups(count: int, joined: Collection[tuple[int, int]]) -> IntArray:
     """Number of the group of each of ``count`` cuts (count,), where joined cuts are in one group."""
-    leader = list(range(count))
-
-    def find(index: int) -> int:
-        while leader[index] != index:
-            leader[index] = leader[leader[index]]
-            index = leader[index]
-        return index
-
-    for first, second in joined:
-        one, other = find(first), find(second)
-        leader[max(one, other)] = min(one, other)
-    found: IntArray = np.unique([find(index) for index in range(count)], return_inverse=True)[1]
-    return found
+    pairs = np.array(list(joined), dtype=np.intp).reshape(-1, 2).T
+    links = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), shape=(count, count))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def overlap_length(lines: Sequence[BaseGeometry]) -> float:
