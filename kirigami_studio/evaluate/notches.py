@@ -62,14 +62,6 @@ NOTHING = Polygon()
 EIGHT_WAYS = np.ones((3, 3), dtype=np.intp)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DeepCut:
-    """What stays of all panels."""
-
-    kept: KeptPanels  #: of every panel of the sheet, row by row
-    voids: BoolArray  #: (m, n); the voids that stay
-
-
 def deep_cut(
     corners: FloatArray,
     targets: GeometryArray,
@@ -77,7 +69,7 @@ def deep_cut(
     void_gain: FloatArray,
     keep: float,
     images: IntArray | None = None,
-) -> DeepCut:
+) -> tuple[KeptPanels, BoolArray]:
     """Trim all panels of a sheet to a target, and give up those that lie in its notches.
 
     Parameters
@@ -95,6 +87,13 @@ def deep_cut(
     images : (G, m n) int, optional
         For each move of the sheet's symmetry, the void that each void is the image of.
 
+    Returns
+    -------
+    kept : KeptPanels
+        What stays of every panel, row by row.
+    voids : (m, n) bool
+        The voids that stay.
+
     Raises
     ------
     KirigamiError
@@ -105,7 +104,7 @@ def deep_cut(
     if not voids.any():
         raise KirigamiError("trim.nothing_left")
     voids = cut.opened(cut.improved(voids, images), images)
-    return DeepCut(cut.parts(voids), voids)
+    return cut.parts(voids), voids
 
 
 @dataclass(frozen=True, slots=True, eq=False)

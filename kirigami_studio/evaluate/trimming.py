@@ -153,9 +153,9 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     symmetry = symmetry_of(deployment.sheet)
     images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
     gain = shared - STICKING_OUT * (area - shared)
-    cut = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
-    left_out = ~cut.voids
-    return _Parts(panels.index, cut.kept, float(area[left_out].sum()), float(shared[left_out].sum()))
+    kept, stay = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
+    left_out = ~stay
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()))
 
 
 def check_keep(keep: float) -> float:
