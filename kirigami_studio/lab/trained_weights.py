@@ -1,4 +1,4 @@
-"""Weights of trained networks, written for the program: one safetensors file and its entry in a manifest."""
+"""Weights of trained networks for the program: a safetensors file and its entry in a manifest."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kirigami_studio.generator.weights import FORMAT, MANIFEST, Model, load_mode
 
 
 def variants_about(folder: Path) -> dict[str, dict[str, Any]]:
-    """What is recorded of the variants in a folder, by name: how each was trained; nothing where no manifest is.
+    """Records of how the variants in a folder were trained, by name; none without a manifest.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def store_model(variant: str, network: Network, folder: Path, about: dict[str, o
 def store_variants(
     name: str, preferences: Mapping[str, float], network: Network, folder: Path, about: dict[str, object]
 ) -> Path:
-    """Like :func:`store_model`, for one network that serves several variants by the preference it is given.
+    """Store one network that serves several variants by its preference, as :func:`store_model`.
 
     Parameters
     ----------
