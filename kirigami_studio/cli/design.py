@@ -129,15 +129,24 @@ class DesignJob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DesignOutcome:
-    """The designs of a job."""
+    """The designs of a job.
+
+    Attributes
+    ----------
+    result : Result
+    request : CutRequest
+        The best design that can be cut in its project, and how it is cut.
+    verdict : Verdict
+    files : mapping of str to (str, bytes)
+        Name and content by role, of a design from elsewhere that was asked for with its files.
+    notes : tuple of Note
+        What is not as it was asked for: no design is trimmed, or another one than the best is cut.
+    """
 
     result: Result
-    request: CutRequest  #: the best design that can be cut in its project, and how it is cut
+    request: CutRequest
     verdict: Verdict
-    #: mapping of str to (str, bytes); name and content by role, of a design from elsewhere that was asked for with its
-    #: files.
     files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
-    #: What is not as it was asked for: no design is trimmed, or another one than the best is cut.
     notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:

@@ -33,13 +33,25 @@ TIP_CHORD_MM = 5e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """One curve as a file holds it."""
+    """One curve as a file holds it.
 
-    points: FloatArray  #: (P, 2), mm; the first point of a closed stroke is not repeated
+    Attributes
+    ----------
+    points : (P, 2) float, mm
+        The first point of a closed stroke is not repeated.
+    closed : bool
+    layer : str
+        Name in the file.
+    colour : int
+        AutoCAD colour index.
+    bulges : (P,) float or None
+        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
+    """
+
+    points: FloatArray
     closed: bool
-    layer: str  #: name in the file
-    colour: int  #: AutoCAD colour index
-    #: (P,); arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
+    layer: str
+    colour: int
     bulges: FloatArray | None = None
 
     def travelled(self, chord_mm: float = CHORD_MM) -> FloatArray:

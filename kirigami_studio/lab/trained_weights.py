@@ -1,4 +1,4 @@
-"""Weights of trained networks for the program: a safetensors file and its entry in a manifest."""
+"""Weights of trained networks for the program: one file, and its entry in a manifest."""
 
 from __future__ import annotations
 
