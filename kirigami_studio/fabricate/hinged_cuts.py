@@ -42,14 +42,29 @@ BESIDE_GAPS = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HingedCuts:
-    """Cuts and what their ends are."""
+    """Cuts and what their ends are.
 
-    pieces: tuple[CutPiece, ...]  #: slits and edge cuts, then the shapes at their ends
-    seats: tuple[Seat, ...]  #: of every hinge
-    places: tuple[Place, ...]  #: where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took
-    shapes: Mapping[int, int]  #: number of the piece that is the shape at a hinge, for those that have one
-    flexure_mm: FloatArray  #: (H,); length over which each connector bends
-    #: How many hinges stayed straight although a style was asked for, by what was in the way.
+    Attributes
+    ----------
+    pieces : tuple of CutPiece
+        Slits and edge cuts, then the shapes at their ends.
+    seats : tuple of Seat
+        Of every hinge.
+    places : tuple of Place
+        Where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took.
+    shapes : mapping of hinge to int
+        Number of the piece that is the shape at a hinge, for those that have one.
+    flexure_mm : (H,) float
+        Length over which each connector bends.
+    straight : Counter of Obstacle
+        How many hinges stayed straight although a style was asked for, by what was in the way.
+    """
+
+    pieces: tuple[CutPiece, ...]
+    seats: tuple[Seat, ...]
+    places: tuple[Place, ...]
+    shapes: Mapping[int, int]
+    flexure_mm: FloatArray
     straight: Counter[Obstacle]
 
     def moved(self, move: Callable[[FloatArray], FloatArray]) -> HingedCuts:

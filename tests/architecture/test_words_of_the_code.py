@@ -22,7 +22,7 @@ OFFENDERS = {
     "evaluate": 93,
     "export": 71,
     "fabricate": 120,
-    "generator": 43,
+    "generator": 45,
     "gui": 398,
     "lab": 208,
     "mechanics": 44,
