@@ -376,7 +376,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "smaller ears."
     ),
     "verify.motion_as_planned": mark("Pieces, pins and their places at {angles} angles are as planned."),
-    "verify.motion_differs": mark("Pieces, pins or their places at {angles} angles are not as planned. Export it again."),
+    "verify.motion_differs": mark(
+        "Pieces, pins or their places at {angles} angles are not as planned. Export it again."
+    ),
     "assembly.not_as_meant": mark("Nothing was written, for {name:.120} is not as it was meant: {finding}"),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
