@@ -38,8 +38,12 @@ from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_
 
 #: Fewest rows and columns, and most unless another limit is asked for.
 COARSEST, FINEST = 6, 16
+#: The same of pinned sheets, whose pieces somebody has to put together.
+COARSEST_PINNED, FINEST_PINNED = 3, 10
+#: Distances between pins (unit cells) that sheets have room for.
+MOST_GAP = 0.37
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
-FEWEST_VOIDS = 99
+FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
 GOAL = 0.992
 #: Where no grid reaches it, the coarsest one is taken that misses no more than the best one divided by this.  Without a
@@ -182,6 +186,7 @@ def choose_grid(
     least_feature_mm: float = 0.0,
     limit: int = FINEST,
     start: StartShape = RECTANGLE,
+    least_gap_mm: float = 0.0,
 ) -> GridChoice:
     """The coarsest grid that is expected to match a target, or the one that is expected to match it best.
 
@@ -199,23 +204,32 @@ def choose_grid(
     start : StartShape
         What the sheets look like while they are flat: its symmetry has to be kept too, its corners need mouths, and a
         round one needs enough chords.
+    least_gap_mm : float
+        How far apart pins stay, which has to fit into the cells; 0 for sheets without.
 
     Raises
     ------
     TargetError
         A symmetry is asked for and the target is far from any.
     UsageError
-        The start cannot have the symmetry that is asked for.
+        The start, or a pinned sheet, cannot have the symmetry that is asked for.
     """
-    poses = _poses(target, symmetry, start)
+    pinned = least_gap_mm > 0.0
+    poses = _poses(target, symmetry, start, pinned=pinned)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
-    found = list(_candidates(target, figures, poses, limit, start)) or _nearest(target, figures, poses, limit, start)
+    coarsest = COARSEST
+    if pinned:
+        smallest = min(smallest, MOST_GAP * width_mm / least_gap_mm)
+        coarsest, limit = COARSEST_PINNED, min(limit, FINEST_PINNED)
+    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest))
+    found = found or _nearest(target, figures, poses, limit, start)
     found = [one for one in found if one.start_error <= MOST_START_ERROR] or [
         min(found, key=lambda one: one.start_error)
     ]
     cuttable = [one for one in found if one.width <= smallest] or [min(found, key=lambda one: one.width)]
-    best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= FEWEST_VOIDS] or cuttable)
+    fewest = FEWEST_PINNED if pinned else FEWEST_VOIDS
+    best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= fewest] or cuttable)
     finer = [one for one in found if one.panels > best.panels and one.match > best.match]
     held_back = best.match < GOAL and len(cuttable) < len(found) and bool(finer)
     # Of a sketch, a symmetric sheet shows the shape halfway to its image.
@@ -224,13 +238,13 @@ def choose_grid(
     rows, columns = best.grid
     fields: dict[str, object] = {"rows": rows, "columns": columns, "percent": 100.0 * match}
     if held_back:
-        code = "grid.panels_would_be_too_small"
-        fields |= {"width_mm": width_mm, "least_mm": least_feature_mm}
+        code = "grid.pins_would_be_too_near" if pinned else "grid.panels_would_be_too_small"
+        fields |= {"width_mm": width_mm, "least_mm": least_gap_mm if pinned else least_feature_mm}
     elif best.match < GOAL:
         code = "grid.best_expected"
     else:
         code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
-    kept = shared_symmetries(target, best.grid, symmetry, start)
+    kept = shared_symmetries(target, best.grid, symmetry, start, pinned=pinned)
     kept.sort(key=lambda pose: pose != best.pose)
     return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
 
@@ -238,7 +252,13 @@ def choose_grid(
 def predicted_for(request: Request) -> GridChoice:
     """What :func:`choose_grid` says for a request, at once."""
     return choose_grid(
-        request.target, request.symmetry, request.width_mm, request.least_feature_mm, FINEST, request.start
+        request.target,
+        request.symmetry,
+        request.width_mm,
+        request.least_feature_mm,
+        FINEST,
+        request.start,
+        request.least_gap_mm,
     )
 
 
@@ -274,15 +294,15 @@ def known_for(request: Request) -> GridChoice:
 
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
-    sheet = (request.width_mm, request.least_feature_mm, request.fit_options.free_rim, request.start)
-    return request.target, request.phi, request.symmetry, *sheet
+    sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
+    return request.target, request.phi, request.symmetry, request.start, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
     target, start, symmetry = request.target, request.start, request.symmetry
     choice = predicted_for(request)
     hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
-    if not hard or not choice.poses or choice.poses[0].angle is None:
+    if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:
         return choice
     poses = _poses(target, symmetry, start)
     figures, least_feature = ShapeFigures.of(target), request.least_feature_mm
@@ -396,12 +416,13 @@ def _candidates(
     start: StartShape,
     room: float = PROPORTION_ROOM,
     start_room: float = START_ROOM,
+    coarsest: int = COARSEST,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries.
 
     Rectangles of square cells have proportions between the square and the shape's; others those of the start.
     """
-    coarsest = min(COARSEST, limit - 1)
+    coarsest = min(coarsest, limit - 1)
     sizes = range(coarsest, limit + 1)
     # A sheet on its side is the same for the eye: a single axis is laid upright.
     settings: list[SymmetricPose | None] = [pose for pose in poses if pose.symmetry is poses[0].symmetry]
@@ -435,9 +456,11 @@ def _nearest(
     return [one for one, far in zip(found, off, strict=True) if far <= min(off) + PROPORTION_ROOM]
 
 
-def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:
+def _poses(
+    target: Outline, symmetry: KeptSymmetry, start: StartShape, *, pinned: bool = False
+) -> tuple[SymmetricPose, ...]:
     """The symmetric set-ups of a target that sheets of a start can have on some grid."""
-    poses = symmetric_poses(target, symmetry)
+    poses = symmetric_poses(target, symmetry, pinned=pinned)
     if start.is_plain:
         return poses
     kept = tuple(pose for pose in poses if any(pose.fits(grid, start) for grid in SYMMETRIC_GRIDS))

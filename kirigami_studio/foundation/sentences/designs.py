@@ -147,6 +147,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
         "{least_mm:.2g} mm. Expected match: {percent:.1f} %."
     ),
+    "grid.pins_would_be_too_near": mark(
+        "{rows} x {columns}: on a finer grid, pins of a sheet {width_mm:.0f} mm wide would come nearer than "
+        "{least_mm:.2g} mm. Expected match: {percent:.1f} %."
+    ),
     "fit.locks_and_symmetry": mark(
         "A fit cannot keep locked voids and a symmetry at the same time. Choose one of them."
     ),

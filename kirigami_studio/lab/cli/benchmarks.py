@@ -533,6 +533,28 @@ def starts(arguments: argparse.Namespace) -> int:
     return 0 if all(one.ok for one in fields) else 1
 
 
+def pinned(arguments: argparse.Namespace) -> int:
+    """Targets designed for two layers of panels on pins; 1 when pins of one come too near."""
+    from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
+
+    line = ProgressLine()
+    named = names() if arguments.targets == ["library"] else arguments.targets
+    found = design_pinned(
+        [target.read() for target in read_targets(list(named))],
+        parse_grid_or_auto(arguments.grid),
+        arguments.k,
+        arguments.polish,
+        arguments.seed,
+        width_mm=arguments.width_mm,
+        gap_mm=arguments.gap_mm,
+        starts=[start_shape(name) for name in arguments.starts],
+        report=_shown_on(line, "Designs"),
+    )
+    figures = {**found.figures(), "each": [asdict(one) for one in found.each]}
+    _print_figures(arguments, line, figures, found.sentences())
+    return 0 if all(one.kept for one in found.each) else 1
+
+
 def as_cut(arguments: argparse.Namespace) -> int:
     """Silhouettes cut with several widths, read back from DXF and closed; 1 when a file did not pass."""
     from kirigami_studio.lab.benchmark.as_cut_suite import measure_as_cut

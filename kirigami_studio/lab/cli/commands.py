@@ -367,6 +367,21 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                     "(default 0)"),
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark starts --fields 1000",)),
+    SubCommand("benchmark pinned", "design targets for two layers of panels on pins", "lab.cli.benchmarks:pinned", (
+        option("--targets", nargs="+",
+               default=["heart", "star", "hexagon", "butterfly", "circle", "square", "house", "gear"],
+               help="'library', silhouettes, files or folders (default: heart star hexagon butterfly circle square "
+                    "house gear)"),
+        option("--starts", nargs="+", default=["rectangle"], metavar="SHAPE",
+               help="shapes of the flat sheet, as for 'design --start' (default: rectangle)"),
+        option("--grid", default="auto", help="voids, ROWSxCOLUMNS or auto (default auto)"),
+        option("--width-mm", type=float, default=240.0, help="width of the flat sheet (default 240)"),
+        option("--gap-mm", type=float, default=9.8, help="least distance of pins (default 9.8)"),
+        samples(32),
+        option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
+        SEED, *FIGURES,
+    ), ("kirigami-studio benchmark pinned --targets library",
+        "kirigami-studio benchmark pinned --starts circle --targets square star")),
     SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
                "lab.cli.benchmarks:solvers", (
         *targets_of_a_suite(20), EXACT, GRID, SEEDS,

@@ -1,0 +1,84 @@
+"""Distances between pins: exact, from the flat sheet alone, for the whole motion."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import pdist, squareform
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.pins import (
+    checkerboard,
+    hand_of,
+    least_pin_distance,
+    log_ratio_for,
+    pin_distances,
+    void_gaps,
+)
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.outlines.silhouettes import load
+
+
+def random_deployment(rows: int, columns: int, seed: int) -> Deployment:
+    draw, rim = np.random.default_rng(seed), Rim.even(rows, columns)
+    moved = rim.offsets(rows, columns) + draw.uniform(-0.3, 0.3, rim.positions.size)
+    return deploy(
+        Sheet(RatioField.from_log10(draw.uniform(-0.8, 0.8, (rows, columns))), Rim.moved(rows, columns, moved))
+    )
+
+
+def least_over(deployment: Deployment, phi: float) -> float:
+    """The least distance of all pins at one angle, the slow way."""
+    pins = np.unique(deployment.topology.void_nodes)
+    return float(pdist(deployment.nodes(phi)[pins]).min())
+
+
+@pytest.mark.parametrize(("grid", "seed"), [((2, 2), 1), ((3, 4), 2), ((5, 5), 3), ((4, 7), 4), ((6, 3), 5)])
+def test_that_the_least_distance_is_that_of_all_pins_over_the_whole_motion(grid: tuple[int, int], seed: int) -> None:
+    deployment = random_deployment(*grid, seed)
+    least = min(least_over(deployment, phi) for phi in np.linspace(0.0, math.pi, 61))
+    assert least_pin_distance(deployment) == pytest.approx(least, abs=1e-12)
+
+
+def test_that_every_distance_is_one_of_two_pins_in_a_closed_state() -> None:
+    deployment = random_deployment(4, 5, 6)
+    pins = np.unique(deployment.topology.void_nodes)
+    real = np.concatenate([pdist(deployment.nodes(phi)[pins]) for phi in (0.0, math.pi)])
+    found = pin_distances(deployment.compact, 4, 5).size
+    assert np.abs(found[:, None] - real).min(axis=1).max() < 1e-12
+    # Opposite corners of every void are among them.
+    wanted = np.abs(void_gaps(deployment)).ravel()
+    assert np.abs(wanted[:, None] - found).min(axis=1).max() < 1e-12
+
+
+def test_that_gaps_of_voids_are_the_differences_of_their_sides_at_any_angle() -> None:
+    deployment = random_deployment(3, 4, 7)
+    corners = deployment.voids(1.1)
+    a, b = (np.linalg.norm(corners[:, :, end] - corners[:, :, 0], axis=-1) for end in (1, 3))
+    assert void_gaps(deployment) == pytest.approx(a - b, abs=1e-12)
+    assert np.array_equal(np.sign(void_gaps(deployment)), np.sign(deployment.field.log10))
+
+
+def test_that_pins_of_the_uniform_sheet_meet_and_those_of_a_pinwheel_keep_apart() -> None:
+    assert least_pin_distance(deploy(Sheet.uniform(6, 6))) == pytest.approx(0.0, abs=1e-12)
+    z = 0.2 * checkerboard(6, 6)
+    for hand in (1, -1):
+        field = RatioField.from_log10(hand * z)
+        assert hand_of(field) == hand and least_pin_distance(deploy(field)) > 0.4
+
+
+def test_that_a_slit_with_the_ratio_for_a_gap_has_it() -> None:
+    x = 10.0 ** log_ratio_for(0.35, 1.9)
+    assert 1.9 * (x - 1.0) / (x + 1.0) == pytest.approx(0.35)
+
+
+def test_that_a_candidate_knows_how_near_its_pins_come() -> None:
+    deployment = random_deployment(4, 4, 8)
+    candidate = Candidate(deployment.sheet, evaluate(deployment, load("square"), 0.0), 0, 0)
+    apart = squareform(pdist(deployment.nodes(0.0)[np.unique(deployment.topology.void_nodes)]))
+    assert candidate.least_gap == least_pin_distance(deployment) <= apart[apart > 0.0].min() + 1e-12
