@@ -1,4 +1,4 @@
-"""The motion within a layer: its pieces never turn against each other, each moves along an arc seen from another.
+"""The motion within a layer: seen from one piece, each other moves along an arc, unturned.
 
 In the frame that turns with layer 1, a node of a panel with I + J even is U + R(t) V with t = pi - phi; V is one vector
 for all nodes of that panel, its *drift*.  Seen from a piece with drift V', the panel is therefore shifted by
@@ -9,7 +9,8 @@ and the other sense of rotation.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -71,8 +72,21 @@ class LayerMotion:
             opening=math.pi - check_phi(phi_target),
         )
 
+    def without(self, nodes: Collection[int]) -> LayerMotion:
+        """The motion with as many of these nodes' pins left out as it keeps being the only one.
+
+        They are left out one by one: a pin without which pieces would move in other ways stays.  The motion itself where
+        all stay.
+        """
+        found = self
+        for node in sorted(nodes):
+            fewer = replace(found, hinged=found.hinged & (found.nodes != node))
+            if freedom(fewer) == 1:
+                found = fewer
+        return found
+
     def placed(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
-        """Carry shapes of the flat sheet with their panels to t = ``turn``, in the frame of the deployment, mm.
+        """Carry shapes of the flat sheet with their panels to t = ``turn``; deployment's frame, mm.
 
         Parameters
         ----------
@@ -84,14 +98,14 @@ class LayerMotion:
         return _moved(shapes, back, back * (np.exp(1j * self.sense[index] * turn) - 1.0) * self.drift[index])
 
     def brought_back(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
-        """Carry shapes at t = ``turn`` to the flat sheet with their panels: the way back of :meth:`placed`."""
+        """Carry shapes at t = ``turn`` back to the flat sheet: the inverse of :meth:`placed`."""
         forth = np.exp(0.5j * self.sense[index] * turn)
         return _moved(shapes, forth, (1.0 - np.exp(1j * self.sense[index] * turn)) * self.drift[index])
 
     def close_pairs(self, reach: float) -> IntArray:
-        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other on the way, both ways round.
+        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other.
 
-        Judged by the circles around them: pairs may be too many, never too few.
+        Both ways round, over the whole motion, judged by the circles around them: never too few.
         """
         middle = self.corners.mean(axis=1)
         radius = np.abs(self.corners - middle[:, None]).max(axis=1)
@@ -105,14 +119,32 @@ class LayerMotion:
         return np.concatenate(found)
 
     def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
-        """Least distance (K,) over the motion between points of panels ``other`` and points moving with ``one``."""
+        """Least distance (K,) between points of panels ``other`` and points moving with ``one``."""
         drift = self.drift[one] - self.drift[other]
         seen = points - (moving - drift)
         radius = np.abs(drift)
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
         ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
         ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
-        return np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends)
+        return np.asarray(np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends))
+
+
+def freedom(motion: LayerMotion) -> int:
+    """Count the independent small motions of a half open sheet on its pins, beside those of the whole."""
+    turn = 0.5 * motion.opening
+    drift, spin = motion.drift[:, None], np.exp(1j * motion.sense * turn)[:, None]
+    points = np.exp(-0.5j * motion.sense * turn)[:, None] * (motion.corners + (spin - 1.0) * drift)
+    piece, corner = np.nonzero(motion.hinged)
+    order = np.argsort(motion.nodes[piece, corner], kind="stable")
+    piece, place = piece[order], points[piece, corner][order]
+    # The two pieces of a pin follow each other: shifts and turns of both are the same at the pin.
+    row, count = np.arange(len(piece) // 2), len(motion.layer)
+    conditions = np.zeros((len(piece), 3 * count))
+    for one, at, sign in ((piece[::2], place[::2], 1.0), (piece[1::2], place[1::2], -1.0)):
+        conditions[2 * row, 3 * one] = conditions[2 * row + 1, 3 * one + 1] = sign
+        conditions[2 * row, 3 * one + 2] = -sign * at.imag
+        conditions[2 * row + 1, 3 * one + 2] = sign * at.real
+    return 3 * count - 3 - int(np.linalg.matrix_rank(conditions))
 
 
 def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> GeometryArray:
@@ -125,17 +157,21 @@ def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> 
     return moved
 
 
-def discs(centres: ComplexArray, radius: float) -> GeometryArray:
+def polygons(corners: ComplexArray) -> GeometryArray:
+    """Polygons (K,) with the given corners (K, C)."""
+    return np.asarray(shapely.polygons(as_points(corners)), dtype=object).reshape(-1)
+
+
+def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
     """Polygons (K,) in circles about ``centres`` (K,), with vertices on them."""
-    rim = radius * np.exp(2j * math.pi * np.arange(DISC) / DISC)
-    made: GeometryArray = np.asarray(shapely.polygons(as_points(centres[:, None] + rim)), dtype=object).reshape(-1)
-    return made
+    rim = np.broadcast_to(radius, centres.shape)[:, None] * np.exp(2j * math.pi * np.arange(DISC) / DISC)
+    return polygons(centres[:, None] + rim)
 
 
 def swept_discs(
-    centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: float, tolerance: float
+    centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: FloatArray, tolerance: float
 ) -> GeometryArray:
-    """Areas that discs sweep along arcs: they contain the exact ones and exceed them by ``tolerance`` at most.
+    """Areas that contain those swept by discs along arcs, and exceed them by ``tolerance``.
 
     Parameters
     ----------
@@ -145,7 +181,7 @@ def swept_discs(
         A disc is at its centre plus (exp(i s) - 1) times its drift, s from 0 to its turn.
     turns : (K,) float, radians
         Within pi of 0.
-    radius : float, mm
+    radius : (K,) float, mm
     tolerance : float, mm
 
     Returns
@@ -158,20 +194,19 @@ def swept_discs(
     largest = np.abs(turns).max(initial=0.0)
     # The vertices of the outer arc lie outside of it, by reach (1 / cos(half a step) - 1), or reach step^2 / 8.
     steps = 2 ** np.ceil(np.log2(np.maximum(largest * np.sqrt(reach / (8.0 * tolerance)), 2.0))).astype(np.int64)
-    size = max(DISC, 4 * math.ceil(0.25 * math.pi / math.sqrt(2.0 * tolerance / radius)))
-    cap = radius / math.cos(math.pi / size) * np.exp(2j * math.pi * np.arange(size) / size)
+    size = max(DISC, 4 * math.ceil(0.25 * math.pi * math.sqrt(radius.max(initial=0.0) / (2.0 * tolerance))))
+    cap = radius[:, None] / math.cos(math.pi / size) * np.exp(2j * math.pi * np.arange(size) / size)
     ends = centres + (np.exp(1j * turns) - 1.0) * drifts
-    caps = [shapely.polygons(as_points(place[:, None] + cap)) for place in (centres, ends)]
+    caps = [polygons(place[:, None] + cap) for place in (centres, ends)]
     for count in np.unique(steps):
         here = np.flatnonzero(steps == count)
         angle = turns[here, None] * np.linspace(0.0, 1.0, count + 1) + np.angle(drifts[here])[:, None]
         middle = (centres - drifts)[here, None]
         outside = reach[here, None] / np.cos(0.5 * turns[here, None] / count)
-        inside = np.maximum(np.abs(drifts[here]) - radius, 0.0)[:, None]
+        inside = np.maximum(np.abs(drifts[here]) - radius[here], 0.0)[:, None]
         ring = [middle + outside * np.exp(1j * angle), middle + inside * np.exp(1j * angle[:, ::-1])]
-        made[here] = shapely.polygons(as_points(np.concatenate(ring, axis=1)))
-    areas: GeometryArray = np.stack([made, *(np.asarray(one, dtype=object).reshape(-1) for one in caps)], axis=1)
-    return areas
+        made[here] = polygons(np.concatenate(ring, axis=1))
+    return np.stack([made, *caps], axis=1)
 
 
 def swept_hulls(
@@ -202,5 +237,4 @@ def swept_hulls(
         & (both.real.min(axis=1) <= window[2])
         & (both.imag.min(axis=1) <= window[3])
     )
-    hulls: GeometryArray = shapely.convex_hull(shapely.multipoints(as_points(both[near])))
-    return hulls
+    return np.asarray(shapely.convex_hull(shapely.multipoints(as_points(both[near]))), dtype=object)

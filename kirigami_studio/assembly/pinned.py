@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
-from kirigami_studio.assembly.rim_pieces import EndState, extend_to, label_place, round_off, trim_to
+from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
 from kirigami_studio.assembly.shaping import Shaping
 from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -136,12 +136,12 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         layer = int(motion.layer[index])
         number[layer] += 1
         name = f"{'-AB'[layer]}{number[layer]}"
-        shape = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
+        shape: Polygon = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
         drills = shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)
         drilled = shape.difference(shapely.union_all(drills))
-        place, room = label_place(drilled)
+        place, room = roomiest_place(drilled)
         pieces.append(
             Piece(
                 id=name,

@@ -1,4 +1,4 @@
-"""Pieces trimmed to both outlines, and extended to what is missing of them, where their own layer is free.
+"""Pieces trimmed to both outlines, and extended to them where their own layer is free.
 
 Each end state has an outline: the target while open, the start outline while flat.  A cut in one state is material that
 the other lacks, and an extension may stick out of the other: the weight of the options decides, and the flat outline
@@ -15,7 +15,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import GeometryArray, discs
+from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
 from kirigami_studio.assembly.shaping import OVERLAP, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import FloatArray
@@ -55,13 +55,13 @@ class EndState:
     @classmethod
     def of(cls, deployment: Deployment, phi: float, cell_mm: float, outline: Polygon, reach_mm: float) -> EndState:
         """The state of a design at ``phi``."""
-        voids = shapely.polygons(deployment.voids(phi).reshape(-1, 4, 2) * cell_mm)
+        voids = polygons(as_plane(deployment.voids(phi)).reshape(-1, 4) * cell_mm)
         voids = voids[shapely.area(voids) > LEAST_PART]
         return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
 
 
 def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
-    """Panels with the strip outside of their part of the rim, between bisectors of the angles at both ends."""
+    """Panels at the rim with the strip outside of each, between bisectors of the rim's angles."""
     tables, nodes = deployment.topology, as_plane(deployment.nodes(phi)) * cell_mm
     panel_nodes = tables.panel_nodes.reshape(-1, 4)
     side_owner = {
@@ -81,15 +81,16 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
     ray = reach_mm * between / np.maximum(np.abs(between), TOUCHING)
-    shares: GeometryArray = np.array([Polygon()] * len(panel_nodes), dtype=object)
+    shares = np.full(len(panel_nodes), Polygon(), dtype=object)
     for place, (begin, after) in enumerate(zip(breaks, np.append(breaks[1:], len(owner)), strict=True)):
         chain = np.append(start[begin:after], end[after - 1])
         rays = chain[0] + np.array([0.0, ray[place]]), chain[-1] + np.array([0.0, ray[(place + 1) % len(breaks)]])
-        crossing = shapely.intersection(*(shapely.LineString(as_points(one)) for one in rays))
-        if crossing.is_empty or crossing.geom_type != "Point":
-            far = [rays[1][1], rays[0][1]]
+        before, behind = (shapely.LineString(as_points(one)) for one in rays)
+        crossing = before.intersection(behind)
+        if crossing.geom_type == "Point" and not crossing.is_empty:
+            far = as_plane(shapely.get_coordinates(crossing))
         else:
-            far = [complex(crossing.x, crossing.y)]
+            far = np.array([rays[1][1], rays[0][1]])
         strip = shapely.make_valid(Polygon(as_points(np.append(chain, far))))
         panel = Polygon(as_points(nodes[panel_nodes[owner[begin]]]))
         shares[owner[begin]] = shapely.union_all([shares[owner[begin]], strip, panel.buffer(OVERLAP)])
@@ -97,7 +98,7 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
 
 
 def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
-    """Cut pieces along the outline of a state, those first that stick out most, and keep all walls.
+    """Cut pieces along the outline of a state, the farthest outside first; keep all walls.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
     """
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
-    panels = shapely.polygons(as_points(motion.corners))
+    panels = polygons(motion.corners)
     lost = 0.0
     for index in np.argsort(-outside):
         if outside[index] < LEAST_PART:
@@ -138,7 +139,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
 
 
 def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> float:
-    """Extend pieces to what is missing of a state's outline, where their layer is free over the whole motion.
+    """Extend pieces to gaps in a state's outline, where their layer is free at every angle.
 
     First each takes its share of the rim, whole even where another layer lies on it, and gaps beside it; then whatever
     is still missing within its reach.
@@ -193,9 +194,14 @@ def _extended(
     needed: BaseGeometry,
     spare: float,
 ) -> tuple[BaseGeometry | None, float]:
-    """Add to a piece as much of an area as is free: the part added, where it is in the state, and mm2 beyond the other.
+    """Add to a piece as much of an area as is free.
 
-    None where that is not worth it.
+    Returns
+    -------
+    added : geometry or None
+        In the state; None where that is not worth it.
+    beyond : float, mm2
+        How much of it sticks out of the other state's outline.
     """
     motion, body, here = shaping.motion, shaping.bodies[index], np.array([index])
     mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
@@ -205,7 +211,7 @@ def _extended(
     free = less(mine, shaping.blocked(index, less(mine, body)))
     may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and mine.area - inside.area > LEAST_PART
     for room in (free, shared(free, inside)) if may_stick_out else (shared(free, inside),):
-        best = shaping.held_together(index, united(body, room)) if shared(room, missed).area > LEAST_PART else None
+        best = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
         if best is None:
             continue
         added = less(best, body)
@@ -217,7 +223,7 @@ def _extended(
 
 
 def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
-    """Fill narrow nicks between extensions of pieces at the rim, where that sticks out of neither outline."""
+    """Fill narrow nicks of pieces at the rim, where that sticks out of neither outline."""
     motion = shaping.motion
     for index in np.flatnonzero(~shapely.is_empty(states[0].shares) | ~shapely.is_empty(states[1].shares)).tolist():
         body = shaping.bodies[index]
@@ -229,14 +235,12 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
         if room.area < LEAST_PART:
             continue
         room = room.buffer(OVERLAP)
-        best = shaping.held_together(index, united(body, less(room, shaping.blocked(index, room))))
+        best = shaping.with_more(index, less(room, shaping.blocked(index, room)))
         if best is not None and best.area > body.area + LEAST_PART:
             shaping.add(index, best)
 
 
-def label_place(shape: BaseGeometry) -> tuple[FloatArray, float]:
-    """Centre and radius of the largest circle in a shape, mm; 0 in an empty one."""
-    if shape.is_empty:
-        return np.zeros(2), 0.0
-    line = shapely.maximum_inscribed_circle(shape, tolerance=0.5)
+def roomiest_place(shape: BaseGeometry, tolerance_mm: float = 0.5) -> tuple[FloatArray, float]:
+    """Centre and radius of the largest circle in a shape, mm."""
+    line = shapely.maximum_inscribed_circle(np.array([shape], dtype=object), tolerance=tolerance_mm)[0]
     return shapely.get_coordinates(line)[0], float(line.length)

@@ -1,9 +1,9 @@
-"""Pieces while they are being made: panel, ears, notches, and everything that moves past them in their layer."""
+"""Pieces while they are being made: panels, ears, notches, and the room of their neighbours."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -12,7 +12,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, swept_discs, swept_hulls
+from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, polygons, swept_discs, swept_hulls
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
@@ -26,8 +26,8 @@ BODY_TOLERANCE = 0.08
 COARSE = 0.25
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
-#: Grid (mm) of overlays that fail in floating point, where edges nearly coincide.
-SNAPPED_MM = 1e-6
+#: Times that pins without a wall are left out, and notches cut anew.
+ROUNDS = 6
 #: Parts added to a piece overlap it by this, mm, so that they hold together in floating point.
 OVERLAP = 0.004
 #: Differences between polygons that are smaller, mm2, are those of rounding.
@@ -38,7 +38,7 @@ STRAIGHT = 0.002
 
 @dataclass(eq=False)
 class Shaping:
-    """The pieces of one design in the frame of the flat sheet, mm; they change while rims are shaped.
+    """The pieces of one design in the flat sheet, mm; they change while rims are shaped.
 
     Attributes
     ----------
@@ -46,6 +46,8 @@ class Shaping:
     options : PinOptions
     bodies : (P,) Polygon
         What there is of each piece, holes not drilled.
+    ear_radius : (P, 4) float, mm
+        Of the ear at each corner: smaller than asked for where it would cut a neighbour through.
     broken : set of int
         Panels whose ears do not hang together.
     """
@@ -53,66 +55,106 @@ class Shaping:
     motion: LayerMotion
     options: PinOptions
     bodies: GeometryArray = field(init=False)
+    ear_radius: FloatArray = field(init=False)
     broken: set[int] = field(default_factory=set)
+    weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or are cut off from their piece
+    cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a piece through
 
     def __post_init__(self) -> None:
         members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
         self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
-        self.bodies = np.array([Polygon()] * len(self.motion.layer), dtype=object)
+        self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
+        self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
 
     @classmethod
     def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, options: PinOptions) -> Shaping:
-        """Panels with ears, less what the ears of their neighbours sweep."""
-        made = cls(LayerMotion.of(deployment, cell_mm, phi_target), options)
+        """Panels with ears, less what the ears of their neighbours sweep.
+
+        Pins without a wall are left out as long as the sheet keeps its one motion: their ears no longer cut neighbours.
+        """
+        motion = LayerMotion.of(deployment, cell_mm, phi_target)
+        made = cls(motion, options)
         made._begin(deployment)
+        for _ in range(ROUNDS):
+            fewer = motion.without(made.weak)
+            if fewer is motion:
+                fewer = motion.without(made.cutting)
+            if fewer is motion:
+                break
+            motion = fewer
+            made = cls(motion, options)
+            made._begin(deployment)
         return made
 
     def _begin(self, deployment: Deployment) -> None:
+        """Cut the notches; where they cut a piece through, the ears that do it become smaller, once to halfway."""
         motion, options = self.motion, self.options
-        panels = _less(shapely.polygons(as_points(motion.corners)), self._rubbing_sides(deployment))
+        panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
         owner, corner = np.nonzero(motion.hinged)
-        ears = discs(motion.corners[owner, corner], 0.5 * options.ear_mm)
-        whole = _united_by(np.concatenate([panels, ears]), np.concatenate([np.arange(len(panels)), owner]), len(panels))
-        self.bodies = whole
         mover, seen = self._passing_ears
-        areas = self._swept_ears(mover, seen, 0.5 * options.ear_mm + options.clearance_mm)
-        meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-        notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
-        for index, shape in enumerate(_less(whole, notches)):
-            one = self.held_together(index, shape)
-            if one is None:
-                self.broken.add(index)
-                one = _largest(shape)
-            self.bodies[index] = one
+        for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
+            ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+            every = np.concatenate([np.arange(len(panels)), owner])
+            whole = _united_by(np.concatenate([panels, ears]), every, len(panels))
+            areas = self._swept_ears(mover, seen)
+            meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
+            notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
+            shapes = _less(whole, notches)
+            held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
+            self.broken = {index for index, one in enumerate(held) if one is None}
+            cutting = mover[meets & np.isin(seen, list(self.broken))]
+            if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
+                break
+            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
+        self.cutting = set(motion.nodes.ravel()[cutting].tolist())
+        for index, one in enumerate(held):
+            self.bodies[index] = self._most_pinned(index, shapes[index]) if one is None else one
+        for index in range(len(self.bodies)):
+            self._find_weak(index)
+
+    def _most_pinned(self, index: int, shape: BaseGeometry) -> Polygon:
+        """The part of a shape that has most pins, and of those the largest."""
+        centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
+        parts = parts_between_necks(shape, self.options.neck_mm)
+        if not parts:
+            return _largest(shape)
+        return max(parts, key=lambda one: (int(np.sum(shapely.contains(one[0], centres))), float(one[1].area)))[1]
+
+    def _find_weak(self, index: int) -> None:
+        """Note the nodes of a piece whose pins have less wall than asked for."""
+        motion, options = self.motion, self.options
+        corners = np.flatnonzero(motion.hinged[index])
+        centres = shapely.points(as_points(motion.corners[index][corners]))
+        body = self.bodies[index]
+        wall = shapely.distance(body.exterior, centres) - 0.5 * options.pin_mm
+        thin = ~shapely.contains(body, centres) | (wall < options.asked_wall_mm - NOTCH_TOLERANCE - BODY_TOLERANCE)
+        self.weak |= set(motion.nodes[index, corners[thin]].tolist())
 
     def _rubbing_sides(self, deployment: Deployment) -> GeometryArray:
-        """Strips along the sides on which pieces of one layer meet, half of their gap wide: (P,) geometry."""
+        """Strips (P,) along sides on which pieces of one layer meet, half of their gap wide."""
         motion, ratios = self.motion, deployment.field.ratio
         columns = deployment.sheet.columns
-        strips: GeometryArray = np.array([Polygon()] * len(motion.layer), dtype=object)
+        strips = np.full(len(motion.layer), Polygon(), dtype=object)
         if self.options.side_mm <= 0.0:
             return strips
         lines: list[ComplexArray] = []
         owners: list[IntArray] = []
-        row, column = np.indices(ratios.shape)
-        upper = row * (columns + 1) + column
+        upper: IntArray = np.arange(len(motion.layer)).reshape(-1, columns + 1)[:-1, :-1]
         # Around a void: upper left with its lower right side, and so on; (panel, first corner, second corner).
         long_diagonal = [(upper, 2, 3), (upper + columns + 2, 0, 1)]
         short_diagonal = [(upper + 1, 1, 2), (upper + columns + 1, 3, 0)]
-        for sides, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
-            for panel, start, end in sides:
+        for pair, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
+            for panel, start, end in pair:
                 corners = motion.corners[panel[longer]]
                 lines.append(corners[:, [start, end]])
                 owners.append(panel[longer])
-        owner = np.concatenate(owners)
-        wide = shapely.buffer(
-            shapely.linestrings(as_points(np.concatenate(lines))), 0.5 * self.options.side_mm, cap_style="flat"
-        )
-        return _united_by(wide, owner, len(strips))
+        sides = np.asarray(shapely.linestrings(as_points(np.concatenate(lines))), dtype=object)
+        wide = shapely.buffer(sides, 0.5 * self.options.side_mm, cap_style="flat")
+        return _united_by(wide, np.concatenate(owners), len(strips))
 
     @cached_property
     def pairs(self) -> IntArray:
-        """Pairs (K, 2) of pieces of one layer that may come near each other: one that moves past the other."""
+        """Pairs (K, 2) of pieces of one layer that may come near each other; the second is passed."""
         return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
 
     @cached_property
@@ -125,20 +167,23 @@ class Shaping:
         hinged = motion.hinged.ravel()[ear]
         ear, seen = ear[hinged], seen[hinged]
         middle = motion.corners.mean(axis=1)
-        radius = np.abs(motion.corners - middle[:, None]).max(axis=1) + options.ear_mm + options.clearance_mm
+        radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
+        radius += options.ear_mm + options.clearance_mm + options.reach_mm
         apart = motion.distance_on_arc(middle[seen], motion.corners.ravel()[ear], ear // 4, seen)
         near = apart <= radius[seen]
         return ear[near], seen[near]
 
-    def _swept_ears(self, ear: IntArray, seen: IntArray, radius: float) -> GeometryArray:
+    def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
+        """Areas that ears (flat indices of corners) and their clearance sweep, seen from panels: (K, 3) Polygon."""
         motion = self.motion
+        radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
         drift = motion.drift[ear // 4] - motion.drift[seen]
         turn = motion.sense[seen] * motion.opening
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Corners (flat indices) of two ears in one layer, and their least distance over the motion, mm.
+        """Two ears in one layer (flat indices of corners), and their least distance, mm.
 
         Of each pair of pieces that pass each other, both ways round.
         """
@@ -151,7 +196,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window (flat) that other pieces of its layer need when piece ``index`` is there."""
+        """The area near a window that others need in the layer of piece ``index``, seen from it."""
         motion, options = self.motion, self.options
         if window.is_empty:
             return Polygon()
@@ -175,22 +220,28 @@ class Shaping:
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
         mover, seen = self._passing_ears
         mover = mover[seen == index]
-        radius = 0.5 * options.ear_mm + options.clearance_mm
-        mover = mover[near(mover // 4, motion.corners.ravel()[mover], radius)]
-        ears = self._swept_ears(mover, np.full(len(mover), index), radius).ravel()
+        mover = mover[near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)]
+        ears = self._swept_ears(mover, np.full(len(mover), index)).ravel()
         touching = ears[shapely.intersects(zone, ears)]
-        return shapely.union_all(np.append(shapely.clip_by_rect(touching, *box), bodies))
+        return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
-        """The part of a shape with all ears of a piece, without anything narrower than the least neck.
+        """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
 
         None where the ears do not hang together by necks that are wide enough.
         """
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
-        for part in shapely.get_parts(opened(shape, self.options.neck_mm)):
-            if np.all(shapely.contains(part, centres)):
+        for core, part in parts_between_necks(shape, self.options.neck_mm):
+            if np.all(shapely.contains(core, centres)):
                 return _tidy(part, 0.25 * math.pi * self.options.ear_mm**2)
         return None
+
+    def with_more(self, index: int, room: BaseGeometry) -> Polygon | None:
+        """The body of a piece with what of an area hangs on to it by a neck; None where that is nothing."""
+        body = self.bodies[index]
+        found = self.held_together(index, united(body, room))
+        whole = None if found is None else united(found, body)
+        return whole if whole is not None and whole.geom_type == "Polygon" else None
 
     def add(self, index: int, shape: Polygon) -> None:
         """Give a piece a larger shape; it is kept in mind by all that move past it later."""
@@ -233,33 +284,36 @@ class _ConvexParts:
         return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate([here, more]))
 
 
-def opened(shape: BaseGeometry, width: float) -> BaseGeometry:
-    """The shape without anything narrower than a width: its morphological opening, corners kept."""
-    core = shapely.buffer(shape, -0.5 * width, join_style="mitre", mitre_limit=MITRE)
-    return shared(shapely.buffer(core, 0.5 * width, join_style="mitre", mitre_limit=MITRE), shape)
+def parts_between_necks(shape: BaseGeometry, width: float) -> list[tuple[Polygon, Polygon]]:
+    """Parts of a shape that only connections narrower than a width hold together, corners kept.
+
+    Returns
+    -------
+    parts : list of (core, part)
+        The core of each, half the width inside, and the part.
+    """
+    cores = shapely.get_parts(shapely.buffer(shape, -0.5 * width, join_style="mitre", mitre_limit=MITRE)).tolist()
+    grown = [shapely.buffer(core, 0.5 * width, join_style="mitre", mitre_limit=MITRE) for core in cores]
+    return [
+        (core, _largest(part))
+        for core, part in zip(cores, (shared(one, shape) for one in grown), strict=True)
+        if not part.is_empty
+    ]
 
 
 def less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas of a shape outside of another."""
-    return _areas(_overlay(shapely.difference, shape, other))
+    return _areas(shape.difference(other))
 
 
 def shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas that two shapes share."""
-    return _areas(_overlay(shapely.intersection, shape, other))
+    return _areas(shape.intersection(other))
 
 
 def united(*shapes: BaseGeometry) -> BaseGeometry:
     """The areas of several shapes together."""
-    return _areas(_overlay(shapely.union_all, shapes)) if shapes else Polygon()
-
-
-def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Sequence[BaseGeometry]) -> BaseGeometry:
-    """An overlay in floating point, or on a fine grid where that fails."""
-    try:
-        return overlay(*shapes)
-    except shapely.GEOSException:
-        return overlay(*shapes, grid_size=SNAPPED_MM)
+    return _areas(shapely.union_all(shapes)) if shapes else Polygon()
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:
@@ -271,7 +325,7 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
 
 
 def _tidy(part: Polygon, least_hole: float) -> Polygon:
-    """The polygon without vertices on straight lines, and without holes that nothing could move in."""
+    """The polygon without vertices on straight lines, and without holes too small for an ear."""
     rings = [ring for ring in part.interiors if Polygon(ring).area > least_hole]
     simple = shapely.simplify(Polygon(part.exterior, rings), STRAIGHT)
     return simple if simple.is_valid and simple.geom_type == "Polygon" else part
@@ -280,18 +334,17 @@ def _tidy(part: Polygon, least_hole: float) -> Polygon:
 def _convex_parts(part: Polygon) -> list[ComplexArray]:
     """Convex polygons that cover a small part."""
     hull = part.convex_hull
-    if hull.geom_type != "Polygon":
-        return []
     if hull.area < 1.25 * part.area:
-        coarse = [shapely.simplify(shapely.buffer(hull, COARSE, join_style="mitre"), COARSE)]
+        coarse: BaseGeometry = shapely.simplify(shapely.buffer(hull, COARSE, join_style="mitre"), COARSE)
     else:
         rounded = shapely.simplify(shapely.buffer(part, COARSE, join_style="mitre"), COARSE)
-        coarse = shapely.get_parts(shapely.constrained_delaunay_triangles(rounded))
-    return [as_plane(shapely.get_coordinates(one)[:-1]) for one in coarse]
+        coarse = shapely.constrained_delaunay_triangles(rounded)
+    return [as_plane(shapely.get_coordinates(one)[:-1]) for one in shapely.get_parts(coarse)]
 
 
 def _largest(shape: BaseGeometry) -> Polygon:
-    return max(shapely.get_parts(shape), key=lambda part: float(part.area))
+    parts: list[Polygon] = shapely.get_parts(shape).tolist()
+    return max(parts, key=lambda part: float(part.area))
 
 
 def _less(shapes: GeometryArray, others: GeometryArray) -> GeometryArray:
@@ -303,8 +356,8 @@ def _united_by(shapes: GeometryArray, owner: IntArray, count: int) -> GeometryAr
     """Unions (count,) of the shapes that belong to each owner."""
     order = np.argsort(owner, kind="stable")
     groups = np.split(np.asarray(shapes, dtype=object)[order], np.cumsum(np.bincount(owner, minlength=count))[:-1])
-    united: GeometryArray = np.array([Polygon()] * count, dtype=object)
+    together = np.full(count, Polygon(), dtype=object)
     for index, group in enumerate(groups):
         if len(group):
-            united[index] = shapely.union_all(group)
-    return united
+            together[index] = shapely.union_all(group)
+    return together

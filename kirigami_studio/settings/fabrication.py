@@ -180,7 +180,7 @@ class FabricationSettings:
         ).metadata,
     )
     fastener: Fastener = field(
-        default=Fastener.M3,
+        default=Fastener.BRAD,
         metadata=Setting(
             about=mark("What the pieces of pinned sheets turn on."),
             help="pins of pinned sheets: sets hole, ear and parts list",
@@ -188,9 +188,9 @@ class FabricationSettings:
             undo=mark("Change the pins"),
             label=mark("Pins"),
             choices=(
-                Choice(Fastener.M3, mark("M3 screws")),
-                Choice(Fastener.M2, mark("M2 screws")),
                 Choice(Fastener.BRAD, mark("Brads")),
+                Choice(Fastener.M2, mark("M2 screws")),
+                Choice(Fastener.M3, mark("M3 screws")),
                 Choice(Fastener.EYELET, mark("Eyelets")),
                 Choice(Fastener.RIVET, mark("Rivets")),
             ),
