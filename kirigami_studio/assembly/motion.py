@@ -1,4 +1,4 @@
-"""The motion within a layer: its pieces never turn against each other, each moves along an arc seen from another.
+"""The motion within a layer: seen from one piece, each other moves along an arc, unturned.
 
 In the frame that turns with layer 1, a node of a panel with I + J even is U + R(t) V with t = pi - phi; V is one vector
 for all nodes of that panel, its *drift*.  Seen from a piece with drift V', the panel is therefore shifted by
@@ -72,7 +72,7 @@ class LayerMotion:
         )
 
     def placed(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
-        """Carry shapes of the flat sheet with their panels to t = ``turn``, in the frame of the deployment, mm.
+        """Carry shapes of the flat sheet with their panels to t = ``turn``; deployment's frame, mm.
 
         Parameters
         ----------
@@ -84,14 +84,14 @@ class LayerMotion:
         return _moved(shapes, back, back * (np.exp(1j * self.sense[index] * turn) - 1.0) * self.drift[index])
 
     def brought_back(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
-        """Carry shapes at t = ``turn`` to the flat sheet with their panels: the way back of :meth:`placed`."""
+        """Carry shapes at t = ``turn`` back to the flat sheet: the inverse of :meth:`placed`."""
         forth = np.exp(0.5j * self.sense[index] * turn)
         return _moved(shapes, forth, (1.0 - np.exp(1j * self.sense[index] * turn)) * self.drift[index])
 
     def close_pairs(self, reach: float) -> IntArray:
-        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other on the way, both ways round.
+        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other.
 
-        Judged by the circles around them: pairs may be too many, never too few.
+        Both ways round, over the whole motion, judged by the circles around them: never too few.
         """
         middle = self.corners.mean(axis=1)
         radius = np.abs(self.corners - middle[:, None]).max(axis=1)
@@ -105,7 +105,7 @@ class LayerMotion:
         return np.concatenate(found)
 
     def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
-        """Least distance (K,) over the motion between points of panels ``other`` and points moving with ``one``."""
+        """Least distance (K,) between points of panels ``other`` and points moving with ``one``."""
         drift = self.drift[one] - self.drift[other]
         seen = points - (moving - drift)
         radius = np.abs(drift)
@@ -135,7 +135,7 @@ def discs(centres: ComplexArray, radius: float) -> GeometryArray:
 def swept_discs(
     centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: float, tolerance: float
 ) -> GeometryArray:
-    """Areas that discs sweep along arcs: they contain the exact ones and exceed them by ``tolerance`` at most.
+    """Areas that contain those swept by discs along arcs, and exceed them by ``tolerance``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pieces trimmed to both outlines, and extended to what is missing of them, where their own layer is free.
+"""Pieces trimmed to both outlines, and extended to them where their own layer is free.
 
 Each end state has an outline: the target while open, the start outline while flat.  A cut in one state is material that
 the other lacks, and an extension may stick out of the other: the weight of the options decides, and the flat outline
@@ -61,7 +61,7 @@ class EndState:
 
 
 def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
-    """Panels with the strip outside of their part of the rim, between bisectors of the angles at both ends."""
+    """Panels at the rim with the strip outside of each, between bisectors of the rim's angles."""
     tables, nodes = deployment.topology, as_plane(deployment.nodes(phi)) * cell_mm
     panel_nodes = tables.panel_nodes.reshape(-1, 4)
     side_owner = {
@@ -97,7 +97,7 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
 
 
 def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
-    """Cut pieces along the outline of a state, those first that stick out most, and keep all walls.
+    """Cut pieces along the outline of a state, the farthest outside first; keep all walls.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
 
 
 def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> float:
-    """Extend pieces to what is missing of a state's outline, where their layer is free over the whole motion.
+    """Extend pieces to gaps in a state's outline, where their layer is free at every angle.
 
     First each takes its share of the rim, whole even where another layer lies on it, and gaps beside it; then whatever
     is still missing within its reach.
@@ -193,9 +193,14 @@ def _extended(
     needed: BaseGeometry,
     spare: float,
 ) -> tuple[BaseGeometry | None, float]:
-    """Add to a piece as much of an area as is free: the part added, where it is in the state, and mm2 beyond the other.
+    """Add to a piece as much of an area as is free.
 
-    None where that is not worth it.
+    Returns
+    -------
+    added : geometry or None
+        In the state; None where that is not worth it.
+    beyond : float, mm2
+        How much of it sticks out of the other state's outline.
     """
     motion, body, here = shaping.motion, shaping.bodies[index], np.array([index])
     mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
@@ -217,7 +222,7 @@ def _extended(
 
 
 def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
-    """Fill narrow nicks between extensions of pieces at the rim, where that sticks out of neither outline."""
+    """Fill narrow nicks of pieces at the rim, where that sticks out of neither outline."""
     motion = shaping.motion
     for index in np.flatnonzero(~shapely.is_empty(states[0].shares) | ~shapely.is_empty(states[1].shares)).tolist():
         body = shaping.bodies[index]

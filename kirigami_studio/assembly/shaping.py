@@ -1,4 +1,4 @@
-"""Pieces while they are being made: panel, ears, notches, and everything that moves past them in their layer."""
+"""Pieces while they are being made: panels, ears, notches, and the room of their neighbours."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ STRAIGHT = 0.002
 
 @dataclass(eq=False)
 class Shaping:
-    """The pieces of one design in the frame of the flat sheet, mm; they change while rims are shaped.
+    """The pieces of one design in the flat sheet, mm; they change while rims are shaped.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Shaping:
             self.bodies[index] = one
 
     def _rubbing_sides(self, deployment: Deployment) -> GeometryArray:
-        """Strips along the sides on which pieces of one layer meet, half of their gap wide: (P,) geometry."""
+        """Strips (P,) along sides on which pieces of one layer meet, half of their gap wide."""
         motion, ratios = self.motion, deployment.field.ratio
         columns = deployment.sheet.columns
         strips: GeometryArray = np.array([Polygon()] * len(motion.layer), dtype=object)
@@ -110,7 +110,7 @@ class Shaping:
 
     @cached_property
     def pairs(self) -> IntArray:
-        """Pairs (K, 2) of pieces of one layer that may come near each other: one that moves past the other."""
+        """Pairs (K, 2) of pieces of one layer that may come near each other; the second is passed."""
         return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
 
     @cached_property
@@ -136,7 +136,7 @@ class Shaping:
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Corners (flat indices) of two ears in one layer, and their least distance over the motion, mm.
+        """Two ears in one layer (flat indices of corners), and their least distance, mm.
 
         Of each pair of pieces that pass each other, both ways round.
         """
@@ -149,7 +149,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window (flat) that other pieces of its layer need when piece ``index`` is there."""
+        """The area near a window that others need in the layer of piece ``index``, seen from it."""
         motion, options = self.motion, self.options
         if window.is_empty:
             return Polygon()
@@ -180,7 +180,7 @@ class Shaping:
         return shapely.union_all(np.append(shapely.clip_by_rect(touching, *box), bodies))
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
-        """The part of a shape with all ears of a piece, without anything narrower than the least neck.
+        """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
 
         None where the ears do not hang together by necks that are wide enough.
         """
@@ -261,7 +261,7 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
 
 
 def _tidy(part: Polygon, least_hole: float) -> Polygon:
-    """The polygon without vertices on straight lines, and without holes that nothing could move in."""
+    """The polygon without vertices on straight lines, and without holes too small for an ear."""
     rings = [ring for ring in part.interiors if Polygon(ring).area > least_hole]
     simple = shapely.simplify(Polygon(part.exterior, rings), STRAIGHT)
     return simple if simple.is_valid and simple.geom_type == "Polygon" else part
