@@ -112,7 +112,7 @@ class LayerMotion:
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
         ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
         ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
-        return np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends)
+        return np.asarray(np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends))
 
 
 def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> GeometryArray:
@@ -125,15 +125,19 @@ def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> 
     return moved
 
 
-def discs(centres: ComplexArray, radius: float) -> GeometryArray:
+def polygons(corners: ComplexArray) -> GeometryArray:
+    """Polygons (K,) with the given corners (K, C)."""
+    return np.asarray(shapely.polygons(as_points(corners)), dtype=object).reshape(-1)
+
+
+def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
     """Polygons (K,) in circles about ``centres`` (K,), with vertices on them."""
-    rim = radius * np.exp(2j * math.pi * np.arange(DISC) / DISC)
-    made: GeometryArray = np.asarray(shapely.polygons(as_points(centres[:, None] + rim)), dtype=object).reshape(-1)
-    return made
+    rim = np.broadcast_to(radius, centres.shape)[:, None] * np.exp(2j * math.pi * np.arange(DISC) / DISC)
+    return polygons(centres[:, None] + rim)
 
 
 def swept_discs(
-    centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: float, tolerance: float
+    centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: FloatArray, tolerance: float
 ) -> GeometryArray:
     """Areas that contain those swept by discs along arcs, and exceed them by ``tolerance``.
 
@@ -145,7 +149,7 @@ def swept_discs(
         A disc is at its centre plus (exp(i s) - 1) times its drift, s from 0 to its turn.
     turns : (K,) float, radians
         Within pi of 0.
-    radius : float, mm
+    radius : (K,) float, mm
     tolerance : float, mm
 
     Returns
@@ -158,20 +162,19 @@ def swept_discs(
     largest = np.abs(turns).max(initial=0.0)
     # The vertices of the outer arc lie outside of it, by reach (1 / cos(half a step) - 1), or reach step^2 / 8.
     steps = 2 ** np.ceil(np.log2(np.maximum(largest * np.sqrt(reach / (8.0 * tolerance)), 2.0))).astype(np.int64)
-    size = max(DISC, 4 * math.ceil(0.25 * math.pi / math.sqrt(2.0 * tolerance / radius)))
-    cap = radius / math.cos(math.pi / size) * np.exp(2j * math.pi * np.arange(size) / size)
+    size = max(DISC, 4 * math.ceil(0.25 * math.pi * math.sqrt(radius.max(initial=0.0) / (2.0 * tolerance))))
+    cap = radius[:, None] / math.cos(math.pi / size) * np.exp(2j * math.pi * np.arange(size) / size)
     ends = centres + (np.exp(1j * turns) - 1.0) * drifts
-    caps = [shapely.polygons(as_points(place[:, None] + cap)) for place in (centres, ends)]
+    caps = [polygons(place[:, None] + cap) for place in (centres, ends)]
     for count in np.unique(steps):
         here = np.flatnonzero(steps == count)
         angle = turns[here, None] * np.linspace(0.0, 1.0, count + 1) + np.angle(drifts[here])[:, None]
         middle = (centres - drifts)[here, None]
         outside = reach[here, None] / np.cos(0.5 * turns[here, None] / count)
-        inside = np.maximum(np.abs(drifts[here]) - radius, 0.0)[:, None]
+        inside = np.maximum(np.abs(drifts[here]) - radius[here], 0.0)[:, None]
         ring = [middle + outside * np.exp(1j * angle), middle + inside * np.exp(1j * angle[:, ::-1])]
-        made[here] = shapely.polygons(as_points(np.concatenate(ring, axis=1)))
-    areas: GeometryArray = np.stack([made, *(np.asarray(one, dtype=object).reshape(-1) for one in caps)], axis=1)
-    return areas
+        made[here] = polygons(np.concatenate(ring, axis=1))
+    return np.stack([made, *caps], axis=1)
 
 
 def swept_hulls(
@@ -202,5 +205,4 @@ def swept_hulls(
         & (both.real.min(axis=1) <= window[2])
         & (both.imag.min(axis=1) <= window[3])
     )
-    hulls: GeometryArray = shapely.convex_hull(shapely.multipoints(as_points(both[near])))
-    return hulls
+    return np.asarray(shapely.convex_hull(shapely.multipoints(as_points(both[near]))), dtype=object)

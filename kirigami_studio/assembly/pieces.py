@@ -128,4 +128,4 @@ class Assembly:
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""
         x, y, turn = self.poses(phi)[self.pieces.index(piece)]
-        return rotate(points, turn) + np.array([x, y])
+        return np.asarray(rotate(points, turn) + np.array([x, y]))

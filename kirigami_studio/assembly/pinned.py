@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
-from kirigami_studio.assembly.rim_pieces import EndState, extend_to, label_place, round_off, trim_to
+from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
 from kirigami_studio.assembly.shaping import Shaping
 from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -89,15 +89,16 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     pose = replace(design.pose, scale=design.pose.scale / scale, shift=(x / scale, y / scale))
     shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
-    shaping = Shaping.of(deployment, cell_mm, phi, options)
-    opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
-    closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
-    spare = (1.0 - options.least_flat) * flat.area
-    spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
-    trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-    spare -= extend_to(shaping, opened, closed, spare)
-    extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-    round_off(shaping, (opened, closed))
+    with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
+        shaping = Shaping.of(deployment, cell_mm, phi, options)
+        opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
+        closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
+        spare = (1.0 - options.least_flat) * flat.area
+        spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
+        trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
+        spare -= extend_to(shaping, opened, closed, spare)
+        extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances
@@ -136,12 +137,12 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         layer = int(motion.layer[index])
         number[layer] += 1
         name = f"{'-AB'[layer]}{number[layer]}"
-        shape = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
+        shape: Polygon = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
         drills = shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)
         drilled = shape.difference(shapely.union_all(drills))
-        place, room = label_place(drilled)
+        place, room = roomiest_place(drilled)
         pieces.append(
             Piece(
                 id=name,

@@ -15,7 +15,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import GeometryArray, discs
+from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
 from kirigami_studio.assembly.shaping import OVERLAP, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import FloatArray
@@ -55,7 +55,7 @@ class EndState:
     @classmethod
     def of(cls, deployment: Deployment, phi: float, cell_mm: float, outline: Polygon, reach_mm: float) -> EndState:
         """The state of a design at ``phi``."""
-        voids = shapely.polygons(deployment.voids(phi).reshape(-1, 4, 2) * cell_mm)
+        voids = polygons(as_plane(deployment.voids(phi)).reshape(-1, 4) * cell_mm)
         voids = voids[shapely.area(voids) > LEAST_PART]
         return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
 
@@ -81,15 +81,16 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
     ray = reach_mm * between / np.maximum(np.abs(between), TOUCHING)
-    shares: GeometryArray = np.array([Polygon()] * len(panel_nodes), dtype=object)
+    shares = np.full(len(panel_nodes), Polygon(), dtype=object)
     for place, (begin, after) in enumerate(zip(breaks, np.append(breaks[1:], len(owner)), strict=True)):
         chain = np.append(start[begin:after], end[after - 1])
         rays = chain[0] + np.array([0.0, ray[place]]), chain[-1] + np.array([0.0, ray[(place + 1) % len(breaks)]])
-        crossing = shapely.intersection(*(shapely.LineString(as_points(one)) for one in rays))
-        if crossing.is_empty or crossing.geom_type != "Point":
-            far = [rays[1][1], rays[0][1]]
+        before, behind = (shapely.LineString(as_points(one)) for one in rays)
+        crossing = before.intersection(behind)
+        if crossing.geom_type == "Point" and not crossing.is_empty:
+            far = as_plane(shapely.get_coordinates(crossing))
         else:
-            far = [complex(crossing.x, crossing.y)]
+            far = np.array([rays[1][1], rays[0][1]])
         strip = shapely.make_valid(Polygon(as_points(np.append(chain, far))))
         panel = Polygon(as_points(nodes[panel_nodes[owner[begin]]]))
         shares[owner[begin]] = shapely.union_all([shares[owner[begin]], strip, panel.buffer(OVERLAP)])
@@ -113,7 +114,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
     """
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
-    panels = shapely.polygons(as_points(motion.corners))
+    panels = polygons(motion.corners)
     lost = 0.0
     for index in np.argsort(-outside):
         if outside[index] < LEAST_PART:
@@ -239,7 +240,7 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
             shaping.add(index, best)
 
 
-def label_place(shape: BaseGeometry) -> tuple[FloatArray, float]:
+def roomiest_place(shape: BaseGeometry, tolerance_mm: float = 0.5) -> tuple[FloatArray, float]:
     """Centre and radius of the largest circle in a shape, mm."""
-    line = shapely.maximum_inscribed_circle(shape, tolerance=0.5)
+    line = shapely.maximum_inscribed_circle(np.array([shape], dtype=object), tolerance=tolerance_mm)[0]
     return shapely.get_coordinates(line)[0], float(line.length)

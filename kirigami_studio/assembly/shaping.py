@@ -12,7 +12,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, swept_discs, swept_hulls
+from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, polygons, swept_discs, swept_hulls
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
@@ -24,6 +24,8 @@ NOTCH_TOLERANCE = 0.01
 BODY_TOLERANCE = 0.08
 #: By this, mm, outlines of what is swept are coarser than the bodies.
 COARSE = 0.25
+#: Necks that pieces are made with, as shares of those asked for, where wider ones are cut through.
+NARROWER = (0.75, 0.5, 0.25, 0.05)
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
 #: Parts added to a piece overlap it by this, mm, so that they hold together in floating point.
@@ -44,6 +46,10 @@ class Shaping:
     options : PinOptions
     bodies : (P,) Polygon
         What there is of each piece, holes not drilled.
+    ear_radius : (P, 4) float, mm
+        Of the ear at each corner: smaller than asked for where it would cut a neighbour through.
+    neck_mm : (P,) float
+        Least width of each: as asked for, or less where neighbours' ears leave no more.
     broken : set of int
         Panels whose ears do not hang together.
     """
@@ -51,12 +57,16 @@ class Shaping:
     motion: LayerMotion
     options: PinOptions
     bodies: GeometryArray = field(init=False)
+    ear_radius: FloatArray = field(init=False)
+    neck_mm: FloatArray = field(init=False)
     broken: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
         self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
-        self.bodies = np.array([Polygon()] * len(self.motion.layer), dtype=object)
+        self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
+        self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
+        self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
 
     @classmethod
     def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, options: PinOptions) -> Shaping:
@@ -66,47 +76,49 @@ class Shaping:
         return made
 
     def _begin(self, deployment: Deployment) -> None:
+        """Cut the notches; where they cut a piece through, the ears that do it become smaller, once to halfway."""
         motion, options = self.motion, self.options
-        panels = _less(shapely.polygons(as_points(motion.corners)), self._rubbing_sides(deployment))
+        panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
         owner, corner = np.nonzero(motion.hinged)
-        ears = discs(motion.corners[owner, corner], 0.5 * options.ear_mm)
-        whole = _united_by(np.concatenate([panels, ears]), np.concatenate([np.arange(len(panels)), owner]), len(panels))
-        self.bodies = whole
         mover, seen = self._passing_ears
-        areas = self._swept_ears(mover, seen, 0.5 * options.ear_mm + options.clearance_mm)
-        meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-        notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
-        for index, shape in enumerate(_less(whole, notches)):
-            one = self.held_together(index, shape)
-            if one is None:
-                self.broken.add(index)
-                one = _largest(shape)
-            self.bodies[index] = one
+        for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
+            ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+            every = np.concatenate([np.arange(len(panels)), owner])
+            whole = _united_by(np.concatenate([panels, ears]), every, len(panels))
+            areas = self._swept_ears(mover, seen)
+            meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
+            notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
+            shapes = _less(whole, notches)
+            held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
+            narrow = [index for index, one in enumerate(held) if one is None]
+            cutting = mover[meets & np.isin(seen, narrow)]
+            if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
+                break
+            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
+        for index, one in enumerate(held):
+            self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
 
     def _rubbing_sides(self, deployment: Deployment) -> GeometryArray:
         """Strips (P,) along sides on which pieces of one layer meet, half of their gap wide."""
         motion, ratios = self.motion, deployment.field.ratio
         columns = deployment.sheet.columns
-        strips: GeometryArray = np.array([Polygon()] * len(motion.layer), dtype=object)
+        strips = np.full(len(motion.layer), Polygon(), dtype=object)
         if self.options.side_mm <= 0.0:
             return strips
         lines: list[ComplexArray] = []
         owners: list[IntArray] = []
-        row, column = np.indices(ratios.shape)
-        upper = row * (columns + 1) + column
+        upper: IntArray = np.arange(len(motion.layer)).reshape(-1, columns + 1)[:-1, :-1]
         # Around a void: upper left with its lower right side, and so on; (panel, first corner, second corner).
         long_diagonal = [(upper, 2, 3), (upper + columns + 2, 0, 1)]
         short_diagonal = [(upper + 1, 1, 2), (upper + columns + 1, 3, 0)]
-        for sides, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
-            for panel, start, end in sides:
+        for pair, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
+            for panel, start, end in pair:
                 corners = motion.corners[panel[longer]]
                 lines.append(corners[:, [start, end]])
                 owners.append(panel[longer])
-        owner = np.concatenate(owners)
-        wide = shapely.buffer(
-            shapely.linestrings(as_points(np.concatenate(lines))), 0.5 * self.options.side_mm, cap_style="flat"
-        )
-        return _united_by(wide, owner, len(strips))
+        sides = np.asarray(shapely.linestrings(as_points(np.concatenate(lines))), dtype=object)
+        wide = shapely.buffer(sides, 0.5 * self.options.side_mm, cap_style="flat")
+        return _united_by(wide, np.concatenate(owners), len(strips))
 
     @cached_property
     def pairs(self) -> IntArray:
@@ -123,13 +135,16 @@ class Shaping:
         hinged = motion.hinged.ravel()[ear]
         ear, seen = ear[hinged], seen[hinged]
         middle = motion.corners.mean(axis=1)
-        radius = np.abs(motion.corners - middle[:, None]).max(axis=1) + options.ear_mm + options.clearance_mm
+        radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
+        radius += options.ear_mm + options.clearance_mm + options.reach_mm
         apart = motion.distance_on_arc(middle[seen], motion.corners.ravel()[ear], ear // 4, seen)
         near = apart <= radius[seen]
         return ear[near], seen[near]
 
-    def _swept_ears(self, ear: IntArray, seen: IntArray, radius: float) -> GeometryArray:
+    def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
+        """Areas that ears (flat indices of corners) and their clearance sweep, seen from panels: (K, 3) Polygon."""
         motion = self.motion
+        radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
         drift = motion.drift[ear // 4] - motion.drift[seen]
         turn = motion.sense[seen] * motion.opening
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
@@ -173,22 +188,32 @@ class Shaping:
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
         mover, seen = self._passing_ears
         mover = mover[seen == index]
-        radius = 0.5 * options.ear_mm + options.clearance_mm
-        mover = mover[near(mover // 4, motion.corners.ravel()[mover], radius)]
-        ears = self._swept_ears(mover, np.full(len(mover), index), radius).ravel()
+        mover = mover[near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)]
+        ears = self._swept_ears(mover, np.full(len(mover), index)).ravel()
         touching = ears[shapely.intersects(zone, ears)]
-        return shapely.union_all(np.append(shapely.clip_by_rect(touching, *box), bodies))
+        return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
         """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
 
-        None where the ears do not hang together by necks that are wide enough.
+        None where the ears do not hang together by necks as wide as those of the piece.
         """
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
-        for part in shapely.get_parts(opened(shape, self.options.neck_mm)):
-            if np.all(shapely.contains(part, centres)):
-                return _tidy(part, 0.25 * math.pi * self.options.ear_mm**2)
+        half = 0.5 * float(self.neck_mm[index])
+        for core in shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)):
+            if np.all(shapely.contains(core, centres)):
+                whole = shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape)
+                return _tidy(_largest(whole), 0.25 * math.pi * self.options.ear_mm**2)
         return None
+
+    def _held_narrowly(self, index: int, shape: BaseGeometry) -> Polygon:
+        """The same by the widest necks that there are; the largest part where ears do not hang together at all."""
+        for share in NARROWER:
+            self.neck_mm[index] = share * self.options.neck_mm
+            if (one := self.held_together(index, shape)) is not None:
+                return one
+        self.broken.add(index)
+        return _largest(shape)
 
     def add(self, index: int, shape: Polygon) -> None:
         """Give a piece a larger shape; it is kept in mind by all that move past it later."""
@@ -231,12 +256,6 @@ class _ConvexParts:
         return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate([here, more]))
 
 
-def opened(shape: BaseGeometry, width: float) -> BaseGeometry:
-    """The shape without anything narrower than a width: its morphological opening, corners kept."""
-    core = shapely.buffer(shape, -0.5 * width, join_style="mitre", mitre_limit=MITRE)
-    return shared(shapely.buffer(core, 0.5 * width, join_style="mitre", mitre_limit=MITRE), shape)
-
-
 def less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas of a shape outside of another."""
     return _areas(shape.difference(other))
@@ -270,18 +289,17 @@ def _tidy(part: Polygon, least_hole: float) -> Polygon:
 def _convex_parts(part: Polygon) -> list[ComplexArray]:
     """Convex polygons that cover a small part."""
     hull = part.convex_hull
-    if hull.geom_type != "Polygon":
-        return []
     if hull.area < 1.25 * part.area:
-        coarse = [shapely.simplify(shapely.buffer(hull, COARSE, join_style="mitre"), COARSE)]
+        coarse: BaseGeometry = shapely.simplify(shapely.buffer(hull, COARSE, join_style="mitre"), COARSE)
     else:
         rounded = shapely.simplify(shapely.buffer(part, COARSE, join_style="mitre"), COARSE)
-        coarse = shapely.get_parts(shapely.constrained_delaunay_triangles(rounded))
-    return [as_plane(shapely.get_coordinates(one)[:-1]) for one in coarse]
+        coarse = shapely.constrained_delaunay_triangles(rounded)
+    return [as_plane(shapely.get_coordinates(one)[:-1]) for one in shapely.get_parts(coarse)]
 
 
 def _largest(shape: BaseGeometry) -> Polygon:
-    return max(shapely.get_parts(shape), key=lambda part: float(part.area))
+    parts: list[Polygon] = shapely.get_parts(shape).tolist()
+    return max(parts, key=lambda part: float(part.area))
 
 
 def _less(shapes: GeometryArray, others: GeometryArray) -> GeometryArray:
@@ -293,8 +311,8 @@ def _united_by(shapes: GeometryArray, owner: IntArray, count: int) -> GeometryAr
     """Unions (count,) of the shapes that belong to each owner."""
     order = np.argsort(owner, kind="stable")
     groups = np.split(np.asarray(shapes, dtype=object)[order], np.cumsum(np.bincount(owner, minlength=count))[:-1])
-    united: GeometryArray = np.array([Polygon()] * count, dtype=object)
+    together = np.full(count, Polygon(), dtype=object)
     for index, group in enumerate(groups):
         if len(group):
-            united[index] = shapely.union_all(group)
-    return united
+            together[index] = shapely.union_all(group)
+    return together
