@@ -1,4 +1,4 @@
-"""Findings on a pinned plan: one piece each, walls, necks, pins and heads, no collision, and what both ends show."""
+"""Findings on a pinned plan: whole pieces, walls, necks, pins, collisions, both outlines."""
 
 from __future__ import annotations
 
@@ -118,8 +118,11 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         kept=float(kept.mean()),
         least_kept=float(kept.min()),
     )
-    places = _Places(assembly)
-    problems = [Problem.error("pinned.falls_apart", places.of(name), piece=name) for name in plan.broken]
+    places = {
+        piece.id: (float(x), float(y))
+        for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True)
+    }
+    problems = [Problem.error("pinned.falls_apart", places[name], piece=name) for name in plan.broken]
     needed = options.ear_mm + options.clearance_mm
     if plan.gap_mm < needed - ROUNDNESS_MM:
         problems.append(
@@ -129,12 +132,12 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         problems.append(Problem.error("pinned.pieces_collide", overlap_mm2=overlap, angle_deg=math.degrees(worst_phi)))
     least_wall = options.asked_wall_mm
     problems += [
-        Problem.error("pinned.wall_too_thin", places.of(piece.id), piece=piece.id, wall_mm=wall, needed_mm=least_wall)
+        Problem.error("pinned.wall_too_thin", places[piece.id], piece=piece.id, wall_mm=wall, needed_mm=least_wall)
         for piece, wall in zip(assembly.pieces, walls, strict=True)
         if wall < least_wall - ROUNDNESS_MM
     ]
     problems += [
-        Problem.warning("pinned.neck_too_narrow", places.of(piece.id), piece=piece.id, neck_mm=neck, needed_mm=least)
+        Problem.warning("pinned.neck_too_narrow", places[piece.id], piece=piece.id, neck_mm=neck, needed_mm=least)
         for piece, neck, least in zip(assembly.pieces, necks, [options.neck_mm] * len(necks), strict=True)
         if 0.0 < neck < least - ROUNDNESS_MM
     ]
@@ -161,17 +164,6 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     return PinnedReport(figures, tuple(sorted(problems, key=lambda problem: problem.severity is Severity.WARNING)))
 
 
-class _Places:
-    """Middles of pieces in the flat sheet, mm, by id."""
-
-    def __init__(self, assembly: Assembly) -> None:
-        poses = assembly.poses(math.pi)
-        self._places = {piece.id: (float(x), float(y)) for piece, (x, y, _) in zip(assembly.pieces, poses, strict=True)}
-
-    def of(self, name: str) -> tuple[float, float]:
-        return self._places[name]
-
-
 def body_of(piece: Piece) -> Polygon:
     """A piece as a polygon with its openings, its round holes not drilled."""
     return Polygon(piece.outline, piece.openings)
@@ -187,7 +179,7 @@ def placed_bodies(assembly: Assembly, bodies: Sequence[BaseGeometry], phi: float
 
 
 def largest_overlap(assembly: Assembly, angles: Sequence[float]) -> tuple[float, float]:
-    """Largest overlap within a layer, mm2, over some angles (radians), and the angle where it is."""
+    """Largest overlap within a layer, mm2, over some angles (radians), and where it is."""
     bodies = [body_of(piece) for piece in assembly.pieces]
     layer = np.array([piece.layer for piece in assembly.pieces])
     worst, at = 0.0, math.pi
@@ -214,7 +206,7 @@ def wall_mm(piece: Piece, body: Polygon) -> float:
 
 
 def neck_mm(piece: Piece, body: Polygon, least: float, most: float) -> float:
-    """Width of the narrowest connection between ears, mm, as far as it is between 0 and ``most``."""
+    """Width of the narrowest connection between ears, mm, from 0 to ``most``."""
     centres = shapely.points([hole.centre for hole in piece.holes])
 
     def holds(width: float) -> bool:
@@ -231,7 +223,7 @@ def neck_mm(piece: Piece, body: Polygon, least: float, most: float) -> float:
 
 
 def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi: float) -> tuple[float, list[int]]:
-    """Least distance of any two pins on the way from flat to ``phi``, mm, exactly, and their nodes.
+    """Exact least distance of any two pins from flat to ``phi``, mm, and their nodes.
 
     The difference of two nodes is R(-a) u + R(+a) v: its square is |u|^2 + |v|^2 + 2 |u| |v| cos(t + arg v - arg u)
     with t = 2 a.

@@ -89,15 +89,16 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     pose = replace(design.pose, scale=design.pose.scale / scale, shift=(x / scale, y / scale))
     shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
-    shaping = Shaping.of(deployment, cell_mm, phi, options)
-    opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
-    closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
-    spare = (1.0 - options.least_flat) * flat.area
-    spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
-    trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-    spare -= extend_to(shaping, opened, closed, spare)
-    extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-    round_off(shaping, (opened, closed))
+    with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
+        shaping = Shaping.of(deployment, cell_mm, phi, options)
+        opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
+        closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
+        spare = (1.0 - options.least_flat) * flat.area
+        spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
+        trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
+        spare -= extend_to(shaping, opened, closed, spare)
+        extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -24,10 +24,14 @@ NOTCH_TOLERANCE = 0.01
 BODY_TOLERANCE = 0.08
 #: By this, mm, outlines of what is swept are coarser than the bodies.
 COARSE = 0.25
+#: Necks that pieces are made with, as shares of those asked for, where wider ones are cut through.
+NARROWER = (0.75, 0.5, 0.25, 0.05)
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
-#: Times that pins without a wall are left out, and notches cut anew.
+#: Times that pins are left out, and notches cut anew.
 ROUNDS = 6
+#: Grid (mm) of overlays that fail in floating point, where edges nearly coincide.
+SNAPPED_MM = 1e-6
 #: Parts added to a piece overlap it by this, mm, so that they hold together in floating point.
 OVERLAP = 0.004
 #: Differences between polygons that are smaller, mm2, are those of rounding.
@@ -48,6 +52,8 @@ class Shaping:
         What there is of each piece, holes not drilled.
     ear_radius : (P, 4) float, mm
         Of the ear at each corner: smaller than asked for where it would cut a neighbour through.
+    neck_mm : (P,) float
+        Least width of each: as asked for, or less where neighbours' ears leave no more.
     broken : set of int
         Panels whose ears do not hang together.
     """
@@ -56,13 +62,15 @@ class Shaping:
     options: PinOptions
     bodies: GeometryArray = field(init=False)
     ear_radius: FloatArray = field(init=False)
+    neck_mm: FloatArray = field(init=False)
     broken: set[int] = field(default_factory=set)
-    weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or are cut off from their piece
-    cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a piece through
+    weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or no neck to their piece
+    cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
 
     def __post_init__(self) -> None:
         members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
         self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
+        self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
         self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
 
@@ -70,7 +78,7 @@ class Shaping:
     def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, options: PinOptions) -> Shaping:
         """Panels with ears, less what the ears of their neighbours sweep.
 
-        Pins without a wall are left out as long as the sheet keeps its one motion: their ears no longer cut neighbours.
+        Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         """
         motion = LayerMotion.of(deployment, cell_mm, phi_target)
         made = cls(motion, options)
@@ -101,33 +109,33 @@ class Shaping:
             notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
             shapes = _less(whole, notches)
             held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
-            self.broken = {index for index, one in enumerate(held) if one is None}
-            cutting = mover[meets & np.isin(seen, list(self.broken))]
+            narrow = [index for index, one in enumerate(held) if one is None]
+            cutting = mover[meets & np.isin(seen, narrow)]
             if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
                 break
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
         for index, one in enumerate(held):
-            self.bodies[index] = self._most_pinned(index, shapes[index]) if one is None else one
-        for index in range(len(self.bodies)):
-            self._find_weak(index)
+            self._find_weak(index, self._most_pinned(index, shapes[index]) if one is None else one)
+            self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
 
     def _most_pinned(self, index: int, shape: BaseGeometry) -> Polygon:
-        """The part of a shape that has most pins, and of those the largest."""
+        """The part of a shape between necks that has most pins, and of those the largest."""
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
-        parts = parts_between_necks(shape, self.options.neck_mm)
-        if not parts:
+        half = 0.5 * self.options.neck_mm
+        cores = shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)).tolist()
+        if not cores:
             return _largest(shape)
-        return max(parts, key=lambda one: (int(np.sum(shapely.contains(one[0], centres))), float(one[1].area)))[1]
+        core = max(cores, key=lambda one: (int(np.sum(shapely.contains(one, centres))), float(one.area)))
+        return _largest(shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape))
 
-    def _find_weak(self, index: int) -> None:
+    def _find_weak(self, index: int, body: Polygon) -> None:
         """Note the nodes of a piece whose pins have less wall than asked for."""
         motion, options = self.motion, self.options
         corners = np.flatnonzero(motion.hinged[index])
         centres = shapely.points(as_points(motion.corners[index][corners]))
-        body = self.bodies[index]
         wall = shapely.distance(body.exterior, centres) - 0.5 * options.pin_mm
-        thin = ~shapely.contains(body, centres) | (wall < options.asked_wall_mm - NOTCH_TOLERANCE - BODY_TOLERANCE)
+        thin = ~shapely.contains(body, centres) | (wall < options.asked_wall_mm - 2.0 * NOTCH_TOLERANCE)
         self.weak |= set(motion.nodes[index, corners[thin]].tolist())
 
     def _rubbing_sides(self, deployment: Deployment) -> GeometryArray:
@@ -228,16 +236,27 @@ class Shaping:
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
         """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
 
-        None where the ears do not hang together by necks that are wide enough.
+        None where the ears do not hang together by necks as wide as those of the piece.
         """
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
-        for core, part in parts_between_necks(shape, self.options.neck_mm):
+        half = 0.5 * float(self.neck_mm[index])
+        for core in shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)):
             if np.all(shapely.contains(core, centres)):
-                return _tidy(part, 0.25 * math.pi * self.options.ear_mm**2)
+                whole = shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape)
+                return _tidy(_largest(whole), 0.25 * math.pi * self.options.ear_mm**2)
         return None
 
+    def _held_narrowly(self, index: int, shape: BaseGeometry) -> Polygon:
+        """The same by the widest necks that there are; the largest part where ears do not hang together at all."""
+        for share in NARROWER:
+            self.neck_mm[index] = share * self.options.neck_mm
+            if (one := self.held_together(index, shape)) is not None:
+                return one
+        self.broken.add(index)
+        return _largest(shape)
+
     def with_more(self, index: int, room: BaseGeometry) -> Polygon | None:
-        """The body of a piece with what of an area hangs on to it by a neck; None where that is nothing."""
+        """The body of a piece with all of an area that hangs on to it by a neck; None where that is nothing."""
         body = self.bodies[index]
         found = self.held_together(index, united(body, room))
         whole = None if found is None else united(found, body)
@@ -284,36 +303,27 @@ class _ConvexParts:
         return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate([here, more]))
 
 
-def parts_between_necks(shape: BaseGeometry, width: float) -> list[tuple[Polygon, Polygon]]:
-    """Parts of a shape that only connections narrower than a width hold together, corners kept.
-
-    Returns
-    -------
-    parts : list of (core, part)
-        The core of each, half the width inside, and the part.
-    """
-    cores = shapely.get_parts(shapely.buffer(shape, -0.5 * width, join_style="mitre", mitre_limit=MITRE)).tolist()
-    grown = [shapely.buffer(core, 0.5 * width, join_style="mitre", mitre_limit=MITRE) for core in cores]
-    return [
-        (core, _largest(part))
-        for core, part in zip(cores, (shared(one, shape) for one in grown), strict=True)
-        if not part.is_empty
-    ]
-
-
 def less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas of a shape outside of another."""
-    return _areas(shape.difference(other))
+    return _areas(_overlay(shapely.difference, shape, other))
 
 
 def shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
     """The areas that two shapes share."""
-    return _areas(shape.intersection(other))
+    return _areas(_overlay(shapely.intersection, shape, other))
 
 
 def united(*shapes: BaseGeometry) -> BaseGeometry:
     """The areas of several shapes together."""
-    return _areas(shapely.union_all(shapes)) if shapes else Polygon()
+    return _areas(_overlay(shapely.union_all, shapes)) if shapes else Polygon()
+
+
+def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Sequence[BaseGeometry]) -> BaseGeometry:
+    """An overlay in floating point, or on a fine grid where that fails."""
+    try:
+        return overlay(*shapes)
+    except shapely.GEOSException:
+        return overlay(*shapes, grid_size=SNAPPED_MM)
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:

@@ -1,4 +1,4 @@
-"""Sentences of ``assembly``, by the code of the problem: sizes of pins, and findings on pieces."""
+"""Sentences of ``assembly``, by the code of the problem: sizes of pins, findings on pieces."""
 
 from __future__ import annotations
 

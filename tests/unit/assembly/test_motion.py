@@ -63,7 +63,7 @@ def test_that_no_pair_of_pieces_that_comes_near_is_left_out(design, motion) -> N
 @pytest.mark.parametrize("drift", [0.0 + 0.0j, 2.0 + 1.0j, -18.0 + 9.0j, 61.0j])
 def test_that_swept_discs_contain_every_disc_and_little_more(turn: float, drift: complex) -> None:
     radius, tolerance, centre = 5.2, 0.01, 3.0 - 4.0j
-    parts = swept_discs(np.array([centre]), np.array([drift]), np.array([turn]), radius, tolerance)
+    parts = swept_discs(np.array([centre]), np.array([drift]), np.array([turn]), np.array([radius]), tolerance)
     area = shapely.union_all(parts[0])
     share = np.random.default_rng(1).uniform(0.0, 1.0, 300)
     places = centre + (np.exp(1j * turn * share) - 1.0) * drift

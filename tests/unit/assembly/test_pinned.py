@@ -200,3 +200,20 @@ def test_that_the_margin_keeps_the_pins_of_the_rim_inside_of_both_outlines(plan:
         assert np.all(shapely.contains(outline, pins))
         assert shapely.distance(outline.exterior, pins).min() > 0.5 * plan.options.pin_mm + 1.0
     assert iou(plan.flat, plan.flat.envelope) == pytest.approx(1.0)
+
+
+def test_that_ears_become_smaller_where_they_would_cut_a_neighbour_through() -> None:
+    design, target = pinwheel(3, 3, 0.16, 0.03, 4)
+    firm, soft = (
+        check_pinned(pinned(design, target, 110.0, PinOptions(pin_mm=1.6, head_mm=5.0, wall_mm=wall)), 9)
+        for wall in (3.8, 1.6)
+    )
+    assert soft.figures.neck_mm > firm.figures.neck_mm
+    assert soft.figures.wall_mm >= 1.6 - 0.02
+    assert soft.figures.overlap_mm2 < 0.01 and firm.figures.overlap_mm2 < 0.01
+
+
+def test_that_extensions_keep_clear_of_ears_that_pass_beyond_their_panels() -> None:
+    design, target = pinwheel(4, 4, 0.2, 0.7, 5)
+    assembly = pinned(design, target, WIDTH_MM, PinOptions(reach_mm=30.0)).assembly
+    assert max(overlap_at(assembly, float(phi)) for phi in np.linspace(math.pi, 0.0, 41)) < 1e-6

@@ -1,0 +1,193 @@
+"""Places where pieces meet in one end state only: there magnets, tabs or one more pin hold the sheet open, or flat.
+
+Voids close in both end states, and the panels around them meet along other parts of their sides in each: *meetings*
+within a layer, where edges touch.  Pieces of different layers lie on each other: *locks* are places where a pin through
+both holds them, and with them the whole sheet, which has one degree of freedom.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+import shapely
+
+from kirigami_studio.assembly.checks import body_of, placed_bodies
+from kirigami_studio.assembly.motion import discs
+from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
+from kirigami_studio.assembly.pinned import PinnedPlan
+from kirigami_studio.assembly.rim_pieces import roomiest_place
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+
+#: Sides that touch for less than this, mm, hold nothing.
+LEAST_LENGTH_MM = 3.0
+#: Voids narrower than this, mm, are closed.
+CLOSED_MM = 0.01
+#: Beyond half the gap between sides, mm: how far from the line on which they meet an edge may lie.
+BESIDE_MM = 0.02
+
+
+class HeldState(StrEnum):
+    """End state in which pieces meet."""
+
+    OPEN = "open"
+    FLAT = "flat"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Meeting:
+    """Edges of two pieces of one layer that touch along a length in one end state.
+
+    In the other state, the same two may touch, but at other places of their edges.
+
+    Attributes
+    ----------
+    pieces : (str, str)
+        Ids.
+    at : pair of (2, 2) float, mm
+        Both ends of the length, in the frame of each piece.
+    length_mm : float
+    state : HeldState
+    """
+
+    pieces: tuple[str, str]
+    at: tuple[FloatArray, FloatArray]
+    length_mm: float
+    state: HeldState
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lock:
+    """A place for a pin through two pieces that lie on each other in one end state.
+
+    Attributes
+    ----------
+    pieces : (str, str)
+        Ids, the one of layer 1 first.
+    at : pair of (2,) float, mm
+        In the frame of each.
+    room_mm : float
+        Radius of the disc of material about it in both.
+    apart_mm : float
+        How far the two places are apart in the other end state.
+    state : HeldState
+    """
+
+    pieces: tuple[str, str]
+    at: tuple[FloatArray, FloatArray]
+    room_mm: float
+    apart_mm: float
+    state: HeldState
+
+
+def meetings(plan: PinnedPlan) -> tuple[Meeting, ...]:
+    """Meetings in both end states, the longest first; none open where the target angle leaves voids open."""
+    assembly = plan.assembly
+    ends = ((HeldState.OPEN, assembly.phi_target), (HeldState.FLAT, math.pi))
+    found = [one for state, phi in ends for one in _meetings_at(plan, state, phi)]
+    return tuple(sorted(found, key=lambda one: -one.length_mm))
+
+
+def _meetings_at(plan: PinnedPlan, state: HeldState, phi: float) -> list[Meeting]:
+    assembly = plan.assembly
+    tables = assembly.deployment.topology
+    voids = as_plane(assembly.deployment.voids(phi)) * assembly.cell_mm
+    pieces = {piece.panel: (number, piece) for number, piece in enumerate(assembly.pieces)}
+    placed = placed_bodies(assembly, [body_of(piece) for piece in assembly.pieces], phi)
+    poses = assembly.poses(phi)
+    found = []
+    for row, column in np.ndindex(*tables.even_void.shape):
+        p0, p1, p2, p3 = voids[row, column]
+        sides = {
+            (row, column): (p0, p3),
+            (row, column + 1): (p3, p2),
+            (row + 1, column + 1): (p2, p1),
+            (row + 1, column): (p1, p0),
+        }
+        long_way = max((p2 - p0, p3 - p1), key=abs)
+        direction = long_way / abs(long_way)
+        if max(abs(((corner - p0) / direction).imag) for corner in (p1, p2, p3)) > CLOSED_MM:
+            continue
+        # Panels across the void from each other are of one layer.
+        for first, second in (((row, column), (row + 1, column + 1)), ((row, column + 1), (row + 1, column))):
+            low, high = _shared_interval(sides[first], sides[second], p0, direction)
+            if high - low < LEAST_LENGTH_MM:
+                continue
+            line = shapely.LineString(as_points(p0 + direction * np.array([low, high])))
+            (one, a), (other, b) = pieces[first], pieces[second]
+            for index in (one, other):
+                near = placed[index].boundary.buffer(0.5 * plan.options.side_mm + BESIDE_MM)
+                line = line.intersection(near)
+            for part in shapely.get_parts(line):
+                if part.length >= LEAST_LENGTH_MM:
+                    ends = as_plane(shapely.get_coordinates(part)[[0, -1]])
+                    at = _seen_from(poses[one], ends), _seen_from(poses[other], ends)
+                    found.append(Meeting((a.id, b.id), at, float(part.length), state))
+    return found
+
+
+def _shared_interval(
+    one: tuple[complex, complex], other: tuple[complex, complex], origin: complex, direction: complex
+) -> tuple[float, float]:
+    """Where two sides on one line overlap, along it from an origin."""
+    spans = [sorted(((end - origin) / direction).real for end in side) for side in (one, other)]
+    return max(span[0] for span in spans), min(span[1] for span in spans)
+
+
+def _seen_from(pose: FloatArray, places: ComplexArray) -> FloatArray:
+    """Places (K,) of the deployment's frame in the frame of a piece with a pose: (K, 2)."""
+    x, y, turn = pose
+    return as_points((places - complex(x, y)) * np.exp(-1j * turn))
+
+
+def locks(plan: PinnedPlan, state: HeldState) -> tuple[Lock, ...]:
+    """Locks in one end state: those first whose places move farthest apart towards the other.
+
+    Each has a wall of half a neck at least, and its head lies clear of all pins.
+    """
+    assembly, options = plan.assembly, plan.options
+    phi, away = (math.pi, assembly.phi_target) if state is HeldState.FLAT else (assembly.phi_target, math.pi)
+    placed = placed_bodies(assembly, [body_of(piece) for piece in assembly.pieces], phi)
+    poses, poses_away = assembly.poses(phi), assembly.poses(away)
+    layer = np.array([piece.layer for piece in assembly.pieces])
+    room = 0.5 * (options.pin_mm + options.neck_mm)
+    nodes = assembly.deployment.nodes(phi)[[hinge.node for hinge in assembly.hinges]] * assembly.cell_mm
+    pins = discs(as_plane(nodes), max(options.head_mm - room, 0.5 * options.pin_mm))
+    tree = shapely.STRtree(pins)
+    found = []
+    one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
+    for first, second in zip(one.tolist(), other.tolist(), strict=True):
+        if layer[first] != 1 or layer[second] != 2:
+            continue
+        overlap = placed[first].intersection(placed[second])
+        near = pins[tree.query(overlap, predicate="intersects")]
+        overlap = overlap.difference(shapely.union_all(near)) if len(near) else overlap
+        if overlap.buffer(-room).is_empty:
+            continue
+        place, radius = roomiest_place(overlap, 0.1)
+        centre = as_plane(place[np.newaxis])
+        at = _seen_from(poses[first], centre)[0], _seen_from(poses[second], centre)[0]
+        there = [
+            complex(x, y) + complex(*place) * np.exp(1j * turn)
+            for place, (x, y, turn) in zip(at, (poses_away[first], poses_away[second]), strict=True)
+        ]
+        ids = assembly.pieces[first].id, assembly.pieces[second].id
+        found.append(Lock(ids, at, radius, float(abs(there[0] - there[1])), state))
+    return tuple(sorted(found, key=lambda lock: -lock.apart_mm))
+
+
+def with_locks(assembly: Assembly, chosen: Sequence[Lock], hole_mm: float) -> Assembly:
+    """The assembly with holes for locks drilled."""
+    more: dict[str, list[RoundHole]] = {}
+    for lock in chosen:
+        for name, place in zip(lock.pieces, lock.at, strict=True):
+            more.setdefault(name, []).append(RoundHole(place, hole_mm))
+
+    def drilled(piece: Piece) -> Piece:
+        return replace(piece, holes=(*piece.holes, *more.get(piece.id, ())))
+
+    return replace(assembly, pieces=tuple(map(drilled, assembly.pieces)))
