@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from PySide6.QtGui import QAction
 
@@ -93,18 +93,18 @@ class Command:
 
     Attributes
     ----------
-    id : str
-        Name of its action.
     menu : str
         Title of the menu that it stands in.
+    id : str
+        Name of its action.
     text : str
         As in the menu, ``&`` before the mnemonic.
     tip : str
         What it does, for the status line and the tooltip.
     run : callable
         What it does.
-    shortcuts : tuple of str
-        Key sequences, the first is shown.
+    keys : str
+        Key sequences, "; " between them; the first is shown.
     icon : str
         Bundled icon, or "" for none.
     gap : bool
@@ -116,21 +116,31 @@ class Command:
     worded : callable or None
         Its text, tip and icon where they depend on the state of the window.
     switch : QAction or None
-        The action of a switch that a panel owns: the command is that action, and ``run`` triggers it.
+        The action of a switch that a panel owns: the command is that action.
     """
 
-    id: str
     menu: str
+    id: str
     text: str
     tip: str
     run: Callable[[], object]
-    shortcuts: tuple[str, ...] = ()
+    keys: str = ""
     icon: str = ""
     gap: bool = False
     enabled_when: Callable[[WindowState], bool] = always
     checked_when: Callable[[WindowState], bool] | None = None
     worded: Callable[[WindowState], Wording] | None = None
     switch: QAction | None = None
+
+    @classmethod
+    def switching(cls, menu: str, id: str, text: str, tip: str, switch: QAction, *shown: Any, **more: Any) -> Command:
+        """Return the command that a switch of a panel is."""
+        return cls(menu, id, text, tip, switch.trigger, *shown, switch=switch, **more)
+
+    @property
+    def shortcuts(self) -> tuple[str, ...]:
+        """Key sequences one by one."""
+        return tuple(self.keys.split("; ")) if self.keys else ()
 
     def wording(self, state: WindowState) -> Wording:
         """Return its text, tip and icon in a state of the window."""
