@@ -6,11 +6,12 @@ import math
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.layouts import row
 from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -30,11 +31,8 @@ class EndsLine(QWidget):
         self.start = EndButton("flatEnd", Qt.AlignmentFlag.AlignLeft)
         self.passed = EndButton("passedState", Qt.AlignmentFlag.AlignHCenter)
         self.target = EndButton("openEnd", Qt.AlignmentFlag.AlignRight)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(10)
+        row((self.start, 1), (self.passed, 1), (self.target, 1), on=self, spacing=10)
         for button in (self.start, self.passed, self.target):
-            row.addWidget(button, 1)
             button.clicked.connect(lambda _=False, button=button: self.phi_wanted.emit(button.phi))
         self.passed.hide()
         self._named = self._low = False

@@ -40,7 +40,7 @@ class PhiSlider(QSlider):
         self._target = 0.0
         self._contact: float | None = None
         self._second: float | None = None
-        self._jam: float | None = None
+        self.jam: float | None = None  #: angle (radians) at which the sheet jams as cut
         self._ideal = False
         self.setRange(0, LAST)
         self.setSingleStep(RESOLUTION)
@@ -74,7 +74,7 @@ class PhiSlider(QSlider):
 
     def set_jam(self, jam: float | None) -> None:
         """Mark the angle (radians) at which the sheet jams as cut; None where it closes or nothing is known."""
-        self._jam = jam
+        self.jam = jam
         self._update_tooltip()
         self.update()
 
@@ -83,16 +83,11 @@ class PhiSlider(QSlider):
         self._ideal = ideal
         self.update()
 
-    @property
-    def jam(self) -> float | None:
-        """The angle (radians) at which the sheet jams, if it does."""
-        return self._jam
-
     def stopped(self, value: int) -> int:
         """Where the handle stops on its way to a value: at the jam, unless it is beyond it already."""
-        if self._jam is None or self._ideal or self.value() > value_at(self._jam):
+        if self.jam is None or self._ideal or self.value() > value_at(self.jam):
             return value
-        return min(value, value_at(self._jam))
+        return min(value, value_at(self.jam))
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -101,20 +96,20 @@ class PhiSlider(QSlider):
 
     def marks(self) -> tuple[TrackMark, ...]:
         """All marks, the most important first."""
-        degrees = f"{math.degrees(self._target):.0f}°"
-        marks = [TrackMark(MarkKind.TARGET, self._target, tr("{angle} target", angle=degrees), degrees)]
-        if self._second is not None:
-            degrees = f"{math.degrees(self._second):.0f}°"
-            marks.append(TrackMark(MarkKind.SECOND, self._second, tr("{angle} second", angle=degrees), degrees))
-        if self._contact is not None:
-            degrees = f"{math.degrees(self._contact):.0f}°"
-            marks.append(TrackMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
-        if self._jam is not None:
-            degrees = f"{math.degrees(self._jam):.0f}°"
-            marks.insert(0, TrackMark(MarkKind.JAM, self._jam, tr("{angle} jams", angle=degrees), degrees))
-        marks.append(TrackMark(MarkKind.FLAT, math.pi, tr("180° flat"), "180°"))
-        marks.append(TrackMark(MarkKind.TURNED, 0.0, "0°", "0°"))
-        return tuple(marks[:-1] if self._target == 0.0 else marks)
+        found = (
+            (MarkKind.JAM, self.jam, tr("{angle} jams")),
+            (MarkKind.TARGET, self._target, tr("{angle} target")),
+            (MarkKind.SECOND, self._second, tr("{angle} second")),
+            (MarkKind.CONTACT, self._contact, tr("{angle} contact")),
+            (MarkKind.FLAT, math.pi, tr("180° flat")),
+            (MarkKind.TURNED, None if self._target == 0.0 else 0.0, "0°"),
+        )
+        degrees = {kind: f"{math.degrees(phi):.0f}°" for kind, phi, _ in found if phi is not None}
+        return tuple(
+            TrackMark(kind, phi, words.format(angle=degrees[kind]), degrees[kind])
+            for kind, phi, words in found
+            if phi is not None
+        )
 
     def _update_tooltip(self) -> None:
         lines = [
@@ -123,11 +118,11 @@ class PhiSlider(QSlider):
         ]
         if self._contact is not None:
             lines.append(tr("First contact at {angle:.1f}°.", angle=math.degrees(self._contact)))
-        if self._jam is not None:
+        if self.jam is not None:
             lines.append(
                 tr(
                     "Jams at {angle:.1f}° as cut: the handle stops there. Ideal lets it go on.",
-                    angle=math.degrees(self._jam),
+                    angle=math.degrees(self.jam),
                 )
             )
         if self._second is not None:
@@ -175,8 +170,8 @@ class PhiSlider(QSlider):
 
     def _stop_after(self, before: int) -> None:
         """Go back to the jam where a step has led past it."""
-        if self._jam is not None and not self._ideal and before <= value_at(self._jam) < self.value():
-            self.setValue(value_at(self._jam))
+        if self.jam is not None and not self._ideal and before <= value_at(self.jam) < self.value():
+            self.setValue(value_at(self.jam))
 
     def mark_at(self, place: QPointF) -> TrackMark | None:
         """The mark whose sign or label lies under a pixel, if any."""
@@ -218,7 +213,7 @@ class PhiSlider(QSlider):
         painter.end()
 
     def _paint_track(self, painter: QPainter) -> None:
-        parts = track_parts(self._target, self._contact, self._jam)
+        parts = track_parts(self._target, self._contact, self.jam)
         for kind, first, last in parts:
             left, right = self._x(first), self._x(last)
             box = QRectF(left, MIDDLE - 5.0, right - left, 10.0)

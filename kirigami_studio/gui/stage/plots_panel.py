@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QButtonGroup, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.curves import Curves
 from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading
+from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
@@ -110,26 +111,17 @@ class PlotsPanel(QWidget):
         self._turn.timeout.connect(self._go_on)
         self.setObjectName("plain")
         self.setAccessibleName(tr("Plots by deployment angle"))
-        self.empty_message = QLabel()
-        self.empty_message.setObjectName("muted")
-        self.empty_message.setWordWrap(True)
+        self.empty_message = label(wraps=True)
         self.empty_message.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(2)
         self._add_choice()
-        self._column.addWidget(self.empty_message, 1)
+        self._column = column(self.choice, (self.empty_message, 1), on=self, spacing=2)
         self.setMinimumSize(200, CHART_HEIGHT + 34)
         self.show_curves(None)
 
     def _add_choice(self) -> None:
-        self.choice = QWidget()
-        self.choice.setObjectName("plain")
-        row = QHBoxLayout(self.choice)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
+        self.choice = plain_pane()
         self.buttons = QButtonGroup(self)
-        rows = [*((row.text, row.tip) for row in self._rows), *((row.text, row.tip) for row in self._cut_rows)]
+        rows = [(line.text, line.tip) for line in (*self._rows, *self._cut_rows)]
         for number, (text, tip) in enumerate(rows):
             button = QToolButton()
             button.setText(text)
@@ -139,10 +131,9 @@ class PlotsPanel(QWidget):
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             self.buttons.addButton(button, number)
-            row.addWidget(button)
         self.buttons.button(0).setChecked(True)
         self.buttons.idToggled.connect(lambda _number, _on: self._share_room())
-        self._column.addWidget(self.choice)
+        row(*self.buttons.buttons(), on=self.choice, spacing=2)
 
     @property
     def complete(self) -> bool:
@@ -155,7 +146,7 @@ class PlotsPanel(QWidget):
         self._curves = curves
         known = bool(curves is not None and curves.readings)
         if known and (growing or not self._built):
-            self._stale = [*self._stale, *(row for row in range(len(self._rows)) if row not in self._stale)]
+            self._stale = [*self._stale, *(number for number in range(len(self._rows)) if number not in self._stale)]
             self._turn.start()
         else:
             self._stale.clear()
@@ -176,8 +167,8 @@ class PlotsPanel(QWidget):
         found = self._closing
         if found is None:
             return
-        for row, chart in zip(self._cut_rows, self.cut_charts, strict=True):
-            chart.set_series(Series(np.degrees(found.phi), (row.take(found),)))
+        for line, chart in zip(self._cut_rows, self.cut_charts, strict=True):
+            chart.set_series(Series(np.degrees(found.phi), (line.take(found),)))
             chart.read_out(self._angle)
 
     @property
@@ -245,9 +236,9 @@ class PlotsPanel(QWidget):
         from kirigami_studio.gui.widgets.chart import Chart  # the worker has imported what it draws with
 
         if len(self.charts) < len(self._rows):
-            row = self._rows[len(self.charts)]
-            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-            self._add(chart, row.tip)
+            shown = self._rows[len(self.charts)]
+            chart = Chart(shown.text, shown.unit, tuple(name for name, _ in shown.series), shown.from_zero)
+            self._add(chart, shown.tip)
             self.charts.append(chart)
         else:
             line = self._cut_rows[len(self.cut_charts)]

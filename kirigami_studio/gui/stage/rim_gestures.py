@@ -39,37 +39,27 @@ class RimHandles(QObject):
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
-        self._meant: int | None = None
-        self._selected: int | None = None
-
-    @property
-    def meant(self) -> int | None:
-        """The edge cut that is pointed at or held."""
-        return self._meant
-
-    @property
-    def selected(self) -> int | None:
-        """The edge cut that the keyboard acts on."""
-        return self._selected
+        self.meant: int | None = None  #: pointed at or held
+        self.selected: int | None = None  #: acted on by the keyboard
 
     def select(self, mouth: int | None) -> None:
         """Select this edge cut, or none."""
-        if mouth != self._selected:
-            self._selected = mouth
+        if mouth != self.selected:
+            self.selected = mouth
             self.selection_changed.emit()
 
     def point(self, shapes: VoidShapes | None, place: QPointF) -> bool:
         """Find the handle under the pointer; whether there is one.  Without shapes there is none."""
         mouth = None if shapes is None else _rim(shapes).mouth_at(place.x(), place.y())
-        if mouth != self._meant:
-            self._meant = mouth
+        if mouth != self.meant:
+            self.meant = mouth
             self.hovered.emit(mouth)
         return mouth is not None
 
     def follow(self, shapes: VoidShapes | None) -> None:
         """Another design is shown: forget an edge cut that it does not have."""
         count = 0 if shapes is None else len(rim_table(*shapes.design.deployment.sheet.grid).mouths)
-        if self._selected is not None and self._selected >= count:
+        if self.selected is not None and self.selected >= count:
             self.select(None)
 
     def enter(self, shapes: VoidShapes, void: Void, down: int, right: int) -> bool:
@@ -90,7 +80,7 @@ class RimHandles(QObject):
     def take_key(self, event: QKeyEvent, shapes: VoidShapes) -> Void | None:
         """Move the selected edge cut by an arrow key; the void to go on with where the key leads back to the voids."""
         rows, columns = shapes.corners.shape[:2]
-        mouth = self._selected
+        mouth = self.selected
         if mouth is None:
             return None
         side = int(rim_table(rows, columns).side[mouth])
@@ -108,7 +98,7 @@ class RimHandles(QObject):
 
     def paint(self, painter: QPainter, shapes: VoidShapes, palette: Palette) -> None:
         """Draw all handles."""
-        paint_mouths(painter, _rim(shapes), self._meant, self._selected, palette)
+        paint_mouths(painter, _rim(shapes), self.meant, self.selected, palette)
 
 
 def _rim(shapes: VoidShapes) -> RimShapes:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.stage.hand_editor import LARGEST, SMALLEST
 from kirigami_studio.gui.widgets.card import FittingLabel, ToolButton
-from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
+from kirigami_studio.gui.widgets.layouts import row
+from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.project.document import Void
 
 
@@ -24,19 +25,18 @@ class VoidBar(QWidget):
         super().__init__(parent)
         self._voids: frozenset[Void] = frozenset()
         self.selection_text = FittingLabel()
-        self.ratio = DecimalField()
-        self.ratio.setObjectName("voidRatio")
-        self.ratio.setRange(SMALLEST, LARGEST)
-        self.ratio.setDecimals(4)
-        self.ratio.setSingleStep(0.02)
-        self.ratio.setPrefix("x ")
-        self.ratio.setKeyboardTracking(False)
-        self.ratio.setAccessibleName(tr("Ratio of the selected void"))
-        self.ratio.setToolTip(
-            tr("Ratio x of the selected void, 0.1 to 10: lower left edge divided by upper left edge.")
+        self.ratio = decimal_field(
+            DecimalField,
+            "voidRatio",
+            SMALLEST,
+            LARGEST,
+            decimals=4,
+            step=0.02,
+            accessible=tr("Ratio of the selected void"),
+            tip=tr("Ratio x of the selected void, 0.1 to 10: lower left edge divided by upper left edge."),
+            width=104,
         )
-        self.ratio.setFixedWidth(104)
-        number_field(self.ratio)
+        self.ratio.setPrefix("x ")
         self.lock = ToolButton(
             "lockVoid",
             "lock",
@@ -60,24 +60,12 @@ class VoidBar(QWidget):
             tr("Fit again (Ctrl+F). Improves the match from here; locked voids stay, a trim is redone."),
             checkable=True,
         )
-        self._lay_out()
-        self._connect()
-        self.show_voids(frozenset(), None, frozenset())
-
-    def _lay_out(self) -> None:
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(6)
-        row.addWidget(self.selection_text)
-        row.addStretch(1)
-        for part in (self.ratio, self.lock, self.all, self.refit):
-            row.addWidget(part)
-
-    def _connect(self) -> None:
+        row(self.selection_text, ..., self.ratio, self.lock, self.all, self.refit, on=self, spacing=6)
         self.ratio.valueChanged.connect(lambda ratio: self.ratio_wanted.emit(self._voids, ratio))
         self.lock.clicked.connect(lambda on: self.lock_wanted.emit(self._voids, on))
         self.lock_all.triggered.connect(lambda: self.all_wanted.emit(True))
         self.unlock_all.triggered.connect(lambda: self.all_wanted.emit(False))
+        self.show_voids(frozenset(), None, frozenset())
 
     def show_voids(self, voids: frozenset[Void], ratio: float | None, locked: frozenset[Void]) -> None:
         """Show what is selected; ``ratio`` is that of the first one, None where there is no design."""
@@ -101,10 +89,6 @@ class VoidBar(QWidget):
         self.selection_text.set_texts(tr("{name}: drag it, or press the arrow keys", name=name), name, short)
         self._fit()
 
-    def show_fitting(self, busy: bool) -> None:
-        """A fit is at work, or no longer."""
-        self.refit.setChecked(busy)
-
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
         self._fit()
@@ -124,13 +108,13 @@ class VoidBar(QWidget):
 def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[str, ...]:
     """What the row says, longest first."""
     if len(voids) == 1:
-        ((row, column),) = voids
-        short = tr("Void ({row}, {column})", row=row, column=column)
+        ((down, right),) = voids
+        short = tr("Void ({row}, {column})", row=down, column=right)
         if voids <= locked:
-            long = tr("Void ({row}, {column}): locked (L unlocks)", row=row, column=column)
+            long = tr("Void ({row}, {column}): locked (L unlocks)", row=down, column=right)
         else:
-            long = tr("Void ({row}, {column}): drag, scroll, or press + and -", row=row, column=column)
-        return long, short, f"({row}, {column})"
+            long = tr("Void ({row}, {column}): drag, scroll, or press + and -", row=down, column=right)
+        return long, short, f"({down}, {right})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)
     hint = tr("Drag a void, an outline corner or an edge cut; scroll to change a ratio")

@@ -43,7 +43,7 @@ class Canvas(QWidget):
         self._zoom = 1.0
         self._shift = QPointF(0.0, 0.0)
         self._grip: QPointF | None = None
-        self._overlays: frozenset[Enum] = frozenset()
+        self.overlays: frozenset[Enum] = frozenset()
         self.rendering = False  #: whether it is drawn into a picture instead of the screen
         self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -138,11 +138,11 @@ class Canvas(QWidget):
     @contextmanager
     def without_overlays(self) -> Iterator[None]:
         """Draw no overlays inside this context."""
-        before, self._overlays = self._overlays, frozenset()
+        before, self.overlays = self.overlays, frozenset()
         try:
             yield
         finally:
-            self._overlays = before
+            self.overlays = before
 
     def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show the part that another canvas of the same size and scene shows; no signal is emitted for it."""

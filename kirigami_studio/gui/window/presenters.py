@@ -191,7 +191,7 @@ class Presenters(QObject):
         stage.voids.refit.clicked.connect(self.refit)
         chosen.sampled.known.connect(stage.show_sample)
         chosen.trimming.busy_changed.connect(stage.show_trimming)
-        chosen.refitting.busy_changed.connect(stage.voids.show_fitting)
+        chosen.refitting.busy_changed.connect(stage.voids.refit.setChecked)
         services.as_cut.changed.connect(stage.show_as_cut)
         services.artwork.painted.connect(stage.view.show_artwork)
         services.cutting.planned.connect(stage.show_title)
@@ -324,4 +324,4 @@ class Presenters(QObject):
             chosen.refit()
         else:
             chosen.cancel()
-        self._columns.stage.voids.show_fitting(chosen.refitting.busy)
+        self._columns.stage.voids.refit.setChecked(chosen.refitting.busy)
