@@ -21,8 +21,8 @@ from kirigami_studio.foundation.errors import SheetError
 from kirigami_studio.gui.gallery.gallery_model import START_ROLE
 from kirigami_studio.gui.run.generation import own_start
 from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.target.outline_board import StartBoard
 from kirigami_studio.gui.target.sketch_context import Change
-from kirigami_studio.gui.target.start_board import StartBoard
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.readable import TIMES
 from kirigami_studio.gui.window.main_window import MainWindow

@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide6.QtCore import QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QIcon, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.second_target import USUAL_PHI, USUAL_WEIGHT, SecondTarget
 from kirigami_studio.foundation.words import mark, tr
@@ -18,6 +18,7 @@ from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.layouts import column, label, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Values of the entries for no second target, and for the present one.
@@ -37,7 +38,6 @@ class SecondTargetRow(QWidget):
     changed = Signal(object)  #: SecondTarget, or None
     edited = Signal()  #: a change is complete
     other_wanted = Signal(str)  #: one of OTHER_STARTS
-    file_dropped = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -54,30 +54,16 @@ class SecondTargetRow(QWidget):
         self.form = Form(SecondTarget, 50, parent=self)
         self.angle, self.weight = self.form.decimal("phi"), self.form.decimal("weight")
         self.drops = FileDrops(self)
-        self.drops.file_dropped.connect(self.file_dropped)
         self._lay_out()
         self._connect()
         self.show_second(None, 0.0)
 
     def _lay_out(self) -> None:
-        caption = QLabel(tr("Sec&ond target"))
-        caption.setObjectName("muted")
-        caption.setBuddy(self.shape)
+        caption = label(tr("Sec&ond target"), self.shape)
         self.remove.setFixedSize(caption.sizeHint().height(), caption.sizeHint().height())
         self.remove.setIconSize(self.remove.size() * 0.8)
-        above = QHBoxLayout()
-        above.addWidget(caption, 1)
-        above.addWidget(self.remove)
-        shape = QVBoxLayout()
-        shape.setSpacing(3)
-        shape.addLayout(above)
-        shape.addWidget(self.shape)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
-        row.addLayout(shape, 14)
-        row.addLayout(self.form.captioned("phi"), 9)
-        row.addLayout(self.form.captioned("weight"), 7)
+        shape = column(row((caption, 1), self.remove), self.shape, spacing=3)
+        row((shape, 14), (self.form.captioned("phi"), 9), (self.form.captioned("weight"), 7), on=self, spacing=8)
 
     def _connect(self) -> None:
         self.shape.activated.connect(self._choose)

@@ -6,15 +6,7 @@ import secrets
 from dataclasses import replace
 
 from PySide6.QtCore import QSettings, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
-    QSlider,
-    QSpinBox,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QLabel, QSpinBox, QToolButton, QWidget
 
 from kirigami_studio.foundation.settings import Choice
 from kirigami_studio.foundation.words import mark, tr, tr_n
@@ -23,6 +15,7 @@ from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_star
 from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row, slider
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.settings.design import DesignSettings
@@ -88,14 +81,9 @@ class SettingsPanel(Card):
         self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)
         self.start.insertSeparator(self.start.count())
         self.start.add_choices(OTHER_STARTS)
-        self.regular = QSlider(Qt.Orientation.Horizontal)
-        self.regular.setObjectName("regular")
-        self.regular.setRange(0, POSITIONS)
+        self.regular = slider("regular", tr(regular.spoken), tr(regular.about), POSITIONS, POSITIONS // 4)
         self.regular.setSingleStep(POSITIONS // 20)
-        self.regular.setPageStep(POSITIONS // 4)
         self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.regular.setAccessibleName(tr(regular.spoken))
-        self.regular.setToolTip(tr(regular.about))
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
             "moreSettings",
@@ -118,63 +106,35 @@ class SettingsPanel(Card):
         self._connect()
 
     def _lay_out(self) -> None:
-        grid = _side_by_side(self.auto, self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
-        seed = _side_by_side(self.seed, self.dice, self.keep)
-        match, even = QLabel(tr("Mat&ch")), QLabel(tr("Regular"))
-        match.setBuddy(self.regular)
-        for label in (match, even):
-            label.setObjectName("muted")
-        content = QWidget()
-        content.setObjectName("plain")
-        rows = QVBoxLayout(content)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(8)
-        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
-        self.header.addWidget(self.more)
-        self.hidden = QWidget()
-        self.hidden.setObjectName("plain")
-        below = QVBoxLayout(self.hidden)
-        below.setContentsMargins(0, 0, 0, 0)
-        below.setSpacing(8)
-        first, second, third, fourth, fifth, slider = (QHBoxLayout() for _ in range(6))
-        for row, place in (
-            (first, rows),
-            (slider, rows),
-            (second, rows),
-            (third, below),
-            (fourth, below),
-            (fifth, below),
-        ):
-            row.setSpacing(8)
-            place.addLayout(row)
-        rows.addWidget(self.second)
-        rows.addWidget(self.hidden)
+        grid = row(self.auto, (self.rows, 1), QLabel("\N{MULTIPLICATION SIGN}"), (self.columns, 1), spacing=4)
+        seed = row((self.seed, 1), self.dice, self.keep, spacing=4)
+        caption, content = self.form.captioned, plain_pane()
+        self.hidden = plain_pane()
         self.hidden.hide()
         self.second.hide()
-        caption = self.form.captioned
-        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
-        first.addLayout(caption("symmetry"), 5)
-        slider.addWidget(match)
-        slider.addWidget(self.regular, 1)
-        slider.addWidget(even)
-        second.addLayout(captioned(tr("S&tart as"), self.start, self.start), 14)
-        second.addLayout(caption("phi"), 9)
-        second.addLayout(caption("k"), 7)
-        third.addLayout(caption("seed", seed), 4)
-        third.addLayout(caption("variant"), 3)
-        fourth.addLayout(caption("polish"), 1)
-        fourth.addLayout(caption("prefer"), 1)
-        fifth.addLayout(caption("rim"), 2)
-        fifth.addLayout(self.start_form.captioned("weight"), 2)
-        fifth.addLayout(caption("search"), 3)
-        for other in self.form.remaining():
-            below.addLayout(other)
+        symmetry, phi, count = caption("symmetry"), caption("phi"), caption("k")
+        start, weight = captioned(tr("S&tart as"), self.start, self.start), self.start_form.captioned("weight")
+        column(
+            row((captioned(tr("&Grid (voids)"), self.rows, grid), 12), (symmetry, 5), spacing=8),
+            row(label(tr("Mat&ch"), self.regular), (self.regular, 1), label(tr("Regular")), spacing=8),
+            row((start, 14), (phi, 9), (count, 7), spacing=8),
+            self.second,
+            self.hidden,
+            on=content,
+            spacing=8,
+        )
+        column(
+            row((caption("seed", seed), 4), (caption("variant"), 3), spacing=8),
+            row((caption("polish"), 1), (caption("prefer"), 1), spacing=8),
+            row((caption("rim"), 2), (weight, 2), (caption("search"), 3), spacing=8),
+            *self.form.remaining(),
+            on=self.hidden,
+            spacing=8,
+        )
+        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
+        self.header.addWidget(self.more)
 
     def _connect(self) -> None:
-        self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
-        self.columns.valueChanged.connect(
-            lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
-        )
         self.auto.clicked.connect(self._switch_auto)
         self.form.changed.connect(self.changed)
         self.form.edited.connect(self.edited)
@@ -191,12 +151,16 @@ class SettingsPanel(Card):
         for box in (self.rows, self.columns):
             box.setKeyboardTracking(False)
             compact(box, 42)  # two digits
+            box.valueChanged.connect(lambda: self.changed.emit({"grid": self._grid}))
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
         """Leave the grid to the run, or keep the one that is shown."""
-        shown = (self.rows.value(), self.columns.value())
-        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
+        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": self._grid})
+
+    @property
+    def _grid(self) -> tuple[int, int]:
+        return self.rows.value(), self.columns.value()
 
     def _choose_start(self) -> None:
         """Report the start that was chosen; the box keeps the present one until a shape is loaded."""
@@ -328,11 +292,3 @@ def _voids(name: str, accessible: str, tip: str) -> QSpinBox:
     box.setToolTip(tip)
     box.setAccessibleName(accessible)
     return box
-
-
-def _side_by_side(*widgets: QWidget) -> QHBoxLayout:
-    row = QHBoxLayout()
-    row.setSpacing(4)
-    for widget in widgets:
-        row.addWidget(widget, 1 if isinstance(widget, QSpinBox) else 0)
-    return row

@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 
 import numpy as np
 from PySide6.QtCore import QPoint, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import (
-    QColor,
-    QIcon,
-    QKeyEvent,
-    QPainter,
-    QPaintEvent,
-    QPen,
-    QPixmap,
-    QResizeEvent,
-)
+from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
@@ -61,7 +53,6 @@ class StartTile(QAbstractButton):
 
     chosen = Signal(StartShape)
     other_wanted = Signal(str)  #: one of OTHER_STARTS, or PAIRS
-    file_dropped = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,7 +67,6 @@ class StartTile(QAbstractButton):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.drops = FileDrops(self)
-        self.drops.file_dropped.connect(self.file_dropped)
         self.back = QToolButton(self)
         self.back.setObjectName("plainStart")
         self.back.setFixedSize(BACK_EDGE, BACK_EDGE)
@@ -91,23 +81,23 @@ class StartTile(QAbstractButton):
         self.show_start(RECTANGLE, self._grid, self._width_mm)
 
     def _fill_menu(self) -> None:
-        self.entries = {}
+        self.entries: dict[str, QAction] = {}
         for name, label, about in STARTS:
-            action = self.menu.addAction(tr(label))
-            action.setToolTip(tr(about))
-            action.triggered.connect(lambda _=False, name=name: self.chosen.emit(listed_start(name)))
-            self.entries[name] = action
+            self._add(label, about, name, partial(self._choose_listed, name))
         self.menu.addSeparator()
         for name, label, about in OTHER_STARTS:
-            self._add_other(name, label, about)
+            self._add(label, about, name, partial(self.other_wanted.emit, name))
         self.menu.addSeparator()
-        self._add_other(PAIRS, tr("Examples of pairs …"), tr("Twelve finished designs from one shape to another."))
+        label, about = mark("Examples of pairs …"), mark("Twelve finished designs from one shape to another.")
+        self._add(label, about, PAIRS, partial(self.other_wanted.emit, PAIRS))
 
-    def _add_other(self, name: str, label: str, about: str) -> None:
-        action = self.menu.addAction(tr(label))
+    def _add(self, label: str, about: str, name: str, act: Callable[[], None]) -> None:
+        action = self.entries[name] = self.menu.addAction(tr(label))
         action.setToolTip(tr(about))
-        action.triggered.connect(lambda _=False: self.other_wanted.emit(name))
-        self.entries[name] = action
+        action.triggered.connect(lambda _=False: act())
+
+    def _choose_listed(self, name: str) -> None:
+        self.chosen.emit(listed_start(name))
 
     def show_start(
         self, start: StartShape, grid: tuple[int, int], width_mm: float, flat: tuple[float, float] | None = None

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Iterator
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import (
-    QButtonGroup,
-    QFrame,
-    QHBoxLayout,
-    QMenu,
-    QPushButton,
-    QToolButton,
-    QWidget,
-)
+from PySide6.QtWidgets import QButtonGroup, QFrame, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.target.arrangements import ARRANGEMENTS, BRIDGE_LOOSE, KEEP_LARGEST
@@ -21,6 +13,7 @@ from kirigami_studio.gui.target.sketch_context import SketchContext
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.target.tool_options import AxisButton, ToolOptions
 from kirigami_studio.gui.widgets.card import ToolButton
+from kirigami_studio.gui.widgets.layouts import Part, push_button, row
 from kirigami_studio.outlines.combining import Combine
 
 #: Tool, icon, tooltip; None for a gap.
@@ -66,13 +59,7 @@ class DrawingToolBar(QWidget):
         self._context = context
         self.buttons: dict[Tool, QToolButton] = {}
         self.modes: dict[Combine, QToolButton] = {}
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)  # the least window has room for all tools, and no more
-        self._add_tools(row)
-        row.addWidget(_rule())
-        self._add_modes(row)
-        row.addWidget(_rule())
+        parts: list[Part] = [*self._made_tools(), _rule(), *self._made_modes(), _rule()]
         self.mirror = ToolButton("mirror", "mirror", tr("Mirror. Reflect one half of the target, or flip it."))
         self.mirror.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         menu = QMenu(self)
@@ -87,38 +74,29 @@ class DrawingToolBar(QWidget):
         self.arrange = ToolButton("arrange", "arrange", tr("Arrange. Duplicate, combine, order and align objects."))
         self.arrange.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.arrange.setMenu(ArrangeMenu(context, self))
-        row.addWidget(self.arrange)
-        row.addWidget(self.mirror)
-        row.addWidget(self.axis)
-        row.addWidget(self.grid)
-        row.addStretch(1)
-        self.done_button = QPushButton(tr("Done"))
-        self.done_button.setObjectName("small")
-        self.done_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.done_button.setToolTip(tr("Leave the drawing board (E)"))
+        self.done_button = push_button(tr("Done"), tr("Leave the drawing board (E)"))
         self.done_button.clicked.connect(self.done)
-        row.addWidget(self.done_button)
+        parts += [self.arrange, self.mirror, self.axis, self.grid, ..., self.done_button]
+        row(*parts, on=self, spacing=0)  # the least window has room for all tools, and no more
         self.options = ToolOptions(context)
 
-    def _add_tools(self, row: QHBoxLayout) -> None:
+    def _made_tools(self) -> Iterator[QWidget]:
         for entry in TOOLS:
             if entry is None:
-                row.addWidget(_rule())
+                yield _rule()
                 continue
             tool, icon, tip = entry
-            button = ToolButton(tool.value, icon, tr(tip), True)
+            button = self.buttons[tool] = ToolButton(tool.value, icon, tr(tip), True)
             button.clicked.connect(lambda down, tool=tool: self.tool_wanted.emit(tool if down else Tool.LOOK))
-            self.buttons[tool] = button
-            row.addWidget(button)
+            yield button
 
-    def _add_modes(self, row: QHBoxLayout) -> None:
+    def _made_modes(self) -> Iterator[QWidget]:
         group = QButtonGroup(self)
         for mode, icon, tip in MODES:
-            button = ToolButton(mode.value, icon, tr(tip), True)
+            button = self.modes[mode] = ToolButton(mode.value, icon, tr(tip), True)
             button.clicked.connect(lambda _=False, mode=mode: self.set_mode(mode))
             group.addButton(button)
-            self.modes[mode] = button
-            row.addWidget(button)
+            yield button
         self.modes[self._context.combine].setChecked(True)
 
     def set_mode(self, mode: Combine) -> None:
@@ -154,12 +132,9 @@ class ArrangeMenu(QMenu):
             action = self.addAction(tr(one.text))
             action.setObjectName(one.id)
             action.setToolTip(tr(one.tip))
-            action.triggered.connect(partial(self._arrange, one.id))
+            action.triggered.connect(lambda _=False, name=one.id: context.arrange(name))
             self._entries.append(action)
         self.aboutToShow.connect(self.refresh)
-
-    def _arrange(self, name: str, _: bool = False) -> None:
-        self._context.arrange(name)
 
     def refresh(self) -> None:
         """Offer what is possible with what is selected."""
@@ -172,23 +147,12 @@ class LooseRow(QWidget):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__()
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
         self.buttons = {}
         for one in (BRIDGE_LOOSE, KEEP_LARGEST):
-            button = QPushButton(tr(one.text))
-            button.setObjectName("small")
-            button.setToolTip(tr(one.tip))
-            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-            button.clicked.connect(partial(self._arrange, context, one.id))
-            row.addWidget(button)
-            self.buttons[one.id] = button
-        row.addStretch(1)
+            button = self.buttons[one.id] = push_button(tr(one.text), tr(one.tip))
+            button.clicked.connect(lambda _=False, name=one.id: context.arrange(name))
+        row(*self.buttons.values(), ..., on=self, spacing=8)
         self.hide()
-
-    def _arrange(self, context: SketchContext, name: str, _: bool = False) -> None:
-        context.arrange(name)
 
 
 def _rule() -> QFrame:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets.card import ToolButton, compact
-from kirigami_studio.gui.widgets.number_field import LengthField
+from kirigami_studio.gui.widgets.layouts import label, row
+from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field
 from kirigami_studio.gui.widgets.readable import TIMES, readable_size
 from kirigami_studio.outlines.placed import LARGEST_MM
 
@@ -28,24 +29,14 @@ class OpenedSizeRow(QWidget):
         super().__init__(parent)
         self._size: OpenedSize | None = None
         self._folded = False
-        self.caption = QLabel(tr("&Opened size"))
-        self.caption.setObjectName("muted")
         self.width_ = _side("openedWidth", tr("Width of the opened shape in millimetres"))
         self.height_ = _side("openedHeight", tr("Height of the opened shape in millimetres"))
-        self.caption.setBuddy(self.width_)
+        self.caption = label(tr("&Opened size"), self.width_)
         self.caption.setMinimumWidth(self.caption.sizeHint().width())
-        times, unit = QLabel(TIMES), QLabel(tr("mm"))
-        for label in (times, unit):
-            label.setObjectName("muted")
         self.drawn = ToolButton("drawnSize", "chain", tr("Back to the drawn size."))
         self.drawn.setFixedSize(29, 29)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(4)
-        row.addWidget(self.caption)
-        row.addSpacing(4)
-        for part in (self.width_, times, self.height_, unit, self.drawn):
-            row.addWidget(part, 1 if isinstance(part, LengthField) else 0)
+        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), label(tr("mm")))
+        row(self.caption, 4, *sides, self.drawn, on=self, spacing=4)
         self.width_.valueChanged.connect(lambda width: self._report(width, 0))
         self.height_.valueChanged.connect(lambda height: self._report(height, 1))
         for field in (self.width_, self.height_):
@@ -84,12 +75,6 @@ class OpenedSizeRow(QWidget):
 
 
 def _side(name: str, accessible: str) -> LengthField:
-    field = LengthField()
-    field.setObjectName(name)
-    field.setAccessibleName(accessible)
-    field.setRange(1.0, LARGEST_MM)
-    field.setDecimals(1)
-    field.setSingleStep(5.0)
-    field.setKeyboardTracking(False)
+    field = decimal_field(LengthField, name, 1.0, LARGEST_MM, step=5.0, accessible=accessible)
     compact(field, 56)  # without buttons, in the style sheet: their room is the numbers'
     return field

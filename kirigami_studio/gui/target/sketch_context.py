@@ -217,7 +217,7 @@ class SketchContext(QObject):
         """Change the selected objects by an arrangement of the table."""
         one, drawing = EVERY[name], self.drawing
         if self.can_arrange(name):
-            self.changed.emit(Change(tr(one.gesture), lambda: one.make(drawing)))
+            self.changed.emit(Change(one.gesture, lambda: one.make(drawing)))
 
     def set_axis(self, axis: Axis) -> None:
         """Mirror what is drawn from now on about axes through the middle of the target, or of the empty board."""

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QSlider,
-    QStyle,
-    QStyleOptionSlider,
-    QWidget,
-)
+from PySide6.QtWidgets import QSizePolicy, QSlider, QStyle, QStyleOptionSlider, QWidget
 
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.run.start_tile import StartTile
@@ -21,8 +14,9 @@ from kirigami_studio.gui.target.arrangements import EVERY
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.target.opened_size_row import OpenedSizeRow
 from kirigami_studio.gui.target.target_view import TargetView, Tool
-from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, muted_label
-from kirigami_studio.gui.widgets.number_field import LengthField, number_field
+from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton
+from kirigami_studio.gui.widgets.layouts import Part, label, push_button, row, slider
+from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, reach_texts
@@ -75,41 +69,23 @@ class TargetPanel(Card):
         for name, icon, tip, checkable in BUTTONS:
             self.buttons[name] = ToolButton(name, icon, tr(tip), checkable)
             self.header.addWidget(self.buttons[name])
-        self.facts = ElidedLabel()
-        self.size_ = QLabel()
-        self.size_.setObjectName("muted")
-        line = QHBoxLayout()
-        line.addWidget(self.facts, 1)
-        line.addWidget(self.size_)
-        self.notes = muted_label()
-        self.notes.setObjectName("warning")
+        self.facts, self.size_ = ElidedLabel(), label()
+        self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach = ElidedLabel()
-        self.reach.setObjectName("warning")
+        self.reach, self.start_refusal = ElidedLabel(), ElidedLabel()
         self.reach.setAccessibleName(tr("Details that the grid may miss"))
-        self.reach.setVisible(False)
-        self.start_refusal = ElidedLabel()
-        self.start_refusal.setObjectName("warning")
         self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        self.start_refusal.setVisible(False)
-        self.threshold = ThresholdBar()
-        self.body.addWidget(self.tools)
-        self.start = StartTile()
-        boards = QHBoxLayout()
-        boards.setSpacing(8)
-        boards.addWidget(self.start)
-        boards.addWidget(self.view, 1)
-        self.body.addLayout(boards, 1)
-        self.body.addLayout(line)
-        self.opened = OpenedSizeRow()
-        self.body.addWidget(self.opened)
-        self.body.addWidget(self.start_refusal)
-        self.body.addWidget(self.reach)
-        self.body.addWidget(self.refine)
-        self.body.addWidget(self.threshold)
-        self.body.addWidget(self.notes)
+        for warning in (self.reach, self.start_refusal):
+            warning.setObjectName("warning")
+            warning.setVisible(False)
+        self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
         self.loose = LooseRow(self.view.context)
-        self.body.addWidget(self.loose)
+        self.body.addWidget(self.tools)
+        self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
+        self.body.addLayout(row((self.facts, 1), self.size_))
+        warnings = (self.start_refusal, self.reach)
+        for part in (self.opened, *warnings, self.refine, self.threshold, self.notes, self.loose):
+            self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
         self.buttons["edit"].clicked.connect(self.set_editing)
         self.tools.tool_wanted.connect(self.set_tool)
@@ -245,39 +221,34 @@ class RefineBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
         self._ratio = 1.0
         self._size = (0.0, 0.0)
         self.sliders: dict[str, QSlider] = {}
+        parts: list[Part] = []
         for name, caption, accessible, tip in SLIDERS:
-            slider = JumpSlider()
-            slider.setObjectName("threshold")
-            slider.setRange(0, REFINE_STEPS)
-            slider.setPageStep(REFINE_STEPS // 10)
-            slider.setAccessibleName(tr(accessible))
-            slider.setToolTip(tr(tip))
-            slider.setMinimumWidth(60)
-            slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
-            slider.sliderReleased.connect(lambda name=name: self._settle(name))
-            self.sliders[name] = slider
-            row.addWidget(_caption(tr(caption), slider))
-            row.addWidget(slider, 1)
-        self.width_ = _length(
-            tr("Target width"), tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        )
-        self.height_ = _length(
-            tr("Target height"), tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        )
-        for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
-            row.addWidget(_caption(caption, field))
-            row.addWidget(field)
+            own = JumpSlider()
+            own.setObjectName("threshold")
+            own.setRange(0, REFINE_STEPS)
+            own.setPageStep(REFINE_STEPS // 10)
+            own.setAccessibleName(tr(accessible))
+            own.setToolTip(tr(tip))
+            own.setMinimumWidth(60)
+            own.valueChanged.connect(lambda value, name=name: self._slide(name, value))
+            own.sliderReleased.connect(lambda name=name: self._settle(name))
+            self.sliders[name] = own
+            parts += [label(tr(caption), own), (own, 1)]
+        width = tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        height = tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"))
+        self.width_ = length(accessible=tr("Target width"), tip=width)
+        self.height_ = length(accessible=tr("Target height"), tip=height)
+        parts += [label(tr("Size"), self.width_), self.width_]
+        parts += [label("\N{MULTIPLICATION SIGN}", self.height_), self.height_]
         self.proportions = ToolButton(
             "keepProportions", "chain", tr("Keep proportions. Off: change width and height separately."), True
         )
         self.proportions.setChecked(True)
-        row.addWidget(self.proportions)
+        row(*parts, self.proportions, on=self, spacing=8)
         self.width_.valueChanged.connect(self._on_width)
         self.height_.valueChanged.connect(self._on_height)
 
@@ -300,15 +271,15 @@ class RefineBar(QWidget):
 
     def restart(self) -> None:
         """The sliders stand for another target: nothing is simplified or smoothed yet."""
-        for slider in self.sliders.values():
-            with QSignalBlocker(slider):
-                slider.setValue(0)
+        for own in self.sliders.values():
+            with QSignalBlocker(own):
+                own.setValue(0)
 
     def _slide(self, name: str, value: int) -> None:
-        for other, slider in self.sliders.items():
+        for other, own in self.sliders.items():
             if other != name:
-                with QSignalBlocker(slider):
-                    slider.setValue(0)
+                with QSignalBlocker(own):
+                    own.setValue(0)
         if self.sliders[name].isSliderDown():
             self.previewed.emit(name, value / REFINE_STEPS)
         else:
@@ -368,32 +339,15 @@ class ThresholdBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        caption = QLabel(tr("&Threshold"))
-        caption.setObjectName("muted")
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("threshold")
-        self.slider.setRange(1, GREY_LEVELS - 1)
-        self.slider.setPageStep(GREY_LEVELS // 20)
-        self.slider.setAccessibleName(tr("Threshold between shape and background, from black to white"))
-        self.slider.setToolTip(
-            tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
-        )
-        self.number = QLabel()
-        self.number.setObjectName("muted")
+        accessible = tr("Threshold between shape and background, from black to white")
+        tip = tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
+        self.slider = slider("threshold", accessible, tip, GREY_LEVELS - 1, GREY_LEVELS // 20, first=1)
+        self.number = label()
         self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
-        self.automatic = QPushButton(tr("Auto"))
-        self.automatic.setObjectName("small")
-        self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.automatic.setToolTip(tr("Reset to the automatic threshold"))
-        caption.setBuddy(self.slider)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
-        row.addWidget(caption)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.number)
-        row.addWidget(self.automatic)
+        self.automatic = push_button(tr("Auto"), tr("Reset to the automatic threshold"))
+        caption = label(tr("&Threshold"), self.slider)
+        row(caption, (self.slider, 1), self.number, self.automatic, on=self, spacing=8)
         self.slider.valueChanged.connect(self._on_level)
         self.slider.sliderReleased.connect(self.edited)
 
@@ -410,22 +364,3 @@ class ThresholdBar(QWidget):
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():
             self.edited.emit()
-
-
-def _caption(text: str, buddy: QWidget) -> QLabel:
-    label = QLabel(text)
-    label.setObjectName("muted")
-    label.setBuddy(buddy)
-    return label
-
-
-def _length(name: str, tip: str) -> LengthField:
-    field = LengthField()
-    field.setRange(0.1, LARGEST_MM)
-    field.setDecimals(1)
-    field.setSuffix(tr(" mm"))
-    number_field(field)
-    field.setKeyboardTracking(False)
-    field.setAccessibleName(name)
-    field.setToolTip(tip)
-    return field

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QAction, QActionGroup, QFont
-from PySide6.QtWidgets import QFontComboBox, QHBoxLayout, QLabel, QLineEdit, QMenu, QSpinBox, QToolButton, QWidget
+from PySide6.QtWidgets import QFontComboBox, QLineEdit, QMenu, QSpinBox, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.sketch_context import Change, SketchContext
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import TOOL_ICON, ToolButton
-from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, number_field
+from kirigami_studio.gui.widgets.layouts import Part, label, row
+from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, decimal_field, number_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.drawing import Drawing, about
 from kirigami_studio.outlines.figures import FEWEST_CORNERS, MOST_CORNERS, NARROWEST_WAIST, WIDEST_WAIST
@@ -29,58 +31,46 @@ class ToolOptions(QWidget):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__()
-        self._context = context
-        row = QHBoxLayout(self)
-        row.setContentsMargins(8, 0, 8, 0)
-        row.setSpacing(6)
         self.corners = QSpinBox()
         self.corners.setRange(FEWEST_CORNERS, MOST_CORNERS)
         self.corners.setValue(context.corners)
         self.corners.setAccessibleName(tr("Number of corners or tips"))
         self.corners.setToolTip(tr("Corners of the polygon, tips of the star"))
-        self.waist = DecimalField()
-        self.waist.setRange(100 * NARROWEST_WAIST, 100 * WIDEST_WAIST)
-        self.waist.setDecimals(0)
-        self.waist.setSuffix(" %")
+        number_field(self.corners)
+        self.waist = decimal_field(
+            DecimalField,
+            "",
+            100 * NARROWEST_WAIST,
+            100 * WIDEST_WAIST,
+            decimals=0,
+            suffix=" %",
+            accessible=tr("Star waist"),
+            tip=tr("Inner radius of the star as a share of its outer radius"),
+        )
+        self.waist.setKeyboardTracking(True)
         self.waist.setValue(100 * context.waist)
-        self.waist.setAccessibleName(tr("Star waist"))
-        self.waist.setToolTip(tr("Inner radius of the star as a share of its outer radius"))
-        for number in (self.corners, self.waist):
-            number_field(number)
         self.text = QLineEdit(context.text)
         self.text.setAccessibleName(tr("Text to draw"))
         self.text.setPlaceholderText(tr("Text"))
         self.text.setMaxLength(24)
         self.text.setMaximumWidth(150)
         self.nodes, self.pose, self.font_ = NodeOptions(context), PoseOptions(context), FontOptions(context)
-        self._parts: list[tuple[frozenset[Tool], tuple[QWidget, ...]]] = []
-        for tools, caption, field in (
-            (frozenset({Tool.REGULAR, Tool.STAR}), tr("&Corners"), self.corners),
-            (frozenset({Tool.STAR}), tr("Wai&st"), self.waist),
-            (frozenset({Tool.TEXT}), tr("Te&xt"), self.text),
-        ):
-            label = QLabel(caption)
-            label.setObjectName("muted")
-            label.setBuddy(field)
-            row.addWidget(label)
-            row.addWidget(field)
-            self._parts.append((tools, (label, field)))
-        for tool, options in ((Tool.POINTS, self.nodes), (Tool.POSE, self.pose), (Tool.TEXT, self.font_)):
-            row.addWidget(options)
-            self._parts.append((frozenset({tool}), (options,)))
-        self.corners.valueChanged.connect(self._on_corners)
-        self.waist.valueChanged.connect(self._on_waist)
-        self.text.textChanged.connect(self._on_text)
+        corners, waist = label(tr("&Corners"), self.corners), label(tr("Wai&st"), self.waist)
+        text = label(tr("Te&xt"), self.text)
+        self._parts: tuple[tuple[frozenset[Tool], tuple[QWidget, ...]], ...] = (
+            (frozenset({Tool.REGULAR, Tool.STAR}), (corners, self.corners)),
+            (frozenset({Tool.STAR}), (waist, self.waist)),
+            (frozenset({Tool.TEXT}), (text, self.text)),
+            (frozenset({Tool.POINTS}), (self.nodes,)),
+            (frozenset({Tool.POSE}), (self.pose,)),
+            (frozenset({Tool.TEXT}), (self.font_,)),
+        )
+        widgets = [widget for _, widgets in self._parts for widget in widgets]
+        row(*widgets, on=self, spacing=6, margins=(8, 0, 8, 0))
+        self.corners.valueChanged.connect(lambda corners: setattr(context, "corners", corners))
+        self.waist.valueChanged.connect(lambda percent: setattr(context, "waist", percent / 100))
+        self.text.textChanged.connect(lambda text: setattr(context, "text", text))
         self.show_tool(Tool.LOOK)
-
-    def _on_corners(self, corners: int) -> None:
-        self._context.corners = corners
-
-    def _on_waist(self, percent: float) -> None:
-        self._context.waist = percent / 100
-
-    def _on_text(self, text: str) -> None:
-        self._context.text = text
 
     def show_tool(self, tool: Tool) -> None:
         """Show the numbers that a tool has."""
@@ -96,9 +86,6 @@ class NodeOptions(QWidget):
 
     def __init__(self, context: SketchContext) -> None:
         super().__init__()
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
         self.buttons: dict[Kind, QToolButton] = {}
         for kind, tip in (
             (
@@ -112,7 +99,7 @@ class NodeOptions(QWidget):
             button = ToolButton(f"node{kind.value.capitalize()}", f"node-{kind.value}", tip, checkable=True)
             button.clicked.connect(lambda _=False, kind=kind: context.kind_wanted.emit(kind))
             self.buttons[kind] = button
-            row.addWidget(button)
+        row(*self.buttons.values(), on=self, spacing=2)
         context.kinds_shown.connect(self.show_kinds)
         self.show_kinds(frozenset())
 
@@ -130,34 +117,20 @@ class PoseOptions(QWidget):
         super().__init__()
         self._context = context
         self._visit = 0
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(6)
-        self.x_ = self._field(tr("X of the target's middle on the board, mm"), LARGEST_MM, 1, tr(" mm"))
-        self.y_ = self._field(tr("Y of the target's middle on the board, mm"), LARGEST_MM, 1, tr(" mm"))
-        self.turn = self._field(tr("Rotate the target by this angle, degrees counter-clockwise"), 360.0, 1, "°")
-        for caption, field in ((tr("&X"), self.x_), (tr("&Y"), self.y_), (tr("T&urn by"), self.turn)):
-            label = QLabel(caption)
-            label.setObjectName("muted")
-            label.setBuddy(field)
-            row.addWidget(label)
-            row.addWidget(field)
+        field = partial(decimal_field, LengthField, "", -LARGEST_MM, LARGEST_MM, suffix=tr(" mm"))
+        x, y = tr("X of the target's middle on the board, mm"), tr("Y of the target's middle on the board, mm")
+        turn = tr("Rotate the target by this angle, degrees counter-clockwise")
+        self.x_, self.y_ = field(accessible=x, tip=x), field(accessible=y, tip=y)
+        self.turn = decimal_field(DecimalField, "", -360.0, 360.0, suffix="°", accessible=turn, tip=turn)
+        parts: list[Part] = []
+        for caption, number in ((tr("&X"), self.x_), (tr("&Y"), self.y_), (tr("T&urn by"), self.turn)):
+            number.setMaximumWidth(96)
+            number.editingFinished.connect(self._leave)
+            parts += [label(caption, number), number]
+        row(*parts, on=self, spacing=6)
         self.x_.valueChanged.connect(self._move)
         self.y_.valueChanged.connect(self._move)
         self.turn.valueChanged.connect(self._turn)
-
-    def _field(self, tip: str, largest: float, digits: int, suffix: str) -> DecimalField:
-        field = LengthField() if suffix == tr(" mm") else DecimalField()
-        field.setRange(-largest, largest)
-        field.setDecimals(digits)
-        field.setSuffix(suffix)
-        field.setKeyboardTracking(False)
-        field.setToolTip(tip)
-        field.setAccessibleName(tip)
-        number_field(field)
-        field.setMaximumWidth(96)
-        field.editingFinished.connect(self._leave)
-        return field
 
     def _leave(self) -> None:
         self._visit += 1
@@ -207,17 +180,13 @@ class FontOptions(QWidget):
     def __init__(self, context: SketchContext) -> None:
         super().__init__()
         self._context = context
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.setSpacing(2)
         self.family: QFontComboBox | None = None
         self.bold = ToolButton("fontBold", "bold", tr("Bold letters. Thick strokes work better than thin ones."), True)
         self.italic = ToolButton("fontItalic", "italic", tr("Italic letters."), True)
         self.bold.setChecked(context.bold)
         self.bold.toggled.connect(self._on_style)
         self.italic.toggled.connect(self._on_style)
-        self._row.addWidget(self.bold)
-        self._row.addWidget(self.italic)
+        self._row = row(self.bold, self.italic, on=self, spacing=2)
 
     def fill(self) -> None:
         """List the families: reading them takes a while, so only when the text tool is taken."""

@@ -25,10 +25,9 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.make.export_report import ExportReport
     from kirigami_studio.gui.make.library_editors import MaterialEditor
     from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
-    from kirigami_studio.gui.target.outline_board import OutlineBoard
+    from kirigami_studio.gui.target.outline_board import OutlineBoard, StartBoard
     from kirigami_studio.gui.target.part_picker import PartPicker
     from kirigami_studio.gui.target.silhouette_picker import SilhouettePicker
-    from kirigami_studio.gui.target.start_board import StartBoard
     from kirigami_studio.gui.window.about import AboutWindow
     from kirigami_studio.gui.window.guide import GuideWindow
     from kirigami_studio.gui.window.history_list import HistoryList
@@ -140,7 +139,7 @@ class Dialogs(QObject):
 
     def show_start_board(self) -> None:
         """Open the board that the start is drawn on, with the present start."""
-        from kirigami_studio.gui.target.start_board import StartBoard
+        from kirigami_studio.gui.target.outline_board import StartBoard
 
         if self.start_board is None:
             self.start_board = StartBoard(self._window)
