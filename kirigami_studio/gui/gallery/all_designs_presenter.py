@@ -118,7 +118,7 @@ class AllDesignsPresenter(QObject):
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())
         table = page.table
-        table.hint = lambda: view.hint
+        table.hint = view.empty_text
         table.left.connect(lambda: self.show(False))
         table.taken.connect(self._put_on_stage)
         table.pin_wanted.connect(self._marks.pin)

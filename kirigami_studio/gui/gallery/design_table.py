@@ -8,28 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QColor,
-    QContextMenuEvent,
-    QKeyEvent,
-    QKeySequence,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QRegion,
-    QResizeEvent,
-    QShowEvent,
-)
-from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
+from PySide6.QtCore import QEvent, QModelIndex, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QKeySequence, QMouseEvent, QShowEvent
+from PySide6.QtWidgets import QAbstractItemView, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.card_delegate import GAP, SCROLL_BAR, CardButton, lay_out_cards
+from kirigami_studio.gui.gallery.cards import CardList
 from kirigami_studio.gui.gallery.compare_page import MOST
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
-from kirigami_studio.gui.gallery.table_card import TableCards, button_at, card_size
-from kirigami_studio.gui.widgets.theme import Palette
+from kirigami_studio.gui.gallery.table_card import TableCards
 from kirigami_studio.outlines.outline import Outline
 
 #: Least widths of a card, pixels, from small to large.
@@ -38,17 +26,11 @@ WIDTHS = (270, 340, 430, 560)
 PLACES = tuple(Qt.Key(Qt.Key.Key_1 + place) for place in range(MOST))
 
 
-class DesignTable(QListView):
+class DesignTable(CardList):
     """Cards in a grid that fills the window; the current card is the one that keys act on."""
 
     taken = Signal(Candidate)  #: to the stage
     left = Signal()  #: back to the window
-    pin_wanted = Signal(Candidate)
-    reject_wanted = Signal(Candidate)
-    rename_wanted = Signal(Candidate)
-    menu_wanted = Signal(Candidate, QPoint)  #: place on the screen
-    alike_toggled = Signal(Candidate)
-    clear_wanted = Signal()  #: the filter leaves nothing; show everything
     compare_wanted = Signal()
     compared_changed = Signal()
     size_wanted = Signal(int)  #: by how many steps cards should become larger
@@ -58,14 +40,10 @@ class DesignTable(QListView):
         super().__init__(parent)
         self.model_ = model
         self.cards = TableCards(self)
-        self.hint: Callable[[], tuple[str, str]] = lambda: ("", "")  #: what an empty table says
-        self._size = 1
+        self.hint: Callable[[], str] = str  #: text of an empty table
         self._compared: list[Candidate] = []
         self._current: Candidate | None = None
-        lay_out_cards(self, model, self.cards)
-        self.setAccessibleName(tr("Table of all designs"))
-        self._later = QTimer(self, singleShot=True, interval=0)
-        self._later.timeout.connect(self._draw_waiting)
+        self.lay_out(model, self.cards, WIDTHS[1], tr("Table of all designs"))
         model.arranged.connect(self._follow)
         self.selectionModel().currentChanged.connect(self._note_current)
 
@@ -78,11 +56,6 @@ class DesignTable(QListView):
     def compared(self) -> tuple[Candidate, ...]:
         """Those that were marked to be compared, in the order of their places."""
         return tuple(self._compared)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.cards.palette_ = palette
-        self.viewport().update()
 
     def set_target(self, target: Outline | None) -> None:
         """Draw over another target; pictures of designs that are gone are dropped."""
@@ -99,8 +72,15 @@ class DesignTable(QListView):
 
     def set_size(self, size: int) -> None:
         """Show larger or smaller cards, from 0 on."""
-        self._size = min(max(size, 0), len(WIDTHS) - 1)
-        self._share_width()
+        self._least_width = WIDTHS[min(max(size, 0), len(WIDTHS) - 1)]
+        self.share_width()
+
+    def empty_text(self) -> str:
+        return self.hint()
+
+    def compare(self, candidate: Candidate) -> None:
+        """Mark it to be compared."""
+        self.toggle_compared(candidate)
 
     def go_to(self, candidate: Candidate | None) -> None:
         """Make a design, or the card that it lies under, the current one and scroll to it."""
@@ -207,100 +187,14 @@ class DesignTable(QListView):
             return False
         return True
 
-    def _at(self, place: QPoint) -> tuple[QModelIndex, Candidate | None, CardButton | None]:
-        index = self.indexAt(place)
-        if not index.isValid():
-            return index, None, None
-        return index, index.data(CANDIDATE_ROLE), button_at(self.visualRect(index), place)
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        place = event.position().toPoint()
-        index, candidate, button = self._at(place)
-        if event.button() != Qt.MouseButton.LeftButton:
-            event.accept()  # the menu comes with its own event
-        elif candidate is None:
-            if self.model_.rowCount() == 0 and self.model_.all_entries:
-                self.clear_wanted.emit()
-        elif button is not None:
-            (self.pin_wanted if button is CardButton.PIN else self.reject_wanted).emit(candidate)
-        elif index.data(ALIKE_ROLE) and self.cards.alike_box(self.visualRect(index), index).contains(place):
-            self.alike_toggled.emit(candidate)
-        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.toggle_compared(candidate)
-        else:
-            super().mousePressEvent(event)
-
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        _, candidate, button = self._at(event.position().toPoint())
+        _, candidate, button = self.at(event.position().toPoint())
         if candidate is not None and button is None and event.button() == Qt.MouseButton.LeftButton:
             self.taken.emit(candidate)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        _, candidate, button = self._at(event.position().toPoint())
-        self._hover(candidate, button)
-        if event.buttons() == Qt.MouseButton.NoButton:
-            super().mouseMoveEvent(event)
-
-    def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        self._hover(None, None)
-        super().leaveEvent(event)
-
-    def _hover(self, candidate: Candidate | None, button: CardButton | None) -> None:
-        if (candidate, button) != (self.cards.under_mouse, self.cards.hovered_button):
-            self.cards.under_mouse, self.cards.hovered_button = candidate, button
-            self.viewport().update()
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:  # noqa: N802 - Qt's name
-        _, candidate, _ = self._at(event.pos())
-        place = event.globalPos()
-        if candidate is None and event.reason() == QContextMenuEvent.Reason.Keyboard and self.current is not None:
-            candidate = self.current
-            place = self.viewport().mapToGlobal(self.visualRect(self.currentIndex()).center())
-        if candidate is not None:
-            self.menu_wanted.emit(candidate, place)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        self._share_width()
-        super().resizeEvent(event)
-
-    def _share_width(self) -> None:
-        """Share the width among as many cards as fit into a row."""
-        width = self.width() - SCROLL_BAR
-        columns = max(1, width // (WIDTHS[self._size] + GAP))
-        wanted = card_size(width // columns - GAP)
-        if wanted != self.cards.card:
-            self.cards.card = wanted
-            self.scheduleDelayedItemsLayout()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
         self._follow()
-
-    def _draw_waiting(self) -> None:
-        """Paint the cards that lack their pictures, and no others: a large screen shows dozens that are done."""
-        region = QRegion()
-        for cell in self.cards.waiting:
-            region += cell
-        self.viewport().update(region)
-
-    def scrollContentsBy(self, dx: int, dy: int) -> None:  # noqa: N802 - Qt's name
-        super().scrollContentsBy(dx, dy)
-        if self.cards.pending:  # their cells are elsewhere now
-            self.cards.waiting.clear()
-            self.viewport().update()
-
-    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        self.cards.begin(event.region())
-        super().paintEvent(event)
-        if self.cards.pending:
-            self._later.start()
-        if self.model_.rowCount() > 0:
-            return
-        painter = QPainter(self.viewport())
-        painter.setPen(QColor(self.cards.palette_.muted))
-        flags = int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap)
-        painter.drawText(self.viewport().rect().adjusted(20, 0, -20, 0), flags, "\n\n".join(self.hint()))
-        painter.end()
 
 
 _MOVING = frozenset(

@@ -121,6 +121,12 @@ class VoidGestures(QObject):
             self.selection_changed.emit(voids)
             self._canvas.update()
 
+    def point_at(self, void: Void) -> None:
+        """Point at a void without a mouse."""
+        shapes = self._shapes()
+        if shapes is not None:
+            self._point(QPointF(*shapes.corners[void].mean(axis=0).tolist()))
+
     def follow(self) -> None:
         """Another design is shown: forget voids that it does not have, and look again what is under the pointer."""
         shapes = self._shapes()

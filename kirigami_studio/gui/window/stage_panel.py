@@ -485,10 +485,6 @@ class StagePanel(Card):
             part.set_low(self.height() < LOW)
         self.body.activate()
 
-    def set_overlay(self, overlay: Overlay, on: bool) -> None:
-        """Draw something over the layout, or no longer."""
-        self.overlays[overlay].setChecked(on)
-
     def _update_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, switch in self.overlays.items() if switch.isChecked())
         self.view.set_overlays(chosen)
