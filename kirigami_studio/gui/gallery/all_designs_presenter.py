@@ -85,7 +85,7 @@ class AllDesignsPresenter(QObject):
         self.show_document()
         self._pages.setCurrentWidget(page)
         page.table.go_to(self._designs.chosen)
-        page.focus()
+        page.table.setFocus()
 
     def leave_to(self, on: bool) -> None:
         """Something else is shown that the table would hide."""
