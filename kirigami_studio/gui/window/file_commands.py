@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_dialogs import FileDialogs
+from kirigami_studio.gui.files.file_dialogs import FileDialogs, Opened
 from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.session.command import Command
@@ -55,27 +55,24 @@ class FileCommands(QObject):
         self._unsaved.guard(OTHER_PROJECT, self._choose_project)
 
     def _choose_project(self) -> None:
-        path = self._ask.project()
+        self._ask_for(Opened.PROJECT, self._services.project.open)
+
+    def _ask_for(self, wanted: Opened, take: Callable[[Path], None]) -> None:
+        path = self._ask.open(wanted)
         if path is not None:
-            self._services.project.open(path)
+            take(path)
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""
-        path = self._ask.target()
-        if path is not None:
-            self._services.targeting.open(str(path))
+        self._ask_for(Opened.TARGET, lambda path: self._services.targeting.open(str(path)))
 
     def ask_start(self) -> None:
         """Read a file of the user's choice as the start outline."""
-        path = self._ask.start()
-        if path is not None:
-            self._services.start.open(str(path))
+        self._ask_for(Opened.START, lambda path: self._services.start.open(str(path)))
 
     def ask_second(self) -> None:
         """Read a file of the user's choice as the second target."""
-        path = self._ask.target()
-        if path is not None:
-            self._services.second.open(str(path))
+        self._ask_for(Opened.TARGET, lambda path: self._services.second.open(str(path)))
 
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
@@ -90,10 +87,7 @@ class FileCommands(QObject):
 
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""
-        self._unsaved.guard(SAMPLE, self._open_sample)
-
-    def _open_sample(self) -> None:
-        self._services.project.open(resource("examples", "heart.kiri"))
+        self._unsaved.guard(SAMPLE, lambda: self._services.project.open(resource("examples", "heart.kiri")))
 
     def open_pair(self, path: Path) -> None:
         """Open one of the bundled pairs; it is saved elsewhere."""
@@ -136,15 +130,11 @@ class FileCommands(QObject):
 
     def ask_artwork(self) -> None:
         """Lay a picture of the user's choice on the sheet."""
-        path = self._ask.artwork()
-        if path is not None:
-            self._services.artwork.open(path)
+        self._ask_for(Opened.ARTWORK, self._services.artwork.open)
 
     def ask_second_artwork(self) -> None:
         """Let a second picture of the user's choice share the sheet."""
-        path = self._ask.artwork()
-        if path is not None:
-            self._services.artwork.open_second(path)
+        self._ask_for(Opened.ARTWORK, self._services.artwork.open_second)
 
     def export_artwork(self) -> None:
         """Write the printed sheet into a folder of the user's choice."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QResizeEvent
-from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.gallery.compare_page import ComparePage
 from kirigami_studio.gui.gallery.gallery_model import described
+from kirigami_studio.gui.make.cut_view import CutView
 from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
@@ -22,6 +23,7 @@ from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, Lay
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
 from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.widgets.layouts import column, plain_pane
 from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.two_states import TwoStates
@@ -86,7 +88,7 @@ class StagePanel(Card):
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
         self.cuts_switch = SwitchButton("cuts", "cuts", tr(CUTS))
-        self.cuts_switch.switch.toggled.connect(self._toggle_cuts)
+        self.cuts_switch.switch.toggled.connect(lambda on: self._turn_to(self.cuts if on else self._layout_page))
         self.before = SwitchButton("before", "before", tr(BEFORE))
         self.before.switch.toggled.connect(self._toggle_before)
         self.trim = SwitchButton("trim", "trim", tr(TRIM))
@@ -147,30 +149,20 @@ class StagePanel(Card):
             button.hide()  # until it is known that there is room
 
     def _add_pages(self) -> None:
-        self._layout_page = layout = QWidget()
-        layout.setObjectName("plain")
-        column = QVBoxLayout(layout)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
+        self._layout_page = plain_pane()
         self.split = QSplitter(Qt.Orientation.Vertical)
         self.split.setChildrenCollapsible(False)
         self.split.addWidget(self.view)
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
-        self.welcome = WelcomePage()
-        column.addWidget(self.welcome, 1)
-        column.addWidget(self.split, 1)
-        self.voids = VoidBar()
+        self.welcome, self.voids = WelcomePage(), VoidBar()
+        below = (self.voids, self.deployment, self.ends, self.as_cut)
+        column((self.welcome, 1), (self.split, 1), *below, on=self._layout_page, spacing=8)
         self.voids.hide()
-        column.addWidget(self.voids)
-        column.addWidget(self.deployment)
-        column.addWidget(self.ends)
-        column.addWidget(self.as_cut)
         self.pages = QStackedWidget()
-        self.pages.addWidget(layout)
-        self.pages.addWidget(self.cuts)
-        self.pages.addWidget(self.compare)
+        for page in (self._layout_page, self.cuts, self.compare):
+            self.pages.addWidget(page)
         self.body.addWidget(self.pages, 1)
         self.verdict = VerdictBar()
         self.body.addWidget(self.verdict)
@@ -225,18 +217,22 @@ class StagePanel(Card):
         """What Space plays now."""
         return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
 
+    @property
+    def _in_sight(self) -> LayoutView | CutView | ComparePage:
+        return self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view
+
     def take_focus(self) -> None:
         """Give the keyboard to what is in sight."""
-        view = self.welcome if self.split.isHidden() else self.view
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else view).setFocus()
+        alone = self._in_sight is self.view and self.split.isHidden()
+        (self.welcome if alone else self._in_sight).setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).fit()
+        self._in_sight.fit()
 
     def zoom(self, factor: float) -> None:
         """Enlarge what is in sight."""
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
+        self._in_sight.zoom(factor)
 
     def set_comparing(self, on: bool) -> None:
         """Show several designs side by side, or one alone."""
@@ -252,9 +248,6 @@ class StagePanel(Card):
     def _show_comparison(self) -> None:
         self.show_title()
         self.whole_width_wanted.emit(self.wants_whole_width)
-
-    def _toggle_cuts(self, on: bool) -> None:
-        self._turn_to(self.cuts if on else self._layout_page)
 
     def _turn_to(self, page: QWidget) -> None:
         compared = self.comparing
