@@ -20,13 +20,12 @@ from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.gui.gallery import cards as card_list
 from kirigami_studio.gui.gallery import table_card
 from kirigami_studio.gui.gallery.all_designs import AllDesigns
-from kirigami_studio.gui.gallery.badges import badges_of
 from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VERDICT_ROLE
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets.theme import LIGHT
-from kirigami_studio.gui.widgets.verdict_marks import ICONS
+from kirigami_studio.gui.widgets.verdict_marks import ICONS, badges_of
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking

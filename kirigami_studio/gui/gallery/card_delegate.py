@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QFont, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import number, tr
-from kirigami_studio.gui.gallery.badges import closing_text
 from kirigami_studio.gui.gallery.cards import BUTTON, DOT, Cards, Index, card_of
 from kirigami_studio.gui.gallery.gallery_model import (
     CANDIDATE_ROLE,
@@ -27,7 +26,8 @@ from kirigami_studio.gui.gallery.gallery_model import (
 )
 from kirigami_studio.gui.stage.layout_items import TARGET_SHARE, candidate_pixmap
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.verdict_marks import ABOUT, ICONS, PALE, colour_of, level_of
+from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.verdict_marks import ABOUT, ICONS, PALE, closing_text, colour_of, level_of
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.project.document import Mark
 
@@ -139,16 +139,14 @@ class CardDelegate(Cards):
             painter.drawPixmap(left, place.top() + 1, icon)
             left += edge + 5
         if fresh:
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(self.palette_.accent))
+            ink(painter, None, fill=self.palette_.accent)
             painter.drawEllipse(QRectF(left, place.top() + 0.5 * metrics.height() - 0.5 * DOT, DOT, DOT))
             left += DOT + 5
         if mark is Mark.NONE:
             return left
         name, colour = ("pinned", self.palette_.accent) if mark is Mark.PINNED else ("reject", self.palette_.muted)
         box = QRectF(left, place.top() - 2, metrics.height() + 4, metrics.height() + 4)
-        painter.setPen(QPen(QColor(colour), 1.0))
-        painter.setBrush(QColor(self.palette_.surface))
+        ink(painter, colour, fill=self.palette_.surface)
         painter.drawRoundedRect(box, 5, 5)
         icon = icons.pixmap(name, colour, metrics.height() - 2, painter.device().devicePixelRatio())
         painter.drawPixmap(box.topLeft() + QPointF(3, 3), icon)
@@ -160,8 +158,7 @@ class CardDelegate(Cards):
         edge = metrics.ascent() + 2 if icon else 0
         width = metrics.horizontalAdvance(text) + 10 + (edge + (3 if text else 0) if icon else 0)
         chip = QRectF(card.right() - 7 - width, card.top() + 5, width, metrics.height() + 3)
-        painter.setPen(QPen(QColor(self.palette_.accent), 1.0))
-        painter.setBrush(QColor(self.palette_.accent_soft))
+        ink(painter, self.palette_.accent, fill=self.palette_.accent_soft)
         painter.drawRoundedRect(chip, 5, 5)
         if icon:
             drawn = icons.pixmap(icon, self.palette_.accent, edge, painter.device().devicePixelRatio())

@@ -17,7 +17,6 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QPen,
     QPixmap,
     QRegion,
     QResizeEvent,
@@ -46,6 +45,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
     alike_tip,
 )
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
@@ -160,8 +160,7 @@ class Cards(QStyledItemDelegate):
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if index.data(ALIKE_ROLE) and not index.data(OPEN_ROLE):  # the edge of another card under this one
-            painter.setBrush(QColor(self.palette_.raised))
-            painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
+            ink(painter, self.palette_.strong_border, fill=self.palette_.raised)
             painter.drawRoundedRect(QRectF(card).adjusted(4, 4, 2.5, 2.5), 8, 8)
         paint_back(painter, card, option.state, self.palette_)
         picture = self.picture_of(card)
@@ -186,8 +185,7 @@ class Cards(QStyledItemDelegate):
             text = tr("hide") if index.data(OPEN_ROLE) else f"+{index.data(ALIKE_ROLE)}"
         width = min(metrics.horizontalAdvance(text) + 12, box.width())
         chip = QRectF(box.right() - width + 1, box.top() + 0.5, width, box.height() - 1)
-        painter.setPen(QPen(QColor(self.palette_.strong_border), 1.0))
-        painter.setBrush(QColor(self.palette_.raised))
+        ink(painter, self.palette_.strong_border, fill=self.palette_.raised)
         painter.drawRoundedRect(chip, 5, 5)
         painter.setPen(QColor(self.palette_.text))
         shown = metrics.elidedText(text, Qt.TextElideMode.ElideRight, width - 6)
@@ -377,8 +375,7 @@ def paint_back(painter: QPainter, card: QRect, state: QStyle.StateFlag, palette:
     over = bool(state & QStyle.StateFlag.State_MouseOver)
     colour = palette.accent_soft if selected else palette.raised if over else palette.surface
     edge = palette.accent if selected else palette.strong_border if over else palette.border
-    painter.setBrush(QColor(colour))
-    painter.setPen(QPen(QColor(edge), 2.0 if selected else 1.0))
+    ink(painter, edge, 2.0 if selected else 1.0, fill=colour)
     painter.drawRoundedRect(QRectF(card).adjusted(1, 1, -1, -1), 8, 8)
 
 
@@ -389,8 +386,11 @@ def paint_buttons(
     ratio = painter.device().devicePixelRatio()
     for button, box in boxes.items():
         lit = button is hovered or mark is (Mark.PINNED if button is CardButton.PIN else Mark.REJECTED)
-        painter.setPen(QPen(QColor(palette.accent if lit else palette.strong_border), 1.0))
-        painter.setBrush(QColor(palette.accent_soft if lit else palette.surface))
+        ink(
+            painter,
+            palette.accent if lit else palette.strong_border,
+            fill=palette.accent_soft if lit else palette.surface,
+        )
         painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6)
         icon = icons.pixmap(button.value, palette.text, BUTTON - 8, ratio)
         painter.drawPixmap(box.topLeft() + QPoint(4, 4), icon)

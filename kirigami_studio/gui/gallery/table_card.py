@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen, QPixmap
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.badges import Badge, badges_of
 from kirigami_studio.gui.gallery.card_delegate import SIGNS
 from kirigami_studio.gui.gallery.cards import DOT, Cards, Index, alike_text, card_of
 from kirigami_studio.gui.gallery.gallery_model import (
@@ -27,7 +26,8 @@ from kirigami_studio.gui.gallery.gallery_model import (
 )
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.verdict_marks import ICONS, PALE, colour_of
+from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.verdict_marks import ICONS, PALE, Badge, badges_of, colour_of
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:
@@ -123,8 +123,7 @@ class TableCards(Cards):
             left += painter.fontMetrics().horizontalAdvance(chosen) + 8
         ratio = painter.device().devicePixelRatio()
         if index.data(FRESH_ROLE):
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(self.palette_.accent))
+            ink(painter, None, fill=self.palette_.accent)
             painter.drawEllipse(QRectF(left, box.center().y() - 0.5 * DOT + 1, DOT, DOT))
             left += DOT + 6
         if candidate in self.compared:
@@ -150,8 +149,7 @@ class TableCards(Cards):
     def _paint_place(self, painter: QPainter, box: QRect, left: int, place: int) -> int:
         """The number of a design among those that are compared, in a disc; returns where there is room left."""
         disc = QRectF(left, box.center().y() - 8, 18, 18)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(self.palette_.accent))
+        ink(painter, None, fill=self.palette_.accent)
         painter.drawEllipse(disc)
         painter.setPen(QColor(self.palette_.on_accent))
         painter.drawText(disc, int(Qt.AlignmentFlag.AlignCenter), str(place))
@@ -193,8 +191,7 @@ class TableCards(Cards):
         """A fact in its frame; icons and colours of verdicts, pale for estimates."""
         palette, well = self.palette_, badge.state in ("good", "ready_to_cut", "")
         colour = colour_of(badge.state, palette)
-        painter.setPen(QPen(QColor(palette.border if well else colour), 1.0))
-        painter.setBrush(QColor(palette.raised if well else palette.warning_soft))
+        ink(painter, palette.border if well else colour, fill=palette.raised if well else palette.warning_soft)
         painter.drawRoundedRect(QRectF(box).adjusted(0.5, 0.5, -0.5, -0.5), 10, 10)
         if badge.is_level:
             painter.setOpacity(PALE if estimate else 1.0)

@@ -7,13 +7,14 @@ from functools import cache, partial
 
 import numpy as np
 from PySide6.QtCore import QPoint, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent
+from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QPixmap, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -196,9 +197,8 @@ class StartTile(QAbstractButton):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         palette, lit = self._palette, self.hasFocus() or self.underMouse() or self.drops.here
-        pen = QPen(QColor(palette.accent if lit else palette.border), 2.0 if self.drops.here else 1.0)
-        painter.setPen(pen)
-        painter.setBrush(QColor(palette.canvas))
+        colour, width = palette.accent if lit else palette.border, 2.0 if self.drops.here else 1.0
+        ink(painter, colour, width, fill=palette.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
         lines = 2 if self.height() >= 4 * LINE + 34 else 1 if self.height() >= 3 * LINE + 30 else 0
         caption = LINE + 4.0 if lines else 2.0

@@ -2,7 +2,7 @@
 
 A gesture makes a draft: another sheet, decoded exactly and shown instead of the design.  A dragged void slides
 one of its corners along its slit (:class:`VoidDrag`), a dragged edge cut slides along its side of the sheet
-(:class:`~kirigami_studio.gui.stage.rim_drag.MouthDrag`).  When the gesture ends, the worker scores the draft, and the
+(:class:`~kirigami_studio.gui.stage.edge_cuts.MouthDrag`).  When the gesture ends, the worker scores the draft, and the
 score makes one named edit.  Gestures that follow meanwhile start from the draft and wait for their turn, so that each
 becomes an undo step of its own.  Undo, save and the like wait for the last score.
 
@@ -31,10 +31,8 @@ from kirigami_studio.foundation.steps import Cancel, single
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
-from kirigami_studio.gui.stage.outline_drag import OutlineDrag
-from kirigami_studio.gui.stage.rim_drag import MouthDrag, holds_corner, moved, with_sheet
-from kirigami_studio.gui.stage.rim_items import MouthFacts
-from kirigami_studio.gui.stage.vertex_drag import DragStart, DragStep
+from kirigami_studio.gui.stage.edge_cuts import MouthDrag, MouthFacts, holds_corner, moved, with_sheet
+from kirigami_studio.gui.stage.outline_drag import DragStart, DragStep, OutlineDrag
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet

@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.gui.widgets.paths import DOZEN, line_path, paths_of_lines, paths_of_quads, round_pen
+from kirigami_studio.gui.widgets.paths import DOZEN, ink, line_path, paths_of_lines, paths_of_quads, round_pen
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -57,8 +57,7 @@ def paint_panels(
     together = _together(painter)
     for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
-        painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
-        painter.setBrush(QColor(colour))
+        ink(painter, line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5), fill=colour)
         for path in paths_of_quads(panels[chosen & whole], together):
             painter.drawPath(path)
         for row, part in trimmed.items():
@@ -90,13 +89,11 @@ def paint_cut_panels(
     together = _together(painter)
     panels = _in_pixels(pose.panels, transform)
     for left, colour in ((False, palette.panel_even), (True, palette.panel_odd)):
-        painter.setPen(QPen(QColor(colour), 0.5))
-        painter.setBrush(QColor(colour))
+        ink(painter, colour, 0.5, fill=colour)
         chosen = np.flatnonzero(turns_left[pose.numbers] == left).tolist()
         for path in paths_of_lines([panels[place] for place in chosen], True, together):
             painter.drawPath(path)
-    painter.setPen(_panel_pen(quads, palette))
-    painter.setBrush(Qt.BrushStyle.NoBrush)
+    ink(painter, _panel_pen(quads, palette))
     for path in paths_of_lines(_in_pixels(pose.cuts, transform), False, together):
         painter.drawPath(path)
 

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.colour_scale import ColourScale
-from kirigami_studio.gui.widgets.paths import quad_paths
+from kirigami_studio.gui.widgets.paths import ink, quad_paths
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Opacity of the panels' edges on the heat map.
@@ -101,8 +101,7 @@ def paint_numbers(
         if not seen.intersects(box):
             continue
         if framed:
-            painter.setPen(QPen(QColor(palette.accent), 1.0))
-            painter.setBrush(back)
+            ink(painter, palette.accent, fill=back)
             painter.drawRoundedRect(box, 0.5 * height, 0.5 * height)
         painter.setPen(QColor(palette.text))
         painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), f"{row},{column}")
@@ -200,8 +199,7 @@ def paint_dimension(
         left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
         box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
         if not any(box.intersects(other) for other in occupied) and QRectF(painter.window()).contains(box):
-            painter.setPen(QPen(QColor(palette.text), 1.0))
-            painter.setBrush(QColor(palette.surface))
+            ink(painter, palette.text, fill=palette.surface)
             painter.drawRoundedRect(box, 4.0, 4.0)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
             occupied.append(box)

@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
-from kirigami_studio.gui.stage.artwork_items import ShownArtwork, paint_artwork
+from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, paint_artwork
 from kirigami_studio.gui.stage.connector_items import STRETCH_TITLE, paint_stretch, stretch_scale
 from kirigami_studio.gui.stage.fault_items import (
     Fault,
@@ -29,9 +29,8 @@ from kirigami_studio.gui.stage.fault_items import (
     inverted_panels,
     paint_fault,
 )
-from kirigami_studio.gui.stage.grip_items import GripPlaces, grip_places, paint_grips
 from kirigami_studio.gui.stage.gripping import UNKNOWN as GRIPS_UNKNOWN
-from kirigami_studio.gui.stage.gripping import GripState
+from kirigami_studio.gui.stage.gripping import GripPlaces, GripState, grip_places, paint_grips
 from kirigami_studio.gui.stage.layout_items import paint_cut_panels, paint_panels, turning_left
 from kirigami_studio.gui.stage.layout_labels import (
     SmallPart,

@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPainterPath
 from PySide6.QtWidgets import QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Slider steps per degree.
@@ -202,13 +203,14 @@ class PhiSlider(QSlider):
         self._paint_marks(painter)
         x = self._x(self.phi)
         if self.hasFocus():
-            halo = QColor(self.palette_.accent)
-            halo.setAlpha(60)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(halo)
+            ink(painter, None, fill=self.palette_.accent, alpha=60)
             painter.drawEllipse(QPointF(x, MIDDLE), HANDLE + 4, HANDLE + 4)
-        painter.setPen(QPen(QColor(self.palette_.surface), 2.0))
-        painter.setBrush(QColor(self.palette_.accent if self.isEnabled() else self.palette_.disabled))
+        ink(
+            painter,
+            self.palette_.surface,
+            2.0,
+            fill=self.palette_.accent if self.isEnabled() else self.palette_.disabled,
+        )
         painter.drawEllipse(QPointF(x, MIDDLE), HANDLE, HANDLE)
         painter.end()
 
@@ -221,8 +223,7 @@ class PhiSlider(QSlider):
         free_until = next((last for kind, _, last in parts if kind is TrackPart.FREE), math.pi)
         if self.isEnabled():
             left, right = self._x(math.pi), self._x(max(self.phi, free_until))
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(self.palette_.accent))
+            ink(painter, None, fill=self.palette_.accent)
             painter.drawRoundedRect(QRectF(left, MIDDLE - 2.5, right - left, 5.0), 2.5, 2.5)
 
     def _paint_marks(self, painter: QPainter) -> None:
@@ -318,13 +319,11 @@ def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: P
     """Draw one part: a plain bar when free, thick and striped in contact, thin dashes past the target."""
     middle = box.center().y()
     if kind is TrackPart.FREE or not enabled:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.strong_border))
+        ink(painter, None, fill=palette.strong_border)
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
     elif kind is TrackPart.JAMMED:
-        painter.setPen(QPen(QColor(palette.warning), 1.2))
-        painter.setBrush(QColor(palette.warning_soft))
+        ink(painter, palette.warning, 1.2, fill=palette.warning_soft)
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
     elif kind is TrackPart.CONTACT:
@@ -338,8 +337,7 @@ def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: P
 
 def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
     painter.save()
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(palette.fault))
+    ink(painter, None, fill=palette.fault)
     painter.drawRoundedRect(bar, 2.0, 2.0)
     painter.setClipRect(bar)
     painter.setPen(QPen(QColor(palette.fault_line), 1.8))
@@ -348,8 +346,7 @@ def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
     starts = [bar.left() - height + STRIPE * number for number in range(count + 1)]
     painter.drawLines([QLineF(x, bar.bottom(), x + height, bar.top()) for x in starts])
     painter.setClipping(False)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(QPen(QColor(palette.strong_border), 1.0))
+    ink(painter, palette.strong_border)
     painter.drawRoundedRect(bar, 2.0, 2.0)
     painter.restore()
 
@@ -358,8 +355,7 @@ def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette
     """Draw the sign of a mark below the track: an arrow to the target, a hollow one to a second target, a diamond at a
     contact, a bar at a jam, a tick at the ends."""
     if kind is MarkKind.JAM:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.warning))
+        ink(painter, None, fill=palette.warning)
         painter.drawRoundedRect(QRectF(tip.x() - 1.75, tip.y() - 13.0, 3.5, 21.0), 1.5, 1.5)
         return
     path = QPainterPath(tip)
@@ -376,12 +372,9 @@ def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette
     path.closeSubpath()
     match kind:
         case MarkKind.CONTACT:
-            painter.setPen(QPen(QColor(palette.fault_line), 1.2))
-            painter.setBrush(QColor(palette.fault))
+            ink(painter, palette.fault_line, 1.2, fill=palette.fault)
         case MarkKind.SECOND:
-            painter.setPen(QPen(QColor(palette.target), 1.4))
-            painter.setBrush(QColor(palette.surface))
+            ink(painter, palette.target, 1.4, fill=palette.surface)
         case _:
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(palette.target))
+            ink(painter, None, fill=palette.target)
     painter.drawPath(path)

@@ -13,8 +13,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.stage.curves import Curves
-from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading
+from kirigami_studio.gui.stage.curves import ANGLES, Curves, Reading
 from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 

@@ -12,7 +12,7 @@ from functools import partial
 from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal, SignalInstance
 from PySide6.QtGui import QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
-from kirigami_studio.gui.stage.rim_gestures import ARROWS, RimHandles
+from kirigami_studio.gui.stage.edge_cuts import ARROWS, RimHandles
 from kirigami_studio.gui.stage.void_items import (
     VoidShapes,
     paint_band,

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.paths import area_path, line_path, round_pen
+from kirigami_studio.gui.widgets.paths import area_path, ink, line_path, round_pen
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.merging import Merged
@@ -85,8 +85,7 @@ class PartView(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QColor(self.palette_.border))
-        painter.setBrush(QColor(self.palette_.canvas))
+        ink(painter, self.palette_.border, fill=self.palette_.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0)
         if self._read is None:
             return

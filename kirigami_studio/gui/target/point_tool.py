@@ -14,6 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import paint_field, paint_label, paint_proposal
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -442,8 +443,12 @@ def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, m
     _paint_handles(painter, transform, palette, marks)
     for index, (x, y) in enumerate(transform.to_pixels(anchors.places).tolist()):
         chosen = index in marks.selected
-        painter.setPen(QPen(QColor(palette.accent), 2.4 if index in marks.images else 1.6))
-        painter.setBrush(QColor(palette.accent if chosen else palette.canvas))
+        ink(
+            painter,
+            palette.accent,
+            2.4 if index in marks.images else 1.6,
+            fill=palette.accent if chosen else palette.canvas,
+        )
         _paint_point(painter, QPointF(x, y), anchors.kinds[index])
     if marks.labelled is not None:
         place = anchors.places[marks.labelled]
@@ -475,6 +480,5 @@ def _paint_handles(painter: QPainter, transform: ViewTransform, palette: Palette
             end = QPointF(*transform.to_pixels(anchors.places[index] + offset).tolist())
             painter.setPen(QPen(QColor(palette.muted), 1.2))
             painter.drawLine(start, end)
-            painter.setPen(QPen(QColor(palette.accent), 1.4))
-            painter.setBrush(QColor(palette.canvas))
+            ink(painter, palette.accent, 1.4, fill=palette.canvas)
             painter.drawEllipse(end, KNOB, KNOB)

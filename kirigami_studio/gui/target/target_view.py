@@ -14,13 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
-    QColor,
     QFocusEvent,
     QImage,
     QKeyEvent,
     QMouseEvent,
     QPainter,
-    QPen,
 )
 from PySide6.QtWidgets import QWidget
 
@@ -33,6 +31,7 @@ from kirigami_studio.gui.target.shape_tools import FigureTool, Freehand, Pen, Te
 from kirigami_studio.gui.target.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import (
     paint_axes,
     paint_grid,
@@ -295,8 +294,7 @@ class TargetView(Canvas):
         if self._editing and transform is not None and not self.rendering:
             self.rulers.paint(painter, transform, QRectF(self.rect()), self.palette_)
         if self.drops.here:
-            painter.setPen(QPen(QColor(self.palette_.accent), 2.0, Qt.PenStyle.DashLine))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
+            ink(painter, self.palette_.accent, 2.0, dashed=True)
             painter.drawRoundedRect(self.rect().adjusted(6, 6, -6, -6), 8, 8)
 
     # the pointer and the keys --------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPe
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -234,8 +235,7 @@ class Canvas(QWidget):
         return picture
 
     def _paint_ground(self, painter: QPainter) -> None:
-        painter.setPen(QPen(QColor(self.palette_.border), 1.0))
-        painter.setBrush(QColor(self.palette_.canvas))
+        ink(painter, self.palette_.border, fill=self.palette_.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
 
     def _row_of_dots(self, ratio: float) -> QPixmap:

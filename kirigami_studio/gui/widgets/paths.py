@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QByteArray, QDataStream, Qt
-from PySide6.QtGui import QColor, QPainterPath, QPen
+from PySide6.QtGui import QBrush, QColor, QGradient, QPainter, QPainterPath, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -32,6 +32,29 @@ ELEMENT = np.dtype([("kind", ">i4"), ("x", ">f8"), ("y", ">f8")])
 def round_pen(colour: str, width: float) -> QPen:
     """A pen with round ends and corners."""
     return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
+
+
+def ink(
+    painter: QPainter,
+    line: str | QPen | None,
+    width: float = 1.0,
+    *,
+    fill: str | QColor | QBrush | QGradient | None = None,
+    alpha: int = 255,
+    dashed: bool = False,
+) -> None:
+    """Draw from now on with a line of a colour and a width, pixels, and filled; None is for no line, or no fill.
+
+    ``alpha`` is the opacity of the fill, 0 to 255.
+    """
+    style = Qt.PenStyle.DashLine if dashed else Qt.PenStyle.SolidLine
+    if isinstance(line, str):
+        line = QPen(QColor(line), width, style)
+    painter.setPen(Qt.PenStyle.NoPen if line is None else line)
+    if isinstance(fill, str):
+        fill = QColor(fill)
+        fill.setAlpha(alpha)
+    painter.setBrush(Qt.BrushStyle.NoBrush if fill is None else fill)
 
 
 def line_path(points: FloatArray, closed: bool) -> QPainterPath:

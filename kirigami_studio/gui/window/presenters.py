@@ -17,14 +17,14 @@ from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
 from kirigami_studio.gui.run.generate_bar import RunPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.session.session import Entry
-from kirigami_studio.gui.stage.void_presenter import VoidPresenter
+from kirigami_studio.gui.stage.void_bar import VoidPresenter
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.target.target_presenter import StartPresenter, TargetPresenter
 from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 from kirigami_studio.gui.window.services import Services
-from kirigami_studio.gui.window.stage_presenter import StagePresenter
+from kirigami_studio.gui.window.stage_panel import StagePresenter
 from kirigami_studio.gui.window.welcome_page import WelcomePresenter
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of
