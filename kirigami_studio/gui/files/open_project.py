@@ -101,15 +101,12 @@ class OpenProject(QObject):
 
     Parameters
     ----------
-    session : Session
-    targeting : Targeting
     hand : HandEditor
         Finishes what is being changed by hand first.
     preferences : UserPreferences
         Has what new projects start with.
     stop_work : callable
         Stops all work for the present document, before another one comes.
-    parent : QObject
 
     Attributes
     ----------

@@ -28,11 +28,6 @@ class AllDesignsPresenter(QObject):
     ----------
     pages : QStackedWidget
         Of the window: its first page is in the place of the table otherwise.
-    panel : GalleryPanel
-    designs : GalleryPresenter
-    session : Session
-    generation : Generation
-    marks : DesignMarks
     choose : callable
         Puts a design on the stage.
     compare : callable

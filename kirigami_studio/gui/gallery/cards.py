@@ -263,7 +263,6 @@ class CardList(QListView):
         """Compare a design: its card was clicked with Ctrl."""
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._cards.palette_ = palette
         self.viewport().update()
 

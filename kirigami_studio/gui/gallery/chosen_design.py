@@ -38,7 +38,6 @@ class ChosenDesignJob(Generic[T]):
 
     Parameters
     ----------
-    session : Session
     on_busy : callable
         Hears whether a design is being worked on.
     on_report : callable
@@ -116,7 +115,7 @@ class TrimSwitch(QObject):
         if not on and self.busy:
             self.cancel()
         elif candidate is None:
-            self._session.post(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
+            self._session.hint(tr("Choose a finished design first, then trim it."))
         elif on and candidate.trim is None:
             self._start(candidate)
         elif not on and candidate.trim is not None:
@@ -178,10 +177,10 @@ class Refitter(QObject):
         document = self._session.document
         candidate, target = document.candidate, document.target
         if candidate is None or target is None:
-            self._session.post(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
+            self._session.hint(tr("Choose a finished design first, then fit it again."))
             return
         if len(document.locked) == candidate.sheet.field.ratio.size:
-            self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
+            self._session.hint(tr("Every void is locked. Unlock the ones to fit."))
             return
         steps = partial(refitting, candidate, target, document.settings, document.locked, document.fabrication)
         self.job.start(tr("fitting the design"), candidate, steps)
@@ -321,8 +320,7 @@ class ChosenDesign(QObject):
         if self._hand.postpones(lambda: self.trim(on)):
             return
         if self._running:
-            text = tr("Wait for the run to finish, then trim a design.")
-            self._session.post(Message(text, Tone.HINT))
+            self._session.hint(tr("Wait for the run to finish, then trim a design."))
         else:
             self.trimming.switch(on)
 

@@ -73,7 +73,6 @@ class GenerateBar(QWidget):
             part.hide()
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.generate.setIcon(icons.icon("generate", palette, palette.on_accent))
         self.stop.setIcon(icons.icon("stop", palette))
 
@@ -83,12 +82,6 @@ class RunPresenter(QObject):
 
     Parameters
     ----------
-    panel : SettingsPanel
-    bar : GenerateBar
-    session : Session
-    generation : Generation
-    regularity : Regularity
-    editor : SettingsEditor
     cancel : callable
         Stops the run, or the work on designs.
     """

@@ -90,7 +90,7 @@ class Generation(QObject):
         if self.run.running:
             return
         if target is None:
-            session.post(Message(tr("Choose or draw a target first, then press Generate."), Tone.HINT))
+            session.hint(tr("Choose or draw a target first, then press Generate."))
             return
         try:
             plan = plan_for(target)
@@ -265,8 +265,7 @@ class RunPlanner:
         self.added = frozenset()
         staying = _staying(document, result.request)
         if not staying and Mark.PINNED in document.marks:
-            sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("Pinned designs for another grid or angle were removed. Undo restores them."))
             document = replace(document, marks=())
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)

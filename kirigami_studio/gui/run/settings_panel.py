@@ -97,7 +97,6 @@ class SecondTargetRow(QWidget):
             self._show_shape()
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self._show_shape()
 

@@ -144,7 +144,6 @@ class StartTile(QAbstractButton):
         self.menu.popup(self.mapToGlobal(QPoint(0, min(self.height(), 150))))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.back.setIcon(icons.icon("close", palette))
         self.back.setIconSize(QSize(BACK_EDGE - 8, BACK_EDGE - 8))

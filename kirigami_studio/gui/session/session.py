@@ -195,7 +195,6 @@ class Session(QObject):
 
     Parameters
     ----------
-    parent : QObject, optional
     earlier : Session, optional
         Of a closed window, whose project is the open one, with its history.
 
@@ -285,6 +284,10 @@ class Session(QObject):
     def post(self, message: Message) -> None:
         """Show a message above the columns."""
         self.message_posted.emit(message)
+
+    def hint(self, sentence: str) -> None:
+        """Show a sentence that helps on."""
+        self.post(Message(sentence, Tone.HINT))
 
     def withdraw(self, message: Message) -> None:
         """Take a message away that no longer applies."""

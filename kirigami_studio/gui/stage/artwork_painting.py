@@ -61,14 +61,12 @@ def paint_artwork(
 
     Parameters
     ----------
-    painter : QPainter
     shown : ShownArtwork
         The printed flat sheet of the design that is drawn.
     phi : float, radians
     panels : (K, 4, 2) float, pixels
     trimmed : mapping of row to (P, 2) float, pixels
         What trimming has left of panels, drawn instead of them.
-    transform : ViewTransform
     """
     motion = shown.sheet.motion(phi)
     # Pixels count downwards, in the view and in the artwork: between them lie the conjugates.
@@ -142,7 +140,6 @@ def svg_to_png(content: bytes, side: int) -> bytes:
 
     Parameters
     ----------
-    content : bytes
     side : int
         Pixels along the longer side of the document's page.
 

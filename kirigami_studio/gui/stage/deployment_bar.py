@@ -247,7 +247,6 @@ class PlayOptions(QToolButton):
         self.speeds[SPEEDS[place]].setChecked(True)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         for mode, action in self.modes.items():
             action.setIcon(icons.icon(MODE_ICONS[mode], palette))

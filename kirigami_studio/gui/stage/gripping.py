@@ -140,7 +140,6 @@ def grip_places(
 
     Parameters
     ----------
-    design : PosedDesign
     held, moved : tuple of int
         Panels, row by row.
     phi : float, radians
@@ -170,12 +169,10 @@ def paint_grips(painter: QPainter, places: GripPlaces, way: FloatArray, palette:
 
     Parameters
     ----------
-    painter : QPainter
     places : GripPlaces
         In pixels.
     way : (K, 2) float, pixels
         As ``places.way``; the longest one gets the longest arrow.
-    palette : Palette
     """
     lengths = np.linalg.norm(way, axis=1)
     longest = float(lengths.max(initial=0.0))

@@ -77,14 +77,10 @@ def paint_cut_panels(
 
     Parameters
     ----------
-    painter : QPainter
-    pose : CutPose
-    transform : ViewTransform
     quads : (K, 4, 2) float, pixels
         The ideal panels, whose size decides how wide lines are.
     turns_left : (K,) bool
         As for :func:`paint_panels`.
-    palette : Palette
     """
     together = _together(painter)
     panels = _in_pixels(pose.panels, transform)

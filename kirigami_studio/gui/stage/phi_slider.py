@@ -91,7 +91,6 @@ class PhiSlider(QSlider):
         return min(value, value_at(self.jam))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 

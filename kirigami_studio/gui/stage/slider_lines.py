@@ -97,7 +97,6 @@ class EndButton(QAbstractButton):
         self.update()
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.update()
 

@@ -136,14 +136,10 @@ class VoidPresenter(QObject):
 
     Parameters
     ----------
-    view : LayoutView
-    bar : VoidBar
     play : QAbstractButton
         Is let go when a drag begins.
     status : QLabel
         Tells of the void that is pointed at.
-    session : Session
-    hand : HandEditor
     running, showing_before : callable
         Whether a run goes on, and whether the design is shown as it was sampled: then nothing is changed by hand.
     command : callable

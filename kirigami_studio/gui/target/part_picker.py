@@ -362,7 +362,6 @@ class PartPicker(QDialog):
     # pictures --------------------------------------------------------------------------------------------------------
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         if palette is not self._palette:
             self._palette = palette
             self._draw_all()

@@ -48,7 +48,6 @@ class PartView(QWidget):
         return QSize(240, 160)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 

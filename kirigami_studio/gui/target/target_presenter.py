@@ -34,12 +34,8 @@ class TargetPresenter(QObject):
 
     Parameters
     ----------
-    panel : TargetPanel
-    session : Session
-    targeting : Targeting
     pasting : PasteReader
         Reads what is dropped on the panel.
-    undo : callable
     """
 
     def __init__(
@@ -175,8 +171,7 @@ class TargetPresenter(QObject):
             self._drop_question()  # what was drawn is gone by another way, and with it what could be replaced
             if self._offered is not None:
                 name = tr(self._offered.name)
-                sentence = tr("{name} was not taken. Open it again to use it.", name=name)
-                self._session.post(Message(sentence, Tone.HINT))
+                self._session.hint(tr("{name} was not taken. Open it again to use it.", name=name))
         drawn = document.target is not before.target or document.drawing != before.drawing or _moved(document, before)
         if drawn or size_of(document) != self._size:
             self._show_target(document)
@@ -205,12 +200,8 @@ class StartPresenter(QObject):
 
     Parameters
     ----------
-    tile : StartTile
     settings : SettingsPanel
         Has the list of starts, and the grid that a plain rectangle follows.
-    session : Session
-    reader : StartReader
-    editor : SettingsEditor
     """
 
     def __init__(

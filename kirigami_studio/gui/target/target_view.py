@@ -197,8 +197,7 @@ class TargetView(Canvas):
         now = self.transform() or transform
         middle = np.array([0.5 * (chosen.left + chosen.right), 0.5 * (chosen.bottom + chosen.top)])
         self._shift += box.center() - QPointF(*now.to_pixels(middle).tolist())
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom_to_real_size(self) -> None:
         """Show a millimetre as long as it is on paper."""

@@ -257,7 +257,6 @@ class AxisButton(QToolButton):
         self.set_axis(axes[(axes.index(self._context.mirror.axis) + 1) % len(axes)])
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self._update_icons()
 

@@ -35,7 +35,6 @@ class Canvas(QWidget):
     Subclasses override :meth:`scene_bounds`, :meth:`paint_scene` and :meth:`empty_state`.
     """
 
-    zoom_changed = Signal(float)
     view_changed = Signal(float, QPointF)  #: zoom and shift (pixels), after a gesture has changed them
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -73,7 +72,6 @@ class Canvas(QWidget):
     # public ----------------------------------------------------------------------------------------------------------
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 
@@ -93,9 +91,7 @@ class Canvas(QWidget):
     def fit(self) -> None:
         """Show everything again."""
         self._zoom, self._shift = 1.0, QPointF(0.0, 0.0)
-        self.zoom_changed.emit(self._zoom)
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom(self, factor: float, about: QPointF | None = None) -> None:
         """Zoom, keeping the pixel ``about`` (the middle unless given) in place."""
@@ -105,9 +101,7 @@ class Canvas(QWidget):
         offset = (about or middle) - middle
         self._shift = offset + (self._shift - offset) * factor
         self._zoom = wanted
-        self.zoom_changed.emit(self._zoom)
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom_to(self, place: tuple[float, float], zoom: float) -> None:
         """Bring a place of the world to the middle, enlarged ``zoom`` times over the fitted picture."""
@@ -117,8 +111,7 @@ class Canvas(QWidget):
         if transform is not None:
             x, y = transform.to_pixels(np.array(place)).tolist()
             self._shift += self.scene_box().center() - QPointF(x, y)
-            self._emit_view()
-            self.update()
+            self._show_view()
 
     def render_to(self, painter: QPainter, size: QSize) -> None:
         """Render the view into any paint device, as large as ``size`` allows, without the background dots."""
@@ -148,11 +141,11 @@ class Canvas(QWidget):
     def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show the part that another canvas of the same size and scene shows; no signal is emitted for it."""
         self._zoom, self._shift = zoom, QPointF(shift)
-        self.zoom_changed.emit(self._zoom)
         self.update()
 
-    def _emit_view(self) -> None:
+    def _show_view(self) -> None:
         self.view_changed.emit(self._zoom, QPointF(self._shift))
+        self.update()
 
     # events --------------------------------------------------------------------------------------------------------
 
@@ -180,8 +173,7 @@ class Canvas(QWidget):
             self._shift += event.position() - self._grip
             self._grip = event.position()
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
-            self._emit_view()
-            self.update()
+            self._show_view()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         self._grip = None

@@ -59,7 +59,6 @@ class ToolButton(QToolButton):
             self.setIcon(icons.icon(name, self._palette))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.show_icon(self._icon_name)
 

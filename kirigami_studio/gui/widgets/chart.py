@@ -103,7 +103,6 @@ class Chart(QWidget):
         self.plot.getAxis("bottom").setHeight(None if shown else 6)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.plot.setBackground(QColor(palette.surface))
         for side in ("left", "bottom"):

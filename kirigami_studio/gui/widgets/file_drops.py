@@ -12,7 +12,6 @@ class FileDrops(QObject):
 
     Parameters
     ----------
-    widget : QWidget
     with_content : bool
         Whether pictures and texts are taken, too.
 

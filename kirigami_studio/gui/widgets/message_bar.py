@@ -106,7 +106,6 @@ class MessageBar(QFrame):
             self._go(len(self._messages) - 1)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self._go(self._at)
 

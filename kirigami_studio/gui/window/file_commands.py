@@ -16,7 +16,6 @@ from kirigami_studio.gui.files.file_dialogs import FileDialogs, Opened
 from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.session.command import Command
-from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.target.targeting import Targeting
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE, UnsavedWork
@@ -31,13 +30,10 @@ class FileCommands(QObject):
 
     Parameters
     ----------
-    services : Services
     unsaved : UnsavedWork
         Is asked before another project replaces this one.
-    ask : FileDialogs
     exports : ExportRow
         Has the kind of file that suits the material.
-    parent : QObject
     """
 
     def __init__(
@@ -107,8 +103,7 @@ class FileCommands(QObject):
 
     def _export(self, ending: str, motion: Motion) -> None:
         if self._services.session.stage is None:
-            sentence = tr("No design to export yet. Generate one first.")
-            self._services.session.post(Message(sentence, Tone.HINT))
+            self._services.session.hint(tr("No design to export yet. Generate one first."))
             return
         path = self._ask.export(f"{self._name}{ending}")
         if path is not None:

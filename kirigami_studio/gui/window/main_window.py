@@ -53,8 +53,6 @@ class MainWindow(QMainWindow):
 
     Parameters
     ----------
-    services : Services
-    palette : Palette
     file_dialogs : FileDialogs, optional
         In the place of the desktop's.
     """

@@ -44,9 +44,6 @@ class Dialogs(QObject):
     ----------
     window : QWidget
         The parent of the dialogs.
-    services : Services
-    files : FileCommands
-    appearance : Appearance
     library_button : QWidget
         The library opens below it.
     commands : callable

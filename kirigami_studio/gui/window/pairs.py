@@ -57,7 +57,6 @@ class PairGallery(QDialog):
         return bool(self.pairs) and not self._job.busy and not self._undrawn
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         if palette is not self._palette:
             self._palette = palette
             self._undrawn = list(range(len(self.pairs)))

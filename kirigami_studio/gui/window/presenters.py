@@ -38,11 +38,6 @@ class Presenters(QObject):
 
     Parameters
     ----------
-    columns : Columns
-    services : Services
-    dialogs : Dialogs
-    files : FileCommands
-    pasting : PasteReader
     status : QLabel
         Tells of the void that is pointed at.
     command : callable

@@ -519,10 +519,6 @@ class StagePresenter(QObject):
 
     Parameters
     ----------
-    panel : StagePanel
-    session : Session
-    curves : CurveReader
-    grips : GripFinder
     name_of : callable
         What a design is called.
     """

@@ -21,18 +21,7 @@ from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.stage_panel import StagePanel
 
 #: Commands that switch what is drawn over the layout.
-OVERLAY_COMMANDS = {
-    "show_target": Overlay.TARGET,
-    "show_mismatch": Overlay.MISMATCH,
-    "show_faults": Overlay.FAULTS,
-    "show_stretch": Overlay.STRETCH,
-    "show_grips": Overlay.GRIPS,
-    "show_ratios": Overlay.RATIOS,
-    "show_openings": Overlay.OPENINGS,
-    "show_small_parts": Overlay.SMALL_PARTS,
-    "show_panel_numbers": Overlay.PANEL_NUMBERS,
-    "show_void_numbers": Overlay.VOID_NUMBERS,
-}
+OVERLAY_COMMANDS = {f"show_{overlay.value}": overlay for overlay in Overlay}
 
 
 def commands(
