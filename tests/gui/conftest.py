@@ -16,7 +16,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.files.file_dialogs import Opened
+from kirigami_studio.gui.files.file_dialogs import FileToOpen
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
@@ -52,7 +52,7 @@ class PathAnswers:
         self.answer: Path | None = None
         self.proposals: list[str] = []
 
-    def open(self, wanted: Opened) -> Path | None:
+    def open(self, wanted: FileToOpen) -> Path | None:
         return self.answer
 
     def save(self, proposal: str) -> Path | None:

@@ -192,7 +192,7 @@ def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWind
 def test_that_the_run_refuses_it_in_the_same_words(heart: MainWindow, until: Until) -> None:
     services = heart.services
     services.settings.change(grid=(4, 4))
-    services.start.draw(Outline.from_points(SLOTTED, "polygon"))
+    services.start.take(Outline.from_points(SLOTTED, "polygon"))
     until(lambda: heart.target.start_refusal.isVisible())
     heart.commands["generate"].trigger()
     until(lambda: bool(heart.messages.messages) and not services.run.running)

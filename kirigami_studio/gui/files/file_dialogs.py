@@ -14,7 +14,7 @@ from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
 
 
-class Opened(Enum):
+class FileToOpen(Enum):
     """A file to open: the title of its dialog, and which files it lists."""
 
     TARGET = mark("Open target"), mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
@@ -32,7 +32,7 @@ class Opened(Enum):
 class FileDialogs(Protocol):
     """Asks the user for files; None means that the user has cancelled."""
 
-    def open(self, wanted: Opened) -> Path | None:
+    def open(self, wanted: FileToOpen) -> Path | None:
         """A file to open."""
 
     def save(self, proposal: str) -> Path | None:
@@ -55,7 +55,7 @@ class SystemFileDialogs:
         self._window = window
         self._folder = ""
 
-    def open(self, wanted: Opened) -> Path | None:
+    def open(self, wanted: FileToOpen) -> Path | None:
         title, shown = wanted.value
         name, _ = QFileDialog.getOpenFileName(self._window, tr(title), self._folder, tr(shown))
         return self._remembered(name)

@@ -133,9 +133,11 @@ class Command:
     switch: QAction | None = None
 
     @classmethod
-    def switching(cls, menu: str, id: str, text: str, tip: str, switch: QAction, *shown: Any, **more: Any) -> Command:
+    def switching(
+        cls, menu: str, id: str, text: str, tip: str, switch: QAction, keys: str = "", icon: str = "", **more: Any
+    ) -> Command:
         """Return the command that a switch of a panel is."""
-        return cls(menu, id, text, tip, switch.trigger, *shown, switch=switch, **more)
+        return cls(menu, id, text, tip, switch.trigger, keys, icon, switch=switch, **more)
 
     @property
     def shortcuts(self) -> tuple[str, ...]:

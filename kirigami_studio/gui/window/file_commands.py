@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_dialogs import FileDialogs, Opened
+from kirigami_studio.gui.files.file_dialogs import FileDialogs, FileToOpen
 from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.session.command import Command
@@ -51,24 +51,24 @@ class FileCommands(QObject):
         self._unsaved.guard(OTHER_PROJECT, self._choose_project)
 
     def _choose_project(self) -> None:
-        self._ask_for(Opened.PROJECT, self._services.project.open)
+        self._ask_for(FileToOpen.PROJECT, self._services.project.open)
 
-    def _ask_for(self, wanted: Opened, take: Callable[[Path], None]) -> None:
+    def _ask_for(self, wanted: FileToOpen, take: Callable[[Path], None]) -> None:
         path = self._ask.open(wanted)
         if path is not None:
             take(path)
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""
-        self._ask_for(Opened.TARGET, lambda path: self._services.targeting.open(str(path)))
+        self._ask_for(FileToOpen.TARGET, lambda path: self._services.targeting.open(str(path)))
 
     def ask_start(self) -> None:
         """Read a file of the user's choice as the start outline."""
-        self._ask_for(Opened.START, lambda path: self._services.start.open(str(path)))
+        self._ask_for(FileToOpen.START, lambda path: self._services.start.open(str(path)))
 
     def ask_second(self) -> None:
         """Read a file of the user's choice as the second target."""
-        self._ask_for(Opened.TARGET, lambda path: self._services.second.open(str(path)))
+        self._ask_for(FileToOpen.TARGET, lambda path: self._services.second.open(str(path)))
 
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
@@ -83,7 +83,11 @@ class FileCommands(QObject):
 
     def open_sample(self) -> None:
         """Open the bundled project; it is saved elsewhere."""
-        self._unsaved.guard(SAMPLE, lambda: self._services.project.open(resource("examples", "heart.kiri")))
+        self._unsaved.guard(SAMPLE, self._open_sample)
+
+    def _open_sample(self) -> None:
+        # a method, so that two questions about it are equal, and the second is not asked beside the first
+        self._services.project.open(resource("examples", "heart.kiri"))
 
     def open_pair(self, path: Path) -> None:
         """Open one of the bundled pairs; it is saved elsewhere."""
@@ -125,11 +129,11 @@ class FileCommands(QObject):
 
     def ask_artwork(self) -> None:
         """Lay a picture of the user's choice on the sheet."""
-        self._ask_for(Opened.ARTWORK, self._services.artwork.open)
+        self._ask_for(FileToOpen.ARTWORK, self._services.artwork.open)
 
     def ask_second_artwork(self) -> None:
         """Let a second picture of the user's choice share the sheet."""
-        self._ask_for(Opened.ARTWORK, self._services.artwork.open_second)
+        self._ask_for(FileToOpen.ARTWORK, self._services.artwork.open_second)
 
     def export_artwork(self) -> None:
         """Write the printed sheet into a folder of the user's choice."""

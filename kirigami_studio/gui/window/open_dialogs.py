@@ -140,7 +140,7 @@ class Dialogs(QObject):
 
         if self.start_board is None:
             self.start_board = StartBoard(self._window)
-            self.start_board.taken.connect(self._services.start.draw)
+            self.start_board.taken.connect(self._services.start.take)
             self.start_board.check_wanted.connect(self._services.start.check)
             self._services.start.checked.connect(self.start_board.show_check)
             self._appearance.colour(self.start_board)

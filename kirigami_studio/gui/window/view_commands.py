@@ -73,7 +73,9 @@ def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
 
 def _overlays(stage: StagePanel) -> tuple[Command, ...]:
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
-        return Command.switching(tr("&View"), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap)
+        return Command.switching(
+            tr("&View"), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap=gap
+        )
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")

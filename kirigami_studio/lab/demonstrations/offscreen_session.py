@@ -19,7 +19,7 @@ from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
-from kirigami_studio.gui.files.file_dialogs import Opened
+from kirigami_studio.gui.files.file_dialogs import FileToOpen
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
@@ -43,8 +43,8 @@ class PresetFiles:
     def __init__(self, out: Path) -> None:
         self._out = out
 
-    def open(self, wanted: Opened) -> Path | None:
-        return self._out / "session.kiri" if wanted is Opened.PROJECT else None
+    def open(self, wanted: FileToOpen) -> Path | None:
+        return self._out / "session.kiri" if wanted is FileToOpen.PROJECT else None
 
     def save(self, proposal: str) -> Path | None:
         return self._out / "session.kiri"
