@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.material import Material, default_material
 from kirigami_studio.gui.gallery import cards as card_list
-from kirigami_studio.gui.gallery import table_card
+from kirigami_studio.gui.gallery import design_table
 from kirigami_studio.gui.gallery.all_designs import AllDesigns
 from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VERDICT_ROLE
@@ -194,7 +194,7 @@ def test_that_the_smallest_feature_is_ringed_where_it_is_too_thin(designs: Docum
     qtbot.addWidget(view)
     candidate, target = designs.candidates[0], designs.target
     design = PosedDesign(deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi)
-    size = table_card.TableCards(view).size_for(430)
+    size = design_table.TableCards(view).size_for(430)
     pictures = [
         states_pixmap(design, target, size, 1.0, LIGHT, as_cut=True, ringed=ringed).toImage()
         for ringed in (False, True)
@@ -207,14 +207,14 @@ def test_that_the_smallest_feature_is_ringed_where_it_is_too_thin(designs: Docum
 def test_that_pictures_wait_for_their_turn(designed: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[int] = []
     turns: list[None] = []
-    draw = table_card.states_pixmap
+    draw = design_table.states_pixmap
 
     def counted(*arguments: object, **options: object) -> object:
         drawn.append(len(turns))
         return draw(*arguments, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(card_list, "PAINT_SECONDS", 0.0)
-    monkeypatch.setattr(table_card, "states_pixmap", counted)
+    monkeypatch.setattr(design_table, "states_pixmap", counted)
     designed.gallery.bar.filters.grouped.setChecked(False)
     designed.presenters.all_designs.show(True)
     page = designed.presenters.all_designs.page

@@ -27,7 +27,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.pose_tool import PoseTool
 from kirigami_studio.gui.target.rulers import RULER, Rulers
-from kirigami_studio.gui.target.shape_tools import FigureTool, Freehand, Pen, TextTool
+from kirigami_studio.gui.target.shape_tools import Freehand, Pen, figure_tool, text_tool
 from kirigami_studio.gui.target.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.widgets.file_drops import FileDrops
@@ -414,11 +414,11 @@ def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
         Tool.POSE: PoseTool(context),
         Tool.FREEHAND: Freehand(context),
         Tool.POLYGON: Pen(context),
-        Tool.RECTANGLE: FigureTool(context, Figure.RECTANGLE),
-        Tool.ELLIPSE: FigureTool(context, Figure.ELLIPSE),
-        Tool.REGULAR: FigureTool(context, Figure.REGULAR),
-        Tool.STAR: FigureTool(context, Figure.STAR),
-        Tool.TEXT: TextTool(context),
+        Tool.RECTANGLE: figure_tool(context, Figure.RECTANGLE),
+        Tool.ELLIPSE: figure_tool(context, Figure.ELLIPSE),
+        Tool.REGULAR: figure_tool(context, Figure.REGULAR),
+        Tool.STAR: figure_tool(context, Figure.STAR),
+        Tool.TEXT: text_tool(context),
     }
 
 
