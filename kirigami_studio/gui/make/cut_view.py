@@ -33,6 +33,7 @@ from kirigami_studio.gui.widgets.legends import (
     paint_legend,
     paint_scale_bar,
 )
+from kirigami_studio.gui.widgets.paths import blank, painter_on
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 #: Layer names for the legend.
@@ -171,11 +172,8 @@ class CutView(Canvas):
         ratio = self.devicePixelRatioF()
         key = (connectors, transform, self.selected, self.palette_.name, self.width(), self.height(), ratio)
         if self._markers is None or self._markers[0] != key:
-            picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
-            picture.setDevicePixelRatio(ratio)
-            picture.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(picture)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            picture = blank(self.size(), ratio)
+            painter = painter_on(picture)
             paint_connectors(painter, connectors, transform, self.palette_, self.selected)
             painter.end()
             self._markers = (key, picture)

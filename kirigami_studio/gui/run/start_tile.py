@@ -7,14 +7,14 @@ from functools import cache, partial
 
 import numpy as np
 from PySide6.QtCore import QPoint, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QPixmap, QResizeEvent
+from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
-from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -154,11 +154,8 @@ class StartTile(QAbstractButton):
     def _draw_icons(self) -> None:
         ratio = self.devicePixelRatioF()
         for name, _, _ in STARTS:
-            picture = QPixmap(round(MENU_EDGE * ratio), round(MENU_EDGE * ratio))
-            picture.setDevicePixelRatio(ratio)
-            picture.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(picture)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            picture = blank(QSize(MENU_EDGE, MENU_EDGE), ratio)
+            painter = painter_on(picture)
             self._paint_shape(painter, QRectF(0, 0, MENU_EDGE, MENU_EDGE), listed_start(name), 2.0)
             painter.end()
             self.entries[name].setIcon(QIcon(picture))
@@ -193,8 +190,7 @@ class StartTile(QAbstractButton):
             super().keyPressEvent(event)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         palette, lit = self._palette, self.hasFocus() or self.underMouse() or self.drops.here
         colour, width = palette.accent if lit else palette.border, 2.0 if self.drops.here else 1.0
         ink(painter, colour, width, fill=palette.canvas)

@@ -14,7 +14,16 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.gui.widgets.paths import DOZEN, ink, line_path, paths_of_lines, paths_of_quads, round_pen
+from kirigami_studio.gui.widgets.paths import (
+    DOZEN,
+    blank,
+    ink,
+    line_path,
+    painter_on,
+    paths_of_lines,
+    paths_of_quads,
+    round_pen,
+)
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -152,8 +161,8 @@ def candidate_pixmap(
     design: PosedDesign, target: Outline | None, size: QSize, ratio: float, palette: Palette
 ) -> QPixmap:
     """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat."""
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     width, height = TARGET_SHARE * size.width(), float(size.height())
     paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
     paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
@@ -174,8 +183,8 @@ def states_pixmap(
 
     ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck.
     """
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     angles = (math.pi, 0.5 * (math.pi + design.phi_target), design.phi_target)
     upright = PosedDesign(design.deployment, Similarity(design.pose.scale), math.pi, design.trim)
     poses = (upright if as_cut else design, design, design)
@@ -218,22 +227,9 @@ def target_pixmap(
     target: Outline, size: QSize, ratio: float, palette: Palette, margin: float = MARGIN, line: float = 2.0
 ) -> QPixmap:
     """Return a target's picture for lists; ``size``, ``margin`` and width of the ``line`` in logical pixels."""
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), margin)
     paint_target_shape(painter, transform.to_pixels(target.points), palette, line)
     painter.end()
     return pixmap
-
-
-def _blank(size: QSize, ratio: float) -> QPixmap:
-    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
-    pixmap.setDevicePixelRatio(ratio)
-    pixmap.fill(Qt.GlobalColor.transparent)
-    return pixmap
-
-
-def _painter(pixmap: QPixmap) -> QPainter:
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    return painter

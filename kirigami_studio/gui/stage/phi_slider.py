@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPainterPath
 from PySide6.QtWidgets import QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.paths import ink, painter_on
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Slider steps per degree.
@@ -196,8 +196,7 @@ class PhiSlider(QSlider):
     # drawing -------------------------------------------------------------------------------------------------------
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         self._paint_track(painter)
         self._paint_marks(painter)
         x = self._x(self.phi)

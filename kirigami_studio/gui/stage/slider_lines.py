@@ -15,7 +15,7 @@ from kirigami_studio.gui.stage.as_cut import AsCutState
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.layouts import row
-from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.paths import ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -110,8 +110,7 @@ class EndButton(QAbstractButton):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         if self._outline is None:
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         if self.hasFocus() or self.underMouse():
             ink(painter, self._palette.accent if self.hasFocus() else self._palette.border)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 5, 5)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.paths import area_path, ink, line_path, round_pen
+from kirigami_studio.gui.widgets.paths import area_path, blank, ink, line_path, painter_on, round_pen
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.merging import Merged
@@ -82,8 +82,7 @@ class PartView(QWidget):
         return ViewTransform.fitting(Bounds(left, bottom, right, top), QRectF(self.rect()), MARGIN)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         ink(painter, self.palette_.border, fill=self.palette_.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0)
         if self._read is None:
@@ -164,11 +163,8 @@ def paint_result(
 
 def part_pixmap(sketch: Sequence[FloatArray], closed: bool, size: QSize, ratio: float, palette: Palette) -> QPixmap:
     """A part's picture for lists, as large as it goes into ``size``, logical pixels."""
-    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
-    pixmap.setDevicePixelRatio(ratio)
-    pixmap.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     box = QRectF(0, 0, size.width(), size.height())
     low = [min(float(line[:, axis].min()) for line in sketch) for axis in (0, 1)]
     high = [max(float(line[:, axis].max()) for line in sketch) for axis in (0, 1)]

@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPe
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -183,8 +183,7 @@ class Canvas(QWidget):
         self.fit()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         self._paint_background(painter)
         self._paint_content(painter)
         painter.end()
@@ -214,11 +213,8 @@ class Canvas(QWidget):
         One row of dots is drawn and laid down as often as there are rows: a view of 1700 x 1300 has 4500 of them.
         """
         ratio = self.devicePixelRatioF()
-        picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
-        picture.setDevicePixelRatio(ratio)
-        picture.fill(Qt.GlobalColor.transparent)
-        painter = QPainter(picture)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        picture = blank(self.size(), ratio)
+        painter = painter_on(picture)
         self._paint_ground(painter)
         dots = self._row_of_dots(ratio)
         for y in range(GRID_STEP // 2 + (self.height() % GRID_STEP) // 2, self.height() - 4, GRID_STEP):
@@ -232,11 +228,8 @@ class Canvas(QWidget):
 
     def _row_of_dots(self, ratio: float) -> QPixmap:
         """The dots across the view; ``ratio`` device pixels per pixel."""
-        row = QPixmap(round(self.width() * ratio), math.ceil(DOT_ROW * ratio))
-        row.setDevicePixelRatio(ratio)
-        row.fill(Qt.GlobalColor.transparent)
-        painter = QPainter(row)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        row = blank(QSize(self.width(), DOT_ROW), ratio)
+        painter = painter_on(row)
         pen = QPen(QColor(self.palette_.grid), 2.0)
         pen.setCapStyle(Qt.PenCapStyle.RoundCap)
         painter.setPen(pen)

@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.legends import Chip
-from kirigami_studio.gui.widgets.paths import area_path
+from kirigami_studio.gui.widgets.paths import area_path, painter_on
 from kirigami_studio.gui.widgets.readable import readable_area
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -179,8 +179,7 @@ def stripes(colour: str, rising: bool, ratio: float) -> QPixmap:
     tint = QColor(colour)
     tint.setAlpha(TINT_ALPHA)
     tile.fill(tint)
-    painter = QPainter(tile)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter = painter_on(tile)
     painter.setPen(QPen(QColor(colour), 1.2 * ratio))
     for shift in (-edge, 0, edge):  # the corners of the tile belong to its neighbours' stripes
         ends = (edge, 0) if rising else (0, edge)

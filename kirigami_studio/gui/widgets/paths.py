@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QByteArray, QDataStream, Qt
-from PySide6.QtGui import QBrush, QColor, QGradient, QPainter, QPainterPath, QPen
+from PySide6.QtCore import QByteArray, QDataStream, QSize, Qt
+from PySide6.QtGui import QBrush, QColor, QGradient, QPaintDevice, QPainter, QPainterPath, QPen, QPixmap
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -32,6 +32,21 @@ ELEMENT = np.dtype([("kind", ">i4"), ("x", ">f8"), ("y", ">f8")])
 def round_pen(colour: str, width: float) -> QPen:
     """A pen with round ends and corners."""
     return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
+
+
+def painter_on(device: QPaintDevice) -> QPainter:
+    """Return a painter whose edges are smooth."""
+    painter = QPainter(device)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    return painter
+
+
+def blank(size: QSize, ratio: float) -> QPixmap:
+    """Return a transparent picture of a size in logical pixels, with ``ratio`` device pixels to each."""
+    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    return pixmap
 
 
 def ink(
