@@ -383,7 +383,7 @@ class PointTool(SketchTool):
             return
         if self._dragged is not None:
             paint_proposal(painter, transform.to_pixels(anchors.ring), palette)
-        self._paint_handles(painter, transform, palette)
+        self._paint_handles(painter, transform, palette, anchors)
         images = self._images(anchors).keys() - self.selected
         for index, (x, y) in enumerate(transform.to_pixels(anchors.places).tolist()):
             fill = palette.accent if index in self.selected else palette.canvas
@@ -396,9 +396,8 @@ class PointTool(SketchTool):
         if self._field is not None:
             paint_field(painter, self._field[0].pixel, self._field[1].pixel, palette)
 
-    def _paint_handles(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
-        anchors = self.anchors
-        for index in self.selected if anchors is not None else ():
+    def _paint_handles(self, painter: QPainter, transform: ViewTransform, palette: Palette, anchors: Anchors) -> None:
+        for index in self.selected:
             start = QPointF(*transform.to_pixels(anchors.places[index]).tolist())
             for offset in anchors.handles[index]:
                 if np.any(offset):
