@@ -291,7 +291,6 @@ class RimHandles(QObject):
     hovered = Signal(object)  #: int | None
     selection_changed = Signal()
     grasped = Signal(int, tuple, float)  #: edge cut; place in the world; angle (radians)
-    pulled = Signal(tuple)  #: place in the world
     nudged = Signal(int, float)  #: edge cut; change of its position, unit cells
 
     def __init__(self, parent: QObject) -> None:

@@ -20,6 +20,7 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader, AsCutState
 from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import Palette
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.studio.making import gripping
 
 if TYPE_CHECKING:
@@ -164,24 +165,18 @@ def _middles(design: PosedDesign, panels: np.ndarray[tuple[int], np.dtype[np.int
     return middles
 
 
-def paint_grips(painter: QPainter, places: GripPlaces, way: FloatArray, palette: Palette) -> None:
-    """Draw pins and arrows.
-
-    Parameters
-    ----------
-    places : GripPlaces
-        In pixels.
-    way : (K, 2) float, pixels
-        As ``places.way``; the longest one gets the longest arrow.
-    """
+def paint_grips(painter: QPainter, places: GripPlaces, transform: ViewTransform, palette: Palette) -> None:
+    """Draw pins and arrows; the longest way gets the longest arrow."""
+    held, moved = transform.to_pixels(places.held), transform.to_pixels(places.moved)
+    way = places.way * (transform.scale, -transform.scale)  # pixels count downwards
     lengths = np.linalg.norm(way, axis=1)
     longest = float(lengths.max(initial=0.0))
-    for start, towards, length in zip(places.moved, way, lengths.tolist(), strict=True):
+    for start, towards, length in zip(moved, way, lengths.tolist(), strict=True):
         if longest > 0.0 and length > 1e-6 * longest:
             reach = max(SHORTEST, LONGEST * length / longest)
             _paint_arrow(painter, start, start + reach / length * towards, palette)
-    _paint_pins(painter, places.moved, palette.good, palette)
-    _paint_pins(painter, places.held, palette.text, palette)
+    _paint_pins(painter, moved, palette.good, palette)
+    _paint_pins(painter, held, palette.text, palette)
 
 
 def _paint_arrow(painter: QPainter, start: FloatArray, tip: FloatArray, palette: Palette) -> None:

@@ -285,9 +285,13 @@ class HandEditor(QObject):
 
     @_after_arrival
     def drag(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the void follows."""
+        """The pointer has moved to a place in the world; what is held follows."""
         if self._drag is not None:
             self._change({self._drag.void: self._drag.ratio_at(place)})
+        elif self._mouth is not None:
+            self._place_mouth(self._mouth.mouth, self._mouth.position_at(place))
+        else:
+            self._outline.move(place)
 
     def _free(self, voids: frozenset[Void]) -> list[Void]:
         """Those that may be changed; when none may, the status line says why."""
@@ -321,12 +325,6 @@ class HandEditor(QObject):
         design = self._design()
         if design is not None:
             self._mouth = MouthDrag.of(design, mouth, place, phi)
-
-    @_after_arrival
-    def drag_mouth(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the edge cut follows."""
-        if self._mouth is not None:
-            self._place_mouth(self._mouth.mouth, self._mouth.position_at(place))
 
     @_after_arrival
     def nudge_mouth(self, mouth: int, step: float) -> None:
@@ -385,11 +383,6 @@ class HandEditor(QObject):
         self._dragged_from = document.candidate
         self._outline.begin(DragStart(design, phi, vertex, locked))
         self._session.set_status(tr("Preparing the outline …"))
-
-    @_after_arrival
-    def move_vertex(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the newest place wins."""
-        self._outline.move(place)
 
     def _follow(self, found: DragStep) -> None:
         """The outline has come a step nearer to the pointer."""

@@ -30,7 +30,7 @@ from kirigami_studio.gui.stage.fault_items import (
     paint_fault,
 )
 from kirigami_studio.gui.stage.gripping import UNKNOWN as GRIPS_UNKNOWN
-from kirigami_studio.gui.stage.gripping import GripPlaces, GripState, grip_places, paint_grips
+from kirigami_studio.gui.stage.gripping import GripState, grip_places, paint_grips
 from kirigami_studio.gui.stage.layout_items import paint_cut_panels, paint_panels, turning_left
 from kirigami_studio.gui.stage.layout_labels import (
     SmallPart,
@@ -482,9 +482,7 @@ class LayoutView(Canvas):
         if found is None or design is None or cut is None:
             return
         places = grip_places(design, found.held, found.moved, self.phi, cut.as_cut.reached)
-        shown = GripPlaces(transform.to_pixels(places.held), transform.to_pixels(places.moved), places.way)
-        # Pixels count downwards.
-        paint_grips(painter, shown, places.way * (transform.scale, -transform.scale), self.palette_)
+        paint_grips(painter, places, transform, self.palette_)
 
     def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Numbers of panels and voids where they fit, and sizes of the smallest parts."""

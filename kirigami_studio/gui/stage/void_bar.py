@@ -175,18 +175,17 @@ class VoidPresenter(QObject):
         gestures.hovered.connect(self._describe)
         gestures.selection_changed.connect(self.refresh)
         gestures.nudged.connect(hand.nudge)
-        for begun in (gestures.pull_begun, gestures.vertex_begun):
+        for begun, begin in (
+            (gestures.pull_begun, hand.begin_drag),
+            (gestures.vertex_begun, hand.begin_vertex),
+            (gestures.rim.grasped, hand.begin_mouth),
+        ):
             begun.connect(self._pause)
-        gestures.pull_begun.connect(hand.begin_drag)
-        gestures.pulled.connect(hand.drag)
+            begun.connect(begin)
+        gestures.dragged.connect(hand.drag)
         gestures.rim.hovered.connect(self._describe_mouth)
         gestures.rim.selection_changed.connect(self.refresh)
-        gestures.rim.grasped.connect(self._pause)
-        gestures.rim.grasped.connect(hand.begin_mouth)
-        gestures.rim.pulled.connect(hand.drag_mouth)
         gestures.rim.nudged.connect(hand.nudge_mouth)
-        gestures.vertex_begun.connect(hand.begin_vertex)
-        gestures.vertex_moved.connect(hand.move_vertex)
         gestures.drag_ended.connect(hand.release)
         gestures.drag_cancelled.connect(hand.cancel)
         gestures.lock_wanted.connect(hand.lock)

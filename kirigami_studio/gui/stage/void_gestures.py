@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal, SignalInstance
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
 from kirigami_studio.gui.stage.edge_cuts import ARROWS, RimHandles
@@ -55,9 +55,8 @@ class VoidGestures(QObject):
     selection_changed = Signal(frozenset)  #: of Void
     nudged = Signal(frozenset, float)  #: of Void; change of log10 of their ratios
     pull_begun = Signal(tuple, tuple, float)  #: Void; place in the world; angle (radians)
-    pulled = Signal(tuple)  #: place in the world
     vertex_begun = Signal(int, float)  #: vertex of the outline; angle (radians)
-    vertex_moved = Signal(tuple)  #: place in the world
+    dragged = Signal(tuple)  #: place in the world that a void, a vertex or an edge cut is dragged to
     drag_ended = Signal()  #: of a void, a vertex or an edge cut
     drag_cancelled = Signal()  #: Esc while a void, a vertex or an edge cut is held
     lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
@@ -76,7 +75,6 @@ class VoidGestures(QObject):
         self._pointer = QPointF()
         self._pressed: QPointF | None = None
         self._grasp: Callable[[float], None] | None = None  # begins, at an angle, the drag that a press may become
-        self._moves: SignalInstance = self.pulled  # emitted with each place of the drag
         self.dragging = False  #: whether a void, a vertex or an edge cut is held
         self._band: QRectF | None = None
         canvas.setMouseTracking(True)
@@ -216,13 +214,11 @@ class VoidGestures(QObject):
             self.select(frozenset())
             self.rim.select(mouth)
             self._grasp = partial(self.rim.grasped.emit, mouth, shapes.transform.to_world(place))
-            self._moves = self.rim.pulled
         elif vertex is not None:
-            self._grasp, self._moves = partial(self.vertex_begun.emit, vertex), self.vertex_moved
+            self._grasp = partial(self.vertex_begun.emit, vertex)
         elif void is not None:
             self.select(frozenset({void}))
             self._grasp = partial(self.pull_begun.emit, void, shapes.transform.to_world(place))
-            self._moves = self.pulled
         else:
             return False
         self._pressed = place
@@ -243,7 +239,7 @@ class VoidGestures(QObject):
             self.dragging = True
             self._grasp(shapes.phi)
         if self.dragging and shapes is not None:
-            self._moves.emit(shapes.transform.to_world(place))
+            self.dragged.emit(shapes.transform.to_world(place))
         self._canvas.update()
         return True
 

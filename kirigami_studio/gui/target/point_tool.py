@@ -7,14 +7,14 @@ from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
+from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
 from kirigami_studio.gui.widgets.paths import ink
-from kirigami_studio.gui.widgets.target_items import paint_field, paint_label, paint_proposal
+from kirigami_studio.gui.widgets.target_items import paint_field, paint_handle, paint_label, paint_proposal
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
@@ -34,8 +34,8 @@ KINDS = {
     Qt.Key.Key_Y: Kind.SYMMETRIC,
     Qt.Key.Key_A: Kind.AUTO,
 }
-#: Half the side of a point's mark and the radius of a handle's end, pixels.
-MARK, KNOB = 4.5, 3.5
+#: Half the side of a point's mark, pixels.
+MARK = 4.5
 
 
 class Grip(Enum):
@@ -402,10 +402,7 @@ class PointTool(SketchTool):
             for offset in anchors.handles[index]:
                 if np.any(offset):
                     end = QPointF(*transform.to_pixels(anchors.places[index] + offset).tolist())
-                    painter.setPen(QPen(QColor(palette.muted), 1.2))
-                    painter.drawLine(start, end)
-                    ink(painter, palette.accent, 1.4, fill=palette.canvas)
-                    painter.drawEllipse(end, KNOB, KNOB)
+                    paint_handle(painter, start, end, palette)
 
 
 def _refusal(error: TargetError) -> Callable[[], Placed]:

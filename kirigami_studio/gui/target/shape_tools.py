@@ -83,7 +83,7 @@ class Freehand(SketchTool):
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if self._pointers:
             points = transform.to_pixels(np.array([pointer.free for pointer in self._pointers]))
-            paint_sketch(painter, points, palette, corners=False)
+            paint_sketch(painter, points, palette)
             _paint_images(painter, transform, palette, self.context, [pointer.free for pointer in self._pointers])
 
 
@@ -228,7 +228,7 @@ class Pen(SketchTool):
             there = self._points[0].place if self._at_first(self._pointer) else self._placed(self._pointer)
             points.append(PenPoint(self._pointer, there))
         line = self._line(points)
-        paint_sketch(painter, transform.to_pixels(line), palette, corners=False)
+        paint_sketch(painter, transform.to_pixels(line), palette)
         closing = self._closes or (self._pointer is not None and self._at_first(self._pointer))
         shown = len(self._points) - 1 if self._pulled is None else self._pulled
         handles = [
@@ -356,4 +356,4 @@ def _paint_images(
 ) -> None:
     """Draw what the mirror makes of an unfinished line."""
     for image in context.mirror.all_images(np.array(places)):
-        paint_sketch(painter, transform.to_pixels(image), palette, corners=False)
+        paint_sketch(painter, transform.to_pixels(image), palette)

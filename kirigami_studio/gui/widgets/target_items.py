@@ -19,6 +19,8 @@ from kirigami_studio.outlines.mirroring import Axis, Mirror
 
 #: Dashes and gaps of a second target's outline, in widths of the line.
 DASHES = (3.5, 3.0)
+#: Radius of the end of a handle, pixels.
+KNOB = 3.5
 
 
 def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
@@ -55,16 +57,18 @@ def paint_target_line(
     painter.drawPath(path)
 
 
-def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette, corners: bool) -> None:
-    """Draw a stroke that is still being made: (L, 2) pixels, with handles on the corners of a polygon."""
+def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette) -> None:
+    """Draw a stroke that is still being made: (L, 2) pixels."""
     ink(painter, round_pen(palette.accent, 2.0))
     painter.drawPath(line_path(points, closed=False))
-    if not corners:
-        return
-    painter.setPen(round_pen(palette.accent, 1.5))
-    for index, (x, y) in enumerate(points.tolist()):
-        painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
-        painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
+
+
+def paint_handle(painter: QPainter, start: QPointF, end: QPointF, palette: Palette) -> None:
+    """Draw a handle that bends a line, from its point to the knob at its end, pixels."""
+    painter.setPen(QPen(QColor(palette.muted), 1.2))
+    painter.drawLine(start, end)
+    ink(painter, palette.accent, 1.4, fill=palette.canvas)
+    painter.drawEllipse(end, KNOB, KNOB)
 
 
 def paint_pen_points(
@@ -76,10 +80,7 @@ def paint_pen_points(
     """
     x, y = places[shown].tolist()
     for end_x, end_y in handles.tolist():
-        painter.setPen(QPen(QColor(palette.muted), 1.2))
-        painter.drawLine(QPointF(x, y), QPointF(end_x, end_y))
-        ink(painter, palette.accent, 1.4, fill=palette.canvas)
-        painter.drawEllipse(QPointF(end_x, end_y), 3.5, 3.5)
+        paint_handle(painter, QPointF(x, y), QPointF(end_x, end_y), palette)
     painter.setPen(round_pen(palette.accent, 1.5))
     for index, (x, y) in enumerate(places.tolist()):
         painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
@@ -89,17 +90,13 @@ def paint_pen_points(
 
 def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> None:
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
-    fill = QColor(palette.accent)
-    fill.setAlpha(36)
-    ink(painter, round_pen(palette.accent, 2.0), fill=fill)
+    ink(painter, round_pen(palette.accent, 2.0), fill=palette.accent, alpha=36)
     painter.drawPath(line_path(points, closed=True))
 
 
 def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palette) -> None:
     """Draw the box that selects what lies in it, between two corners in pixels."""
-    fill = QColor(palette.accent)
-    fill.setAlpha(28)
-    ink(painter, palette.accent, 1.0, dashed=True, fill=fill)
+    ink(painter, palette.accent, 1.0, dashed=True, fill=palette.accent, alpha=28)
     painter.drawRect(QRectF(one, other).normalized())
 
 
