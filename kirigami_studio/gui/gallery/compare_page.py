@@ -42,32 +42,15 @@ GAP, BETWEEN = 10, 24
 
 @dataclass(frozen=True, slots=True)
 class ComparedDesign:
-    """A design beside others, and all that is known of it.
-
-    Attributes
-    ----------
-    entry : Entry
-    name : str
-        What it is called.
-    width_mm : float
-        Of its flat sheet.
-    chosen : bool
-        Whether it is the one on the stage.
-    as_cut : AsCut or None
-        How it does as cut, as far as that is known.
-    simulated : bool
-        Whether that was simulated, not estimated.
-    seconds : float or None
-        That cutting it takes, as far as that is known.
-    """
+    """A design beside others, and all that is known of it."""
 
     entry: Entry
-    name: str
-    width_mm: float
-    chosen: bool = False
-    as_cut: AsCut | None = None
-    simulated: bool = False
-    seconds: float | None = None
+    name: str  #: what it is called
+    width_mm: float  #: of its flat sheet
+    chosen: bool = False  #: whether it is the one on the stage
+    as_cut: AsCut | None = None  #: how it does as cut, as far as that is known
+    simulated: bool = False  #: whether that was simulated, not estimated
+    seconds: float | None = None  #: that cutting it takes, as far as that is known
 
 
 #: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.

@@ -122,26 +122,13 @@ class Generation(QObject):
 
 @dataclass(frozen=True, slots=True)
 class RunPlan:
-    """A run that is to start.
-
-    Attributes
-    ----------
-    request : Request
-    kept : tuple of Candidate
-        Designs of the document that stay in sight, best first.
-    joins : bool
-        Whether what it brings joins those there are, and the choice stays.
-    seed : int or None
-        Seed that the settings show afterwards.
-    status : str
-        What the status line says at its start.
-    """
+    """A run that is to start."""
 
     request: Request
-    kept: tuple[Candidate, ...]
-    joins: bool
-    seed: int | None
-    status: str
+    kept: tuple[Candidate, ...]  #: designs of the document that stay in sight, best first
+    joins: bool  #: whether what it brings joins those there are, and the choice stays
+    seed: int | None  #: seed that the settings show afterwards
+    status: str  #: what the status line says at its start
 
 
 class RunPlanner:

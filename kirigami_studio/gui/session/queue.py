@@ -28,24 +28,12 @@ log: logging.Logger = topic("gui.jobs")
 
 @dataclass(slots=True, eq=False)
 class Job:
-    """One piece of work.
+    """One piece of work."""
 
-    Attributes
-    ----------
-    number : int
-        Unique in the process.
-    name : str
-        As it follows "while": "reading heart.svg".
-    steps : callable
-        Gets the cancel flag and returns the generator that does the work.
-    flag : threading.Event
-        Set to ask the job to stop.
-    """
-
-    number: int
-    name: str
-    steps: Steps[object]
-    flag: threading.Event = field(default_factory=threading.Event)
+    number: int  #: unique in the process
+    name: str  #: as it follows "while": "reading heart.svg"
+    steps: Steps[object]  #: gets the cancel flag and returns the generator that does the work
+    flag: threading.Event = field(default_factory=threading.Event)  #: set to ask the job to stop
     iterator: Iterator[object] | None = None
 
 

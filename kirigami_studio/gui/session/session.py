@@ -36,23 +36,12 @@ CAPACITY = 2048
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Entry:
-    """One card: a candidate with its decoded, posed design.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    design : PosedDesign
-        With its final field, pose and angle: trimmed if the candidate is.
-    rise : float
-        What polishing has added to its sIoU in the run that goes on.
-    kept : bool
-        Whether it was there before the run that goes on.
-    """
+    """One card: a candidate with its decoded, posed design."""
 
     candidate: Candidate
-    design: PosedDesign
-    rise: float = 0.0
-    kept: bool = False
+    design: PosedDesign  #: with its final field, pose and angle: trimmed if the candidate is
+    rise: float = 0.0  #: what polishing has added to its sIoU in the run that goes on
+    kept: bool = False  #: whether it was there before the run that goes on
 
 
 def same_sample(one: Candidate, other: Candidate) -> bool:

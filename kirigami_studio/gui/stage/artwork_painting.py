@@ -29,23 +29,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShownArtwork:
-    """The printed flat sheet of one design.
-
-    Attributes
-    ----------
-    artwork : Artwork
-    sheet : PrintedSheet
-    image : QImage
-        Nothing where nothing is printed.
-    corner : complex, mm
-        Where its upper left corner lies on the flat sheet; y up.
-    dots_per_mm : float
-    """
+    """The printed flat sheet of one design."""
 
     artwork: Artwork
     sheet: PrintedSheet
-    image: QImage
-    corner: complex
+    image: QImage  #: nothing where nothing is printed
+    corner: complex  #: mm; where its upper left corner lies on the flat sheet; y up
     dots_per_mm: float
 
 

@@ -30,31 +30,18 @@ AT_ONCE = 4
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One design at one angle.
+    """One design at one angle."""
 
-    Attributes
-    ----------
-    phi : float, radians
-    siou, iou : float, 0..1
-        As scored, in the pose that suits this angle best; not a number without a target.
-    area : float, unit cells squared
-        Inside the outline, voids included.
-    porosity : float, 0..1
-        Share of that area that is voids.
-    width, height : float, unit cells
-        Of the box around the sheet as it lies on the screen.
-    gap : float, unit cells
-        Narrowest bottleneck between parts of the outline; 0 in contact, not a number without any.
-    """
-
-    phi: float
+    phi: float  #: radians
+    #: siou, iou: 0..1; as scored, in the pose that suits this angle best; not a number without a target.
     siou: float
     iou: float
-    area: float
-    porosity: float
+    area: float  #: unit cells squared; inside the outline, voids included
+    porosity: float  #: 0..1; share of that area that is voids
+    #: width, height: unit cells; of the box around the sheet as it lies on the screen.
     width: float
     height: float
-    gap: float
+    gap: float  #: unit cells; narrowest bottleneck between parts of the outline; 0 in contact, not a number without any
 
 
 def plotting(design: PosedDesign, target: Outline | None, cancel: Cancel) -> Iterator[tuple[Reading, ...]]:

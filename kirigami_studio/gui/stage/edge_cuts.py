@@ -57,15 +57,10 @@ def outward(sheet: Sheet) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RimShapes:
-    """Handles of one design at one angle, in pixels.
+    """Handles of one design at one angle, in pixels."""
 
-    Attributes
-    ----------
-    feet, handles : (R, 2) float, pixels
-        Where the edge cuts are, and the handles beside them; in the order of
-        :class:`~kirigami_studio.lattice.sheet.RimTable`.
-    """
-
+    #: feet, handles: (R, 2), pixels; where the edge cuts are, and the handles beside them; in the order of
+    #: :class:`~kirigami_studio.lattice.sheet.RimTable`.
     feet: FloatArray
     handles: FloatArray
 
@@ -88,26 +83,14 @@ class RimShapes:
 
 @dataclass(frozen=True, slots=True)
 class MouthFacts:
-    """One edge cut on the sheet as it is cut.
+    """One edge cut on the sheet as it is cut."""
 
-    Attributes
-    ----------
-    side : int
-        0 top, 1 right, 2 bottom, 3 left.
-    number, count : int
-        Its number on that side from 1, from the left or from the top, and how many there are.
-    position : float, unit cells
-        From the left or upper corner of that side.
-    offset : float, unit cells
-        From its place on an even rim.
-    position_mm : float, mm
-    """
-
-    side: int
+    side: int  #: 0 top, 1 right, 2 bottom, 3 left
+    #: number, count: its number on that side from 1, from the left or from the top, and how many there are.
     number: int
     count: int
-    position: float
-    offset: float
+    position: float  #: unit cells; from the left or upper corner of that side
+    offset: float  #: unit cells; from its place on an even rim
     position_mm: float
 
     @classmethod
@@ -236,22 +219,12 @@ class MouthDrag:
     """An edge cut that is being dragged.
 
     All nodes are linear in its position, so the cut stays under the pointer.
-
-    Attributes
-    ----------
-    mouth : int
-    place : (x, y) float, world
-        Where the drag began.
-    position : float, unit cells
-        Of the cut at that time.
-    motion : (2,) float, world
-        How far it moves when its position grows by one cell.
     """
 
     mouth: int
-    place: tuple[float, float]
-    position: float
-    motion: FloatArray
+    place: tuple[float, float]  #: (x, y), world; where the drag began
+    position: float  #: unit cells; of the cut at that time
+    motion: FloatArray  #: (2,), world; how far it moves when its position grows by one cell
 
     @classmethod
     def of(cls, design: PosedDesign, mouth: int, place: tuple[float, float], phi: float) -> MouthDrag:

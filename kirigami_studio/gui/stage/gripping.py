@@ -33,23 +33,12 @@ CAPACITY = 32
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GripState:
-    """What is known of the grips of the design on the stage.
-
-    Attributes
-    ----------
-    found : Gripping or None
-    sheet : SimulatedSheet or None
-        That they were found for.
-    busy : bool
-        Whether they are looked for.
-    problem : str
-        Why there are none, "" if that is not so.
-    """
+    """What is known of the grips of the design on the stage."""
 
     found: Gripping | None = None
-    sheet: SimulatedSheet | None = None
-    busy: bool = False
-    problem: str = ""
+    sheet: SimulatedSheet | None = None  #: that they were found for
+    busy: bool = False  #: whether they are looked for
+    problem: str = ""  #: why there are none, "" if that is not so
 
 
 UNKNOWN = GripState()
@@ -119,19 +108,12 @@ AHEAD = math.radians(3.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GripPlaces:
-    """Gripped panels at one angle.
+    """Gripped panels at one angle."""
 
-    Attributes
-    ----------
-    held, moved : (K, 2) float
-        Middles of the panels.
-    way : (K, 2) float
-        Where the moved ones go next, seen from those that are held; zeros at the end of the way.
-    """
-
+    #: held, moved: (K, 2); middles of the panels.
     held: FloatArray
     moved: FloatArray
-    way: FloatArray
+    way: FloatArray  #: (K, 2); where the moved ones go next, seen from those that are held; zeros at the end of the way
 
 
 def grip_places(

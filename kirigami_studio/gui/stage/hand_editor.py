@@ -105,25 +105,13 @@ class VoidDrag:
 
     Its corner slides along its slit with the share s = x / (1 + x), so a motion of the mouse along the slit is a
     change of s.
-
-    Attributes
-    ----------
-    void : Void
-    place : (x, y) float, world
-        Where the drag began.
-    share : float
-        s at that time.
-    motion : (2,) float, world
-        How far the dragged corner moves when s goes from 0 to 1, to first order.
-    corner : int
-        Which corner, 0..3, is dragged.
     """
 
     void: Void
-    place: tuple[float, float]
-    share: float
-    motion: FloatArray
-    corner: int
+    place: tuple[float, float]  #: (x, y), world; where the drag began
+    share: float  #: s at that time
+    motion: FloatArray  #: (2,), world; how far the dragged corner moves when s goes from 0 to 1, to first order
+    corner: int  #: which corner, 0..3, is dragged
 
     @classmethod
     def of(cls, design: PosedDesign, void: Void, place: tuple[float, float], phi: float) -> VoidDrag:

@@ -128,23 +128,12 @@ class PartKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SmallPart:
-    """An edge or a neck of one panel; panels are rigid, so it stays the same at every angle.
-
-    Attributes
-    ----------
-    kind : PartKind
-    panel : int
-        Row by row.
-    which : int
-        Number of the edge or neck in the panel.
-    size : float
-        In the unit of the corners that it was found in.
-    """
+    """An edge or a neck of one panel; panels are rigid, so it stays the same at every angle."""
 
     kind: PartKind
-    panel: int
-    which: int
-    size: float
+    panel: int  #: row by row
+    which: int  #: number of the edge or neck in the panel
+    size: float  #: in the unit of the corners that it was found in
 
     def ends(self, panels: FloatArray) -> FloatArray:
         """Both ends (2, 2) of it in panels (K, 4, 2) in any coordinates that keep angles."""

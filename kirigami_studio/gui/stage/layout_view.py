@@ -114,21 +114,11 @@ BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Over
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigidFacts:
-    """What is the same of a design at every angle, because its panels are rigid.
+    """What is the same of a design at every angle, because its panels are rigid."""
 
-    Attributes
-    ----------
-    inverted : (K,) bool
-        Panels that are inverted or collapsed.
-    small : tuple of SmallPart
-        Its smallest parts; panels that were trimmed are left out.
-    largest_opening : float, world
-        Area of the void that opens widest.
-    """
-
-    inverted: BoolArray
-    small: tuple[SmallPart, ...]
-    largest_opening: float
+    inverted: BoolArray  #: (K,); panels that are inverted or collapsed
+    small: tuple[SmallPart, ...]  #: its smallest parts; panels that were trimmed are left out
+    largest_opening: float  #: world; area of the void that opens widest
 
     @classmethod
     @lru_cache(maxsize=KEPT_FACTS)

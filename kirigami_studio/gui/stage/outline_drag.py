@@ -45,42 +45,21 @@ MAX_STALLED_STEPS = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DragStart:
-    """A vertex when its drag began.
+    """A vertex when its drag began."""
 
-    Attributes
-    ----------
-    design : PosedDesign
-        As it was shown; its pose is kept for the whole drag.
-    phi : float, radians, in [0, pi)
-        Angle that was shown.
-    vertex : int
-        Number in ``Deployment.outline(phi)``.
-    locked : (m, n) bool
-        Voids that are locked.
-    """
-
-    design: PosedDesign
-    phi: float
-    vertex: int
-    locked: BoolArray
+    design: PosedDesign  #: as it was shown; its pose is kept for the whole drag
+    phi: float  #: angle that was shown
+    vertex: int  #: number in ``Deployment.outline(phi)``
+    locked: BoolArray  #: (m, n); voids that are locked
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DragStep:
-    """The design after a step.
-
-    Attributes
-    ----------
-    design : PosedDesign
-    arrived : bool
-        Whether the vertex is where the pointer was when the step began.
-    stuck : bool
-        Whether it comes no nearer: ratio limits, locked voids or panel collisions block it.
-    """
+    """The design after a step."""
 
     design: PosedDesign
-    arrived: bool
-    stuck: bool
+    arrived: bool  #: whether the vertex is where the pointer was when the step began
+    stuck: bool  #: whether it comes no nearer: ratio limits, locked voids or panel collisions block it
 
 
 class Follower:

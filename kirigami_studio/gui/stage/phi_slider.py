@@ -277,18 +277,11 @@ class MarkKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TrackMark:
-    """An angle on the track that a click goes to.
-
-    Attributes
-    ----------
-    kind : MarkKind
-    phi : float, radians
-    words, short : str
-        Label where there is room, and where there is not.
-    """
+    """An angle on the track that a click goes to."""
 
     kind: MarkKind
-    phi: float
+    phi: float  #: radians
+    #: words, short: label where there is room, and where there is not.
     words: str
     short: str
 

@@ -367,20 +367,12 @@ def _moves_mouth(event: QKeyEvent) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class KeyStep:
-    """A walk to another void, or a change of the ratio.
+    """A walk to another void, or a change of the ratio."""
 
-    Attributes
-    ----------
-    down, right : int
-        Rows and columns to walk.
-    direction : int
-        1 for a larger ratio, -1 for a smaller one, 0 for a walk.
-    fine : bool
-    """
-
+    #: down, right: rows and columns to walk.
     down: int = 0
     right: int = 0
-    direction: int = 0
+    direction: int = 0  #: 1 for a larger ratio, -1 for a smaller one, 0 for a walk
     fine: bool = False
 
 

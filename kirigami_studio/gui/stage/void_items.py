@@ -41,25 +41,13 @@ BESIDE = QPointF(16.0, 18.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VoidShapes:
-    """One design at one angle, in pixels.
-
-    Attributes
-    ----------
-    design : PosedDesign
-    phi : float, radians
-    transform : ViewTransform
-        World -> pixels.
-    corners : (m, n, 4, 2) float, pixels
-        p0..p3 of every void.
-    vertices : (L, 2) float, pixels
-        The outline, as :meth:`PosedDesign.outline` goes round.
-    """
+    """One design at one angle, in pixels."""
 
     design: PosedDesign
-    phi: float
-    transform: ViewTransform
-    corners: FloatArray
-    vertices: FloatArray
+    phi: float  #: radians
+    transform: ViewTransform  #: world -> pixels
+    corners: FloatArray  #: (m, n, 4, 2), pixels; p0..p3 of every void
+    vertices: FloatArray  #: (L, 2), pixels; the outline, as :meth:`PosedDesign.outline` goes round
 
     @classmethod
     def of(cls, design: PosedDesign, phi: float, transform: ViewTransform) -> VoidShapes:
@@ -130,24 +118,13 @@ def steady(before: Bounds, now: Bounds) -> Bounds:
 
 @dataclass(frozen=True, slots=True)
 class VoidFacts:
-    """One void at one angle of the motion.
-
-    Attributes
-    ----------
-    void : (row, column)
-    ratio : float
-        x = |p1 - p0| / |p3 - p0|.
-    angle : float, radians
-        Interior angle at the left corner p0 (paper, Eq. 1); the one at the bottom is its supplement.
-    edges_mm : four floats, mm
-        Lengths p0p1, p1p2, p2p3, p3p0 on the sheet as it is cut.
-    locked : bool
-    """
+    """One void at one angle of the motion."""
 
     void: Void
-    ratio: float
+    ratio: float  #: x = |p1 - p0| / |p3 - p0|
+    #: radians; interior angle at the left corner p0 (paper, Eq. 1); the one at the bottom is its supplement.
     angle: float
-    edges_mm: tuple[float, float, float, float]
+    edges_mm: tuple[float, float, float, float]  #: mm; lengths p0p1, p1p2, p2p3, p3p0 on the sheet as it is cut
     locked: bool
 
     @classmethod

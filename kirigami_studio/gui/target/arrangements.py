@@ -12,33 +12,17 @@ from kirigami_studio.outlines.drawing import AlignedSide, Boolean, Drawing, Orde
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """One change of selected objects.
-
-    Attributes
-    ----------
-    id : str
-    text, tip : str
-        As in menus, and what it does.
-    make : callable
-        The drawing after it.
-    least : int
-        So many objects have to be selected.
-    key : str
-        Key sequence, or "".
-    gap : bool
-        A separator comes before it.
-    undone : str
-        As it follows the word Undo, "" for as in menus.
-    """
+    """One change of selected objects."""
 
     id: str
+    #: text, tip: as in menus, and what it does.
     text: str
     tip: str
-    make: Callable[[Drawing], Drawing]
-    least: int = 1
-    key: str = ""
-    gap: bool = False
-    undone: str = ""
+    make: Callable[[Drawing], Drawing]  #: the drawing after it
+    least: int = 1  #: so many objects have to be selected
+    key: str = ""  #: key sequence, or ""
+    gap: bool = False  #: a separator comes before it
+    undone: str = ""  #: as it follows the word Undo, "" for as in menus
 
     @property
     def gesture(self) -> str:

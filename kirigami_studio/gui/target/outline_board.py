@@ -43,21 +43,13 @@ MOST_POINTS = 200
 
 @dataclass(frozen=True, slots=True)
 class BoardWords:
-    """What a board says.
+    """What a board says."""
 
-    Attributes
-    ----------
-    title : str
-        Of the dialog.
-    empty, ready : str
-        While nothing is drawn, and of a shape that can be taken.
-    take, taken : str
-        The button that takes the shape, and what that means.
-    """
-
-    title: str
+    title: str  #: of the dialog
+    #: empty, ready: while nothing is drawn, and of a shape that can be taken.
     empty: str
     ready: str
+    #: take, taken: the button that takes the shape, and what that means.
     take: str
     taken: str
 

@@ -28,22 +28,12 @@ X, Y = 0, 1
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """A guide that is being dragged.
-
-    Attributes
-    ----------
-    axis : int
-    at : float, mm
-        Where it lies.
-    new : bool
-        Whether it comes out of a ruler.
-    shown : int
-        How often guides had been laid on the board when it was taken; more often, an undo changed them meanwhile.
-    """
+    """A guide that is being dragged."""
 
     axis: int
-    at: float
-    new: bool
+    at: float  #: mm; where it lies
+    new: bool  #: whether it comes out of a ruler
+    #: How often guides had been laid on the board when it was taken; more often, an undo changed them meanwhile.
     shown: int
 
 

@@ -103,20 +103,11 @@ def stroke_of(points: FloatArray, mirror: Mirror = PLAIN) -> Placed:
 
 @dataclass(frozen=True, slots=True)
 class PenPoint:
-    """A point that the pen has set.
+    """A point that the pen has set."""
 
-    Attributes
-    ----------
-    pointer : PointerEvent
-        Where the button went down.
-    place : (x, y) float, mm
-    into, out : (x, y) float, mm
-        From the point to its handles, towards the one before and the next; zero for a corner.
-    kind : Kind
-    """
-
-    pointer: PointerEvent
-    place: Place
+    pointer: PointerEvent  #: where the button went down
+    place: Place  #: (x, y), mm
+    #: into, out: (x, y), mm; from the point to its handles, towards the one before and the next; zero for a corner.
     into: Place = (0.0, 0.0)
     out: Place = (0.0, 0.0)
     kind: Kind = Kind.CORNER

@@ -57,45 +57,27 @@ ARROWS = {
 
 @dataclass(frozen=True, slots=True)
 class PointerEvent:
-    """Where the pointer is.
-
-    Attributes
-    ----------
-    pixel : QPointF
-    free, place : (x, y) float, mm
-        There, and at the nearest crossing of the grid when snapping holds.
-    shift, alt : bool
-        Whether these keys are held.
-    snaps : bool
-        Whether snapping holds.
-    """
+    """Where the pointer is."""
 
     pixel: QPointF
+    #: free, place: (x, y), mm; there, and at the nearest crossing of the grid when snapping holds.
     free: Place
     place: Place
+    #: shift, alt: whether these keys are held.
     shift: bool
     alt: bool = False
-    snaps: bool = False
+    snaps: bool = False  #: whether snapping holds
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A finished gesture.
+    """A finished gesture."""
 
-    Attributes
-    ----------
-    gesture : str
-        As it follows the word Undo: "Add star".
-    make : callable
-        Returns the shape that takes the place of the active object, or the whole new drawing; raises a TargetError
-        when there can be none.
-    merge_key : str or None
-        Changes of one key that follow each other undo together.
-    """
-
-    gesture: str
+    gesture: str  #: as it follows the word Undo: "Add star"
+    #: Returns the shape that takes the place of the active object, or the whole new drawing; raises a TargetError when
+    #: there can be none.
     make: Callable[[], Placed | Drawing]
-    merge_key: str | None = None
+    merge_key: str | None = None  #: changes of one key that follow each other undo together
 
 
 class SketchContext(QObject):

@@ -430,25 +430,13 @@ def picture_image(levels: NDArray[np.uint8]) -> QImage:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Underlay:
-    """A picture at its place on the board.
-
-    Attributes
-    ----------
-    path : Path
-    image : QImage
-        Reduced for drawing.
-    corner : (x, y) float, mm
-        Its lower left corner.
-    pixel : float, mm
-        Side of one source pixel.
-    size : (width, height) int, source pixels
-    """
+    """A picture at its place on the board."""
 
     path: Path
-    image: QImage
-    corner: tuple[float, float]
-    pixel: float
-    size: tuple[int, int]
+    image: QImage  #: reduced for drawing
+    corner: tuple[float, float]  #: (x, y), mm; its lower left corner
+    pixel: float  #: mm; side of one source pixel
+    size: tuple[int, int]  #: (width, height)
 
     @classmethod
     def under(cls, placed: Placed, path: Path, image: QImage, traced: Traced) -> Underlay:

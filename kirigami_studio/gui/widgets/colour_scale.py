@@ -29,24 +29,13 @@ MARGIN = 6.0
 
 @dataclass(frozen=True, slots=True)
 class ColourScale:
-    """A linear scale between two values.
+    """A linear scale between two values."""
 
-    Attributes
-    ----------
-    title : str
-        With the unit.
-    low, high : float
-    colours : tuple of str
-        Evenly spaced stops from ``low`` to ``high``.
-    ticks : tuple of (float, str)
-        Value and label.
-    """
-
-    title: str
+    title: str  #: with the unit
     low: float
     high: float
-    colours: tuple[str, ...]
-    ticks: tuple[tuple[float, str], ...]
+    colours: tuple[str, ...]  #: evenly spaced stops from ``low`` to ``high``
+    ticks: tuple[tuple[float, str], ...]  #: value and label
 
     def share(self, values: FloatArray) -> FloatArray:
         """Where values lie between ``low`` (0) and ``high`` (1), cut off there."""

@@ -38,24 +38,12 @@ WORST_FIRST = ("bad", "care", "good")
 
 @dataclass(frozen=True, slots=True)
 class Badge:
-    """One fact.
+    """One fact."""
 
-    Attributes
-    ----------
-    text : str
-        A few words, after a sign that stands for an estimate.
-    tip : str
-        Whole sentences.
-    state : str
-        Level of the verdict, or state of an answer, by their names in JSON.
-    is_level : bool
-        Whether it is the verdict itself, which alone has an icon.
-    """
-
-    text: str
-    tip: str
-    state: str
-    is_level: bool = False
+    text: str  #: a few words, after a sign that stands for an estimate
+    tip: str  #: whole sentences
+    state: str  #: level of the verdict, or state of an answer, by their names in JSON
+    is_level: bool = False  #: whether it is the verdict itself, which alone has an icon
 
 
 def badges_of(verdict: Verdict) -> tuple[Badge, ...]:
