@@ -132,23 +132,13 @@ class RunPlan:
 
 
 class RunPlanner:
-    """Plans runs for the present document and turns their results into edits.
-
-    Attributes
-    ----------
-    plan : RunPlan or None
-        The run that was planned last.
-    added : frozenset of Candidate
-        What the last run has added to designs that were there.
-    keeps_seed : bool
-        Whether Generate draws from the seed that is shown.
-    """
+    """Plans runs for the present document and turns their results into edits."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self.plan: RunPlan | None = None
-        self.added: frozenset[Candidate] = frozenset()
-        self.keeps_seed = True
+        self.plan: RunPlan | None = None  #: the run that was planned last
+        self.added: frozenset[Candidate] = frozenset()  #: by the last run to designs that were there
+        self.keeps_seed = True  #: whether Generate draws from the seed that is shown
         self._drawn: set[tuple[int, int]] = set()  # project and seed of every run so far, also of those undone
 
     def _next_seed(self, document: Document) -> int:

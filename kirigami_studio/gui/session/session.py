@@ -186,22 +186,6 @@ class Session(QObject):
     ----------
     earlier : Session, optional
         Of a closed window, whose project is the open one, with its history.
-
-    Attributes
-    ----------
-    queue : JobQueue
-        Runs all long work but the drag of a vertex.
-    history : History
-    cache : DesignCache
-    display : DesignDisplay
-    path : Path or None
-        Where the project was saved or opened.
-    on_disk : dict of Path to str
-        SHA-256 of project files as they were read or written here last.
-    project : int
-        How many projects were open before this one.
-    as_cut : KnownAsCut or None
-        What the latest run has found out about designs as cut.
     """
 
     document_changed = Signal(Document)
@@ -212,13 +196,17 @@ class Session(QObject):
 
     def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
-        self.queue = JobQueue(self)
+        self.queue = JobQueue(self)  #: runs all long work but the drag of a vertex
         self.history: History = History() if earlier is None else earlier.history
         self.cache: DesignCache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
+        #: Where the project was saved or opened.
         self.path: Path | None = None if earlier is None else earlier.path
+        #: SHA-256 of project files as they were read or written here last.
         self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
+        #: How many projects were open before this one.
         self.project: int = 0 if earlier is None else earlier.project
+        #: What the latest run has found out about designs as cut.
         self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
 
     @property

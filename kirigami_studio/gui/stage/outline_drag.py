@@ -63,13 +63,7 @@ class DragStep:
 
 
 class Follower:
-    """Moves one vertex after the pointer.
-
-    Attributes
-    ----------
-    newest : DragStep or None
-        What the last complete step has made.
-    """
+    """Moves one vertex after the pointer."""
 
     def __init__(self, start: DragStart) -> None:
         self._start = start
@@ -77,7 +71,7 @@ class Follower:
         self._wanted: tuple[int, tuple[float, float]] = (0, (0.0, 0.0))
         self._served = 0
         self._last, self._spent = False, 0.0
-        self.newest: DragStep | None = None
+        self.newest: DragStep | None = None  #: what the last complete step has made
 
     def move_to(self, place: tuple[float, float]) -> None:
         """The pointer is at a place (x, y) in the world now."""

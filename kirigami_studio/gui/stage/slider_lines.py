@@ -68,18 +68,12 @@ class EndsLine(QWidget):
 
 
 class EndButton(QAbstractButton):
-    """A small outline and the longest text that fits, aligned to a side; the start at the left is that of a sheet.
-
-    Attributes
-    ----------
-    phi : float, radians
-        The angle that it goes to.
-    """
+    """A small outline and the longest text that fits, aligned to a side; the start at the left is that of a sheet."""
 
     def __init__(self, name: str, side: Qt.AlignmentFlag) -> None:
         super().__init__()
         self.setObjectName(name)
-        self.phi = math.pi
+        self.phi = math.pi  #: radians; the angle that it goes to
         self._side = side
         self._outline: FloatArray | None = None
         self._texts: tuple[str, ...] = ("",)

@@ -233,16 +233,9 @@ class SketchContext(QObject):
 
 
 class SketchTool:
-    """A tool that does nothing; subclasses override what they need.
+    """A tool that does nothing; subclasses override what they need."""
 
-    Attributes
-    ----------
-    hint : str
-        What to do, one or two sentences for the status line.
-    cursor : Qt.CursorShape
-    """
-
-    hint = ""
+    hint = ""  #: what to do, one or two sentences for the status line
     cursor = Qt.CursorShape.CrossCursor
 
     def __init__(self, context: SketchContext) -> None:

@@ -21,17 +21,7 @@ EXTENT_BY_HEIGHT = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT
 
 
 class Columns(QWidget):
-    """Lays the panels out, and remembers their sizes.
-
-    Attributes
-    ----------
-    target, settings, run, stage, gallery, fabrication
-        The panels of the places.
-    pages : QStackedWidget
-        The columns, and what is shown in their place.
-    splitter : QSplitter
-        Between the columns.
-    """
+    """Lays the panels out, and remembers their sizes."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -54,7 +44,7 @@ class Columns(QWidget):
         self.splitter.splitterMoved.connect(self._keep_sizes)
         self.target.editing_changed.connect(self._make_room)
         self.stage.whole_width_wanted.connect(self._give_whole_width)
-        self.pages = QStackedWidget()
+        self.pages = QStackedWidget()  #: the columns, and what is shown in their place
         self.pages.addWidget(self.splitter)
         column((self.pages, 1), on=self, margins=(10, 0, 10, 2))
 
