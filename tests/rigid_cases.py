@@ -45,9 +45,9 @@ CASES: tuple[tuple[str, Options], ...] = (
     ("letter-l", {"profile": "xtool", "engrave": True}),
     ("letter-l", {"style": "straight", "width_mm": 80.0, "kerf_mm": 0.0}),
     ("letter-l", {"style": "round", "material": "polypropylene-co2", "width_mm": 200.0}),
-    ("letter-l", {"material": "card-co2", "width_mm": 150.0, "profile": "slots"}),
+    ("letter-l", {"material": "card-co2", "connector_mm": 1.0, "width_mm": 200.0, "profile": "slots"}),
     ("circle", {"connector_mm": 0.8, "profile": "lightburn", "engrave": True}),
-    ("circle", {"style": "straight", "connector_mm": 0.2, "tabs": 3}),
+    ("circle", {"style": "straight", "connector_mm": 0.2, "order": "rows"}),
     ("disk", {}),
     ("disk", {"style": "straight", "profile": "slots", "connector_mm": 0.3}),
     ("disk", {"style": "round", "material": "pet-co2", "profile": "k40", "width_mm": 140.0}),
@@ -73,7 +73,7 @@ class Exported:
     path : Path
     verdict : Verdict
     as_cut : AsCut or None
-    kerf_mm, connector_mm : float
+    kerf_mm, connector_mm, narrowest_mm : float
     copies : int
     slots : bool
     panels, connectors : int
@@ -85,6 +85,7 @@ class Exported:
     as_cut: AsCut | None
     kerf_mm: float
     connector_mm: float
+    narrowest_mm: float
     copies: int
     slots: bool
     panels: int
@@ -100,16 +101,17 @@ def exported(number: int, folder: Path) -> Exported:
     as_cut = closed(request, made)
     settings = request.settings
     layered = PROFILES[settings.profile].file_per_layer
-    path = folder / ("cut" if layered else "cut.dxf")
+    path = folder / "cut.dxf"
     found = written(request, made, Output(path), as_cut)
     assert found.verdict is not None
     plan = made.plan
     return Exported(
-        path,
+        path.with_suffix("") if layered else path,
         found.verdict,
         as_cut if isinstance(as_cut, AsCut) else None,
         plan.kerf_mm,
         float(plan.hinges.asked_mm.max()),
+        float(plan.hinges.finished_mm[plan.hinges.finished_mm > 0.0].min()),
         len(plan.copies),
         PROFILES[settings.profile].slots,
         sum(len(panel) > 0 for panel in plan.panels),

@@ -3,7 +3,9 @@
 Panels are what erosion by half a connector leaves apart, connectors the necks between them.  Each neck turns about a
 point of its narrowest section: the middle, or, beside a straight flank, 0.73 (sharp slit) to 0.56 widths (kerf of four
 widths) from it.  Panels keep their shape but for what bends around the necks.  The sheet is closed by Gauss-Newton on
-the gaps at all necks, with its mean turn prescribed and panels that run into each other pushed apart.
+the gaps at all necks, with its mean turn prescribed.  It jams where a neck is stretched by more than it bears, or where
+panels are in each other by more than two necks in a row bear.  A panel narrower than a connector is read as two, and
+sheets with tabs, whose outline is cut in parts, are not read.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ TOLERATED = 0.45
 BREAKS = 0.51
 #: Around a connector so many spans of width and kerf bend: they belong to no rigid panel.
 BENDING = 1.25
-#: Places this near (mm) to each other are one, and depths of contacts that count.
+#: Places this near (mm) to each other are one.
 NEAR_MM = 1e-3
 #: A flank is straight where it leaves its tangent by less than this share of the connector within one width.
 STRAIGHT = 0.05
@@ -41,10 +43,12 @@ STRAIGHT = 0.05
 LONG = 0.5
 #: Eroded panels that hang together by a short neck are not further apart (in widths).
 NEAREST = 1.5
+#: Parts smaller than this (squares of the width) between two necks belong to the connector.
+SMALL = 15.0
 #: Mean turns (degrees) at which the sheet is looked at: small steps where panels meet.
 STEPS_DEG = (*np.arange(6.0, 168.0, 6.0).tolist(), *np.arange(168.0, 178.5, 1.0).tolist())
-#: Corners of one panel that another one stops at most.
-MOST_STOPS = 3
+#: Share by which what connectors bear is not known better.
+UNSURE = 0.05
 MOST_ITERATIONS, FINE_STEP = 25, 1e-7
 
 
@@ -61,8 +65,6 @@ class Necks:
         Unit vector from one end of the narrowest section to the other.
     width_mm, longer_mm : (H,) float
         Narrowest section, and by how much the neck is longer than one beside a straight slit.
-    flat : (H,) bool
-        Whether one end of the section is a straight flank.
     """
 
     panels: IntArray
@@ -70,7 +72,6 @@ class Necks:
     across: ComplexArray
     width_mm: FloatArray
     longer_mm: FloatArray
-    flat: npt.NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.width_mm)
@@ -109,14 +110,15 @@ class RigidClosing:
     ----------
     jam_deg : float
         Angle at which it jams, 0 where it closes.
-    touching : bool
-        Whether panels are in each other there.
+    early_deg, late_deg : float
+        The same for connectors that bear :data:`UNSURE` less, and more.
     phi_deg, stretch, depth : (S,) float
         Angles, largest stretch (in widths) and depth of a contact (in widths) at each.
     """
 
     jam_deg: float
-    touching: bool
+    early_deg: float
+    late_deg: float
     phi_deg: FloatArray
     stretch: FloatArray
     depth: FloatArray
@@ -162,14 +164,14 @@ def _rigid(
         if len(beside) == 1:
             crumbs[beside[0]].append(region)
         elif len(beside) == 2 and region.area > LONG * connector_mm**2:
-            places[beside[0], beside[1]] = shapely.centroid(region), float(region.area)
+            places.setdefault((beside[0], beside[1]), (shapely.centroid(region), float(region.area)))
     rows = [(pair, *_neck(*place, rim, kerf_mm, connector_mm)) for pair, place in places.items()]
-    pairs, centres, across, widths, longer, flat = zip(*rows, strict=True)
-    necks = Necks(*map(np.array, (pairs, centres, across, widths, longer, flat)))
+    necks = Necks(*map(np.array, zip(*rows, strict=True)))
+    necks, there = _in_series(necks, shapely.area(opened))
+    opened, crumbs = opened[there], [crumbs[number] for number in there]
     panels = shapely.buffer([shapely.union_all(parts) for parts in crumbs], -0.5 * NEAR_MM)
-    bends = shapely.buffer(
-        shapely.points(necks.centre.real, necks.centre.imag), BENDING * (necks.width_mm + kerf_mm), quad_segs=8
-    )
+    reach = BENDING * (necks.width_mm + kerf_mm) + 0.5 * necks.longer_mm
+    bends = shapely.buffer(shapely.points(necks.centre.real, necks.centre.imag), reach, quad_segs=8)
     for number, panel in enumerate(panels):
         own = bends[np.any(necks.panels == number, axis=1)]
         panels[number] = shapely.simplify(shapely.difference(panel, shapely.union_all(own)), 2.0 * NEAR_MM)
@@ -177,33 +179,82 @@ def _rigid(
     return RigidSheet(panels, middle, np.sqrt(shapely.area(opened)), necks, kerf_mm, pieces)
 
 
+def _in_series(necks: Necks, areas: FloatArray) -> tuple[Necks, IntArray]:
+    """One neck for two with a small part between, and the panels that stay: arcs are narrow at both ends."""
+    small = areas < SMALL * float(np.median(necks.width_mm)) ** 2
+    beside = np.bincount(necks.panels.ravel(), minlength=len(areas))
+    between = np.flatnonzero(small & (beside == 2))
+    rows = []
+    for part in between:
+        first, second = np.flatnonzero(np.any(necks.panels == part, axis=1))
+        ends = [int(next(panel for panel in necks.panels[neck] if panel != part)) for neck in (first, second)]
+        way = necks.centre[second] - necks.centre[first]
+        rows.append(
+            (
+                sorted(ends),
+                0.5 * (necks.centre[first] + necks.centre[second]),
+                1j * way / abs(way),
+                min(necks.width_mm[[first, second]]),
+                abs(way),
+            )
+        )
+    kept = ~np.isin(necks.panels, between).any(axis=1)
+    columns = (necks.panels, necks.centre, necks.across, necks.width_mm, necks.longer_mm)
+    merged = [
+        np.concatenate(
+            [column[kept], np.array([row[place] for row in rows], column.dtype).reshape(-1, *column.shape[1:])]
+        )
+        for place, column in enumerate(columns)
+    ]
+    there = np.setdiff1d(np.arange(len(areas)), between)
+    merged[0] = np.searchsorted(there, merged[0])
+    return Necks(*merged), there
+
+
 def _neck(
     about: Point, strip_mm2: float, rim: BaseGeometry, kerf_mm: float, connector_mm: float
-) -> tuple[complex, complex, float, float, bool]:
-    """Centre, direction across, width, extra length and straightness of the neck about a place."""
-    near = shapely.get_parts(shapely.line_merge(shapely.intersection(rim, about.buffer(connector_mm))))
-    flanks = sorted(near, key=about.distance)[:2]
-    if strip_mm2:
-        # As wide everywhere: its middle.
-        ends = [shapely.shortest_line(about, flank).coords[1] for flank in flanks]
-    else:
-        ends = list(shapely.shortest_line(*flanks).coords)
-    one, other = (complex(*end) for end in ends)
+) -> tuple[complex, complex, float, float]:
+    """Centre, direction across, width and extra length of the neck about a place."""
+    middle = complex(about.x, about.y)
+    near = shapely.get_parts(shapely.line_merge(shapely.intersection(rim, about.buffer(1.5 * connector_mm))))
+    first = min(near, key=about.distance)
+    one = complex(*shapely.shortest_line(about, first).coords[1])
+    # The other end lies on the other side: without a kerf, beyond the first end another edge is as near.
+    opposite = _half_plane(middle, middle - one, 1.5 * connector_mm)
+    beyond = [part for line in near for part in shapely.get_parts(shapely.intersection(line, opposite)) if part.length]
+    second = min(beyond, key=about.distance)
+    other = complex(*shapely.shortest_line(about, second).coords[1])
+    if not strip_mm2:
+        flank = min(
+            shapely.get_parts(shapely.intersection(first, _half_plane(middle, one - middle, 1.5 * connector_mm))),
+            key=about.distance,
+        )
+        one, other = (complex(*end) for end in shapely.shortest_line(flank, second).coords)
     width = abs(other - one)
     direction = (other - one) / width
     straight = [_is_straight(rim, end, direction, width) for end in (one, other)]
-    longer = strip_mm2 / width
     share = 0.5
-    if straight[0] is not straight[1]:
+    if straight[0] is not straight[1] and not strip_mm2:
         away = 0.73 - 0.17 * min(kerf_mm / (4.0 * width), 1.0)
         share = away if straight[0] else 1.0 - away
-    return one + share * (other - one), direction, width, longer, straight[0] is not straight[1]
+    return one + share * (other - one), direction, width, strip_mm2 / width
+
+
+def _half_plane(middle: complex, normal: complex, size_mm: float) -> Polygon:
+    """What of a square about a place lies on the side of a normal."""
+    unit = normal / abs(normal)
+    corners = middle + size_mm * unit * np.array([1e-6 + 1j, 1.0 + 1j, 1.0 - 1j, 1e-6 - 1j])
+    return Polygon(np.column_stack([corners.real, corners.imag]))
 
 
 def _is_straight(rim: BaseGeometry, end: complex, across: complex, width: float) -> bool:
     """Whether the rim of the sheet is a straight line across an end of a neck."""
     here = shapely.intersection(rim, Point(end.real, end.imag).buffer(width))
-    near = [part for part in shapely.get_parts(shapely.line_merge(here)) if part.distance(Point(end.real, end.imag)) < NEAR_MM]
+    near = [
+        part
+        for part in shapely.get_parts(shapely.line_merge(here))
+        if part.distance(Point(end.real, end.imag)) < NEAR_MM
+    ]
     if not near:
         return False
     points = shapely.get_coordinates(near[0]) @ (1.0, 1j)
@@ -212,27 +263,6 @@ def _is_straight(rim: BaseGeometry, end: complex, across: complex, width: float)
 
 
 # closing --------------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Stop:
-    """A corner of a panel inside of another one.
-
-    Attributes
-    ----------
-    inner, outer : int
-        The panel of the corner, and the one that it is in.
-    corner, foot, normal : complex, mm
-        The corner, the nearest place on the edge, and the unit vector from one to the other.
-    depth : float, mm
-    """
-
-    inner: int
-    outer: int
-    corner: complex
-    foot: complex
-    normal: complex
-    depth: float
 
 
 class _Model:
@@ -293,18 +323,14 @@ class _Model:
         panels = self.polygons(state)
         return sum(float(panels[a].intersection(panels[b]).area) for a, b in _neighbours(panels))
 
-    def stops(self, state: FloatArray) -> list[Stop]:
-        """Corners that are in another panel."""
+    def depth(self, state: FloatArray) -> float:
+        """How deep (mm) a corner of a panel is in another one at most."""
         panels = self.polygons(state)
-        found = []
-        for a, b in _neighbours(panels):
-            for inner, outer in ((a, b), (b, a)):
-                found += _stops(panels, inner, outer)
-        return found
+        pairs = [pair for a, b in _neighbours(panels) for pair in ((a, b), (b, a))]
+        return max((_depth(panels[inner], panels[outer]) for inner, outer in pairs), default=0.0)
 
-    def step(self, state: FloatArray, mean: float, stops: list[Stop]) -> FloatArray:
-        """One Gauss-Newton step towards least energy with a mean turn (radians) and stops."""
-        rows: list[tuple[IntArray, FloatArray]] = []
+    def step(self, state: FloatArray, mean: float) -> FloatArray:
+        """One Gauss-Newton step towards least energy at a mean turn (radians)."""
         necks = self.sheet.necks
         places = np.concatenate([3 * self.one[:, None] + np.arange(3), 3 * self.other[:, None] + np.arange(3)], axis=1)
         gaps, turns = self.gaps(state), self.turns(state)
@@ -324,9 +350,6 @@ class _Model:
         ]
         matrix = sparse.vstack([_matrix(places, slope, 3 * self.count) for slope, _ in parts])
         off = np.concatenate([value for _, value in parts])
-        if stops:
-            matrix = sparse.vstack([matrix, *(self._stop_row(state, stop) for stop in stops)])
-            off = np.concatenate([off, [stop.depth for stop in stops]])
         kept = _matrix(places, self.sign[:, None] * turning / len(necks), 3 * self.count).sum(axis=0)
         missing = mean - float(np.mean(self.sign * turns))
         # A little of the diagonal keeps the whole in its place.
@@ -335,60 +358,49 @@ class _Model:
         right = np.concatenate([-(matrix.T @ off), [missing]])
         return np.asarray(spsolve(border, right))[:-1]
 
-    def _stop_row(self, state: FloatArray, stop: Stop) -> sparse.spmatrix:
-        """Slope of the depth of a contact: the corner leaves along the normal, or the edge comes after it."""
-        row = np.zeros(3 * self.count)
-        for panel, point, sign in ((stop.inner, stop.corner, -1.0), (stop.outer, stop.foot, 1.0)):
-            centre = self.sheet.middle[panel] + state[3 * panel] + 1j * state[3 * panel + 1]
-            directions = np.array([1.0, 1j, 1j * (point - centre)])
-            row[3 * panel : 3 * panel + 3] += sign * (directions * np.conj(stop.normal)).real
-        return sparse.csr_matrix(row)
-
 
 def closed_rigid(sheet: RigidSheet) -> RigidClosing:
     """Close a sheet step by step, and find where it jams."""
     model = _Model(sheet)
+    widths = sheet.necks.width_mm
     # Slits open, whichever colour of panels turns to the left: the other way panels run into each other at once.
     first = math.radians(STEPS_DEG[0])
-    signs = [_settled(model, np.zeros(3 * model.count), sign * first, False) for sign in (1.0, -1.0)]
-    sign = 1.0 if model.overlap(signs[0][0]) <= model.overlap(signs[1][0]) else -1.0
-    state, before = np.zeros(3 * model.count), np.zeros(3 * model.count)
-    rows, last = [(180.0, 0.0, 0.0)], 0.0
-    for turn in STEPS_DEG:
-        ahead = state + (state - before) * ((turn - last) / last_step if (last_step := _step_before(turn)) else 0.0)
-        before = state
-        state, depth = _settled(model, ahead, sign * math.radians(turn), True)
-        last = turn
-        stretch = float((np.abs(model.gaps(state)) / sheet.necks.width_mm).max())
-        rows.append((180.0 - turn, stretch, depth / float(np.median(sheet.necks.width_mm))))
-        if stretch > TOLERATED:
+    flat = np.zeros(3 * model.count)
+    sign = min((1.0, -1.0), key=lambda one: model.overlap(_settled(model, flat, one * first)))
+    state, before = flat, flat
+    rows = [(180.0, 0.0, 0.0)]
+    for turn, last, earlier in zip(STEPS_DEG, (0.0, *STEPS_DEG), (0.0, 0.0, *STEPS_DEG), strict=False):
+        ahead = (turn - last) / (last - earlier) if last > earlier else 0.0
+        before, state = state, _settled(model, state + ahead * (state - before), sign * math.radians(turn))
+        stretch = float((np.abs(model.gaps(state)) / widths).max())
+        rows.append((180.0 - turn, stretch, model.depth(state) / float(np.median(widths))))
+        if max(stretch / TOLERATED, rows[-1][2] / (2.0 * TOLERATED)) > 1.0 + UNSURE:
             break
-    phi, stretches, depths = np.array(rows).T
-    jam, touching = 0.0, False
-    if stretches[-1] > TOLERATED:
-        share = (TOLERATED - stretches[-2]) / (stretches[-1] - stretches[-2])
-        jam, touching = float(phi[-2] + share * (phi[-1] - phi[-2])), bool(depths[-1] > 0.0)
-    return RigidClosing(jam, touching, phi, stretches, depths)
+    phi, stretch, depth = np.array(rows).T
+    share = np.maximum(stretch / TOLERATED, depth / (2.0 * TOLERATED))
+    early, jam, late = (_passed(phi, share, least) for least in (1.0 - UNSURE, 1.0, 1.0 + UNSURE))
+    return RigidClosing(jam, early, late, phi, stretch, depth)
 
 
-def _step_before(turn: float) -> float:
-    """The step (degrees) that led to the turn before this one."""
-    at = STEPS_DEG.index(turn)
-    return 0.0 if at == 0 else STEPS_DEG[at - 1] - (STEPS_DEG[at - 2] if at > 1 else 0.0)
+def _passed(phi_deg: FloatArray, share: FloatArray, least: float) -> float:
+    """The angle (degrees) at which a growing share passes a value; 0 where it never does."""
+    over = np.flatnonzero(share > least)
+    if not over.size:
+        return 0.0
+    last = int(over[0])
+    part = (least - share[last - 1]) / (share[last] - share[last - 1])
+    return float(phi_deg[last - 1] + part * (phi_deg[last] - phi_deg[last - 1]))
 
 
-def _settled(model: _Model, state: FloatArray, mean: float, stopped: bool) -> tuple[FloatArray, float]:
-    """The state of least energy at a mean turn (radians), and the deepest contact (mm) in it."""
-    depth = 0.0
+def _settled(model: _Model, state: FloatArray, mean: float) -> FloatArray:
+    """The state of least energy at a mean turn (radians)."""
     for _ in range(MOST_ITERATIONS):
-        stops = model.stops(state) if stopped else []
-        depth = max((stop.depth for stop in stops), default=0.0)
-        step = model.step(state, mean, stops)
+        step = model.step(state, mean)
         largest = float(np.abs(step[2::3]).max())
         state = state + step * min(1.0, 0.3 / largest if largest > 0.0 else 1.0)
-        if largest < (1e-4 if stops else FINE_STEP):
+        if largest < FINE_STEP:
             break
-    return state, depth
+    return state
 
 
 def _matrix(places: IntArray, slopes: FloatArray, size: int) -> sparse.csr_matrix:
@@ -402,21 +414,11 @@ def _neighbours(panels: Areas, distance: float = 0.0) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(one, other, strict=True) if a < b]
 
 
-def _stops(panels: Areas, inner: int, outer: int) -> list[Stop]:
-    """The deepest corners of one panel in another one."""
-    corners = shapely.get_coordinates(panels[inner])
-    inside = shapely.points(corners[shapely.contains_xy(panels[outer], *corners.T)])
-    if not len(inside):
-        return []
-    lines = shapely.shortest_line(inside, shapely.boundary(panels[outer]))
-    depths = shapely.length(lines)
-    found = []
-    for number in np.argsort(-depths)[:MOST_STOPS]:
-        depth = float(depths[number])
-        if depth > NEAR_MM:
-            corner, foot = shapely.get_coordinates(lines[number]) @ (1.0, 1j)
-            found.append(Stop(inner, outer, corner, foot, (foot - corner) / depth, depth))
-    return found
+def _depth(inner: BaseGeometry, outer: BaseGeometry) -> float:
+    """How deep (mm) the deepest corner of one panel is in another one."""
+    corners = shapely.get_coordinates(inner)
+    inside = shapely.points(corners[shapely.contains_xy(outer, *corners.T)])
+    return float(shapely.distance(inside, shapely.boundary(outer)).max()) if len(inside) else 0.0
 
 
 def _colours(pairs: IntArray, count: int) -> FloatArray:
