@@ -39,8 +39,9 @@ BENDING = 1.25
 NEAR_MM = 1e-3
 #: A flank is straight where it leaves its tangent by less than this share of the connector within one width.
 STRAIGHT = 0.05
-#: Necks larger than this (squares of the width) are strips, narrowest everywhere.
-LONG = 0.5
+#: Regions between opened panels larger than this (squares of the width) are necks of narrower connectors, and larger
+#: than that strips, as narrow everywhere.
+SHORT, LONG = 0.3, 0.5
 #: Eroded panels that hang together by a short neck are not further apart (in widths).
 NEAREST = 1.5
 #: Parts smaller than this (squares of the width) between two necks belong to the connector.
@@ -163,8 +164,9 @@ def _rigid(
         beside = [int(number) for number in np.sort(tree.query(region, "dwithin", distance=NEAR_MM))]
         if len(beside) == 1:
             crumbs[beside[0]].append(region)
-        elif len(beside) == 2 and region.area > LONG * connector_mm**2:
-            places.setdefault((beside[0], beside[1]), (shapely.centroid(region), float(region.area)))
+        elif len(beside) == 2 and region.area > SHORT * connector_mm**2:
+            strip = float(region.area) if region.area > LONG * connector_mm**2 else 0.0
+            places.setdefault((beside[0], beside[1]), (shapely.centroid(region), strip))
     rows = [(pair, *_neck(*place, rim, kerf_mm, connector_mm)) for pair, place in places.items()]
     necks = Necks(*map(np.array, zip(*rows, strict=True)))
     necks, there = _in_series(necks, shapely.area(opened))
