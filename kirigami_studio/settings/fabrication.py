@@ -349,16 +349,9 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
 
 
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: with the given material, or one that the machine cuts.
+    """Settings without a project: the given material, or one that the machine cuts, as wide as is usual in it.
 
-    The width is the material's usual one unless given.
-
-    Raises
-    ------
-    UsageError
-        What no settings can hold.
-    FabricationError
-        No such material or machine; the sentence lists those that there are.
+    What is ``given`` is read, and refused, as :func:`with_choices` does.
     """
     usual = FabricationSettings(material=default_material().key)
     if given.get("machine") is not None and given.get("material") is None:
@@ -383,9 +376,9 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     Raises
     ------
     UsageError
-        What no settings can hold.
+        A value that its setting does not take, or no such profile.
     FabricationError
-        No such material or machine; the sentence lists those that there are.
+        No such material or machine.
     """
     changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
     if "material" in given:

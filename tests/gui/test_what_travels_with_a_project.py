@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.fabricate.material import library
-from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
+from kirigami_studio.fabricate.material import SHELF, library
+from kirigami_studio.fabricate.material_copies import changed_copy
 from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.services import Services
@@ -43,12 +43,12 @@ def told(window: MainWindow, words: str) -> list[Message]:
 @pytest.fixture
 def own_project(designs: Document, own_materials: Path, tmp_path: Path) -> Path:
     """A project cut from an own material that nobody has in stock any more."""
-    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.41, "kerf_mm": 0.07, "name": "My film"}))
+    SHELF.save(changed_copy("film-uv", "my-film", {"connector_mm": 0.41, "kerf_mm": 0.07, "name": "My film"}))
     document = edits.set_fabrication(designs, material="my-film").document
     path = tmp_path / "own.kiri"
     store.save(document, path)
     assert store.load(path) == document
-    delete_copy("my-film")
+    SHELF.delete("my-film")
     assert "my-film" not in library().items
     return path
 
@@ -75,7 +75,7 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
 
 
 def test_that_the_own_stock_wins_over_what_a_project_knew(window: MainWindow, own_project: Path, until: Until) -> None:
-    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
+    SHELF.save(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
     window.services.project.open(own_project)
     until(lambda: window.fabrication.export.isEnabled())
     assert window.fabrication.numbers["ligament"].text() == "0.55 mm"

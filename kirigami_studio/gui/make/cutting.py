@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from kirigami_studio.fabricate.material import Material, library
-from kirigami_studio.fabricate.material_copies import save_copy
+from kirigami_studio.fabricate.material import SHELF, Material, library
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Cancel, Steps
 from kirigami_studio.foundation.words import mark, number, tr, tr_n
@@ -377,7 +376,7 @@ class MaterialStore(QObject):
     def keep(self, material: Material) -> None:
         """Save what a project carries among the own materials."""
         try:
-            save_copy(material)
+            SHELF.save(material)
         except KirigamiError as error:
             self._session.post(Message(str(error), Tone.ERROR))
             return
