@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
     cuttable,
@@ -55,9 +56,9 @@ class FabricationSettings:
         Whether the design's name is engraved on the sheet.
     opened_mm : float or None
         Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
-    own : Material or None
-        The numbers of ``material`` where that is the user's own and no preset.  Not a choice, so it takes no part in
-        comparisons.
+    own, own_machine : Material or Machine or None
+        The numbers of ``material`` and ``machine`` where these are the user's own and not bundled.  No choices, so they
+        take no part in comparisons.
 
     Raises
     ------
@@ -245,6 +246,7 @@ class FabricationSettings:
         ).metadata,
     )
     own: Material | None = field(default=None, compare=False)
+    own_machine: Machine | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         check(self)
@@ -292,6 +294,27 @@ def stored_material(settings: FabricationSettings) -> Material | None:
     return settings.own if settings.own is not None and settings.own.key == settings.material else None
 
 
+def stored_machine(settings: FabricationSettings) -> Machine | None:
+    """Return the machine's numbers as the project stores them; None for bundled machines."""
+    own = settings.own_machine
+    return own if own is not None and own.key == settings.machine else None
+
+
+def stored_values(settings: FabricationSettings) -> Iterator[tuple[Machine | Material, Machine | Material | None]]:
+    """Numbers that the project stores, each with what is used instead: that of the same key in the library, if any."""
+    if (machine := stored_machine(settings)) is not None:
+        yield machine, machines().items.get(machine.key)
+    if (material := stored_material(settings)) is not None:
+        yield material, library().items.get(material.key)
+
+
+def unlike(stored: Machine | Material, used: Machine | Material | None) -> Note | None:
+    """Word on a machine or material that is used in the place of another one; words alone make no difference."""
+    if used is None or used == replace(stored, name=used.name, note=used.note):
+        return None
+    return Note.of("plan.machine_differs" if isinstance(used, Machine) else "plan.material_differs", name=used.name)
+
+
 def material_for(settings: FabricationSettings) -> Material:
     """Return the material of the settings as their machine cuts it, from library or project.
 
@@ -308,8 +331,8 @@ def material_for(settings: FabricationSettings) -> Material:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine of the settings; None where they name none, or an unknown one."""
-    return machines().items.get(settings.machine) if settings.machine else None
+    """Return the machine of the settings, from library or project; None where they name none, or an unknown one."""
+    return machines().items.get(settings.machine, stored_machine(settings)) if settings.machine else None
 
 
 def machine_for(settings: FabricationSettings) -> Machine:

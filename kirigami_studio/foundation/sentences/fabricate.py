@@ -147,6 +147,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.machine_unknown": mark(
         "You do not have the machine {name!r:.60}. Bed and times are those of {machine}; choose your machine."
     ),
+    "plan.machine_differs": mark("Your machine {name} differs from the project's; yours is used."),
+    "plan.material_differs": mark("Your material {name} differs from the project's; yours is used."),
     "plan.machine_does_not_cut": mark(
         "{machine} is not known to cut {material}, whose figures are for another kind of machine. Choose a material "
         "that it cuts, or another machine."
