@@ -25,7 +25,7 @@ from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.foundation.resources import resource
 
 #: Numbers above 0 are at least so large and all at most so large: farther out arithmetic overflows.
-LEAST_NUMBER, LARGEST_NUMBER = 1e-6, 1e6
+LEAST_NUMBER, LARGEST_NUMBER = 1e-6, 1e9
 #: Keys are file names on every platform: lower case, so that no two differ by capitals only.
 KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
 #: Files of these names cannot exist on Windows.

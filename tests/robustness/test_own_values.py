@@ -88,7 +88,7 @@ def test_that_what_is_no_file_is_left_out_with_a_sentence(kind: str, folder: Pat
     others = ["folder"]
     if sys.platform != "win32":
         for name, where in (("zero", "/dev/zero"), ("loop", "loop.toml"), ("gone", "gone"), ("link", "folder.toml")):
-            os.symlink(where, folder / f"{name}.toml")
+            (folder / f"{name}.toml").symlink_to(where)
         os.mkfifo(folder / "pipe.toml")
         others += ["zero", "loop", "gone", "link", "pipe"]
     found = contents(kind)
