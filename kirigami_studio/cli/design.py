@@ -354,8 +354,9 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
-    """Write project, cut file, the file that the machine takes where that is another, layout, preview and candidates.
+    """Write project, cut files, layout, preview and candidates.
 
+    Beside ``cut.dxf`` there is a file of the kind that the machine takes, where that is another.
     Returns the design, judged with its cut files as read back, and the paths of all files by role.
 
     The bytes depend on what is given alone: wall time is not written.

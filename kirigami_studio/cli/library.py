@@ -133,7 +133,7 @@ def _kept(
     row: Callable[[Item, bool], str],
     copied: Callable[[argparse.Namespace, str], tuple[Item, Mapping[str, object]]],
 ) -> int:
-    """List what a shelf holds, or delete one of the user's own, or save a copy under a new key or its own."""
+    """List the values of a shelf, or delete or save one of the user's own."""
     if arguments.delete is not None:
         shelf.delete(arguments.delete)
         return _answer(arguments, {"deleted": arguments.delete}, tr("{key}: deleted", key=arguments.delete))

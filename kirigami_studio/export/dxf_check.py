@@ -296,7 +296,7 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
 
 
 def _kerf(content: DxfContent, kerf_mm: float | None) -> tuple[float, list[Problem]]:
-    """The kerf that was given, or that a file names; 0 with a problem where the file names no width."""
+    """The kerf of the call or of the file; 0 and a problem where the file names no width."""
     kerf = _number(content, "KERF_MM", "0") if kerf_mm is None else kerf_mm
     if 0.0 <= kerf <= LARGEST_SHEET_MM:
         return kerf, []

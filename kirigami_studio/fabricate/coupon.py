@@ -87,7 +87,7 @@ def kerf_from_gaps(gaps_mm: Sequence[float], slits: int = COMB_SLITS) -> Measure
 
 
 def coupon_scale(material: Material) -> float:
-    """How many times larger the coupon of a material is, so that its smallest ligament is one of the connectors."""
+    """Enlargement of a material's coupon that has its smallest ligament among the connectors."""
     return max(1.0, material.min_ligament_mm / WIDEST_RUNG_MM)
 
 

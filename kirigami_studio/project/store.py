@@ -81,7 +81,7 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
 
 
 def with_stored_values(document: Document) -> Document:
-    """The document as it is saved: with the numbers of its material and machine, if these are the user's own."""
+    """The document as it is saved, with the numbers of an own material and an own machine."""
     settings = document.fabrication
     own = _own(library(), settings.material, stored_material(settings))
     machine = _own(machines(), settings.machine, stored_machine(settings))
@@ -91,7 +91,7 @@ def with_stored_values(document: Document) -> Document:
 
 
 def _own(known: Contents[Item], key: str, stored: Item | None) -> Item | None:
-    """The user's own value of a key, or else what the project has stored; None for a bundled one."""
+    """The user's own value of a key, or else the stored one; None for a bundled one."""
     if key not in known.items:
         return stored
     return known.items[key] if key in known.own else None

@@ -301,7 +301,7 @@ def stored_machine(settings: FabricationSettings) -> Machine | None:
 
 
 def stored_values(settings: FabricationSettings) -> Iterator[tuple[Machine | Material, Machine | Material | None]]:
-    """Numbers that the project stores, each with what is used instead: that of the same key in the library, if any."""
+    """Numbers that the project stores, each with those of its key in the library, if any."""
     if (machine := stored_machine(settings)) is not None:
         yield machine, machines().items.get(machine.key)
     if (material := stored_material(settings)) is not None:
@@ -309,7 +309,7 @@ def stored_values(settings: FabricationSettings) -> Iterator[tuple[Machine | Mat
 
 
 def unlike(stored: Machine | Material, used: Machine | Material | None) -> Note | None:
-    """Word on a machine or material that is used in the place of another one; words alone make no difference."""
+    """Word on a machine or material in the place of another; names and notes do not count."""
     if used is None or used == replace(stored, name=used.name, note=used.note):
         return None
     return Note.of("plan.machine_differs" if isinstance(used, Machine) else "plan.material_differs", name=used.name)
@@ -331,7 +331,7 @@ def material_for(settings: FabricationSettings) -> Material:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine of the settings, from library or project; None where they name none, or an unknown one."""
+    """Return the machine of the settings, from library or project; None if there is none."""
     return machines().items.get(settings.machine, stored_machine(settings)) if settings.machine else None
 
 
@@ -372,7 +372,9 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
 
 
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: the given material, or one that the machine cuts, as wide as is usual in it.
+    """Settings without a project: the given material, or one that the machine cuts.
+
+    The sheet is as wide as is usual in it, unless the width is given.
 
     What is ``given`` is read, and refused, as :func:`with_choices` does.
     """
