@@ -206,7 +206,7 @@ class StartTile(QAbstractButton):
         centred = int(Qt.AlignmentFlag.AlignCenter)
         texts, metrics = (self.name, self.size_text)[:lines], painter.fontMetrics()
         for number, text in enumerate(texts):
-            place = QRectF(6, self.height() - (lines - number) * LINE - 4.0, self.width() - 12, LINE)
+            place = QRectF(2, self.height() - (lines - number) * LINE - 4.0, self.width() - 4, LINE)
             painter.setPen(QColor(palette.text if number == 0 else palette.muted))
             versions = (text, self.brief_size) if number else (text,)
             painter.drawText(place, centred, fitted(metrics, versions, place.width()))

@@ -78,12 +78,12 @@ class SilhouettePicker(QFrame):
             super().keyPressEvent(event)
 
     def _best(self) -> QListWidgetItem | None:
-        """The selected silhouette, or else the one whose title matches the search best."""
+        """The selected silhouette, or else the one whose name or title matches the search best."""
         shown = [self.list.item(row) for row in range(self.list.count()) if self._shown(row)]
         if self.list.currentItem() in shown:
             return self.list.currentItem()
         wanted = self.search.text().strip().lower()
-        return min(shown, key=lambda item: len(item.text()) - len(wanted), default=None)
+        return min(shown, key=lambda item: (item.data(NAME_ROLE) != wanted, len(item.text())), default=None)
 
     def _shown(self, row: int) -> bool:
         return not self.list.item(row).isHidden()
@@ -92,7 +92,8 @@ class SilhouettePicker(QFrame):
         self.list.setCurrentRow(-1)
         for row in range(self.list.count()):
             item = self.list.item(row)
-            item.setHidden(text.strip().lower() not in item.text().lower())
+            wanted, titles = text.strip().lower(), (item.text().lower(), item.data(NAME_ROLE))  # shown, command line
+            item.setHidden(not any(wanted in title for title in titles))
 
     def _describe(self, item: QListWidgetItem | None) -> None:
         self.about.setText(item.toolTip() if item is not None else tr("Choose a silhouette"))

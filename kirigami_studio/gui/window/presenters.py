@@ -221,7 +221,7 @@ class Presenters(QObject):
         panel.exports.ideal_wanted.connect(lambda: files.animate(Motion.IDEAL))
         services.exporter.exported.connect(dialogs.show_report)
         services.project.recovery.recover_wanted.connect(files.recover)
-        for changed in (services.project.materials.material_added, dialogs.materials_changed):
+        for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
         pasting.file_wanted.connect(files.open)
 
