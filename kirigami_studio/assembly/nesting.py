@@ -95,7 +95,9 @@ class _Rectangle:
         return Placement(shape, corner - low, self.turn + 0.5 * math.pi)
 
 
-def nested(outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: float, margin_mm: float = 0.0) -> list[Bed]:
+def nested(
+    outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: float, margin_mm: float = 0.0
+) -> list[Bed]:
     """Lay shapes on beds, those of the last one close together.
 
     Parameters
@@ -122,7 +124,9 @@ def nested(outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: flo
     packed = _packed([(*sizes[number], number) for number in small], room) if small else []
     beds = [
         tuple(
-            rectangles[shape].placed(shape, np.array([x, y]) / UNITS + margin_mm, (width, height) != tuple(sizes[shape]))
+            rectangles[shape].placed(
+                shape, np.array([x, y]) / UNITS + margin_mm, (width, height) != tuple(sizes[shape])
+            )
             for x, y, width, height, shape in sorted(one, key=lambda found: found[4])
         )
         for one in packed

@@ -32,7 +32,7 @@ from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.pieces_read import FoundPiece, found_pieces, motion_findings, same_pieces
-from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
+from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, find_profile
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
 from kirigami_studio.export.svg import strokes_svg, write_svg
@@ -356,7 +356,8 @@ def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
             for hinge in assembly.hinges
         ],
         "motion": [
-            {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)} for phi in phis.tolist()
+            {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)}
+            for phi in phis.tolist()
         ],
     }
 
@@ -500,11 +501,17 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
             lines.append(f"{part.file}: {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
         elif part.item == "pins":
             name = SIZES[job.fastener].name
-            lines.append(f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm")
+            lines.append(
+                f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm"
+            )
         elif part.item == "material":
-            lines.append(f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds")
+            lines.append(
+                f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
+            )
         else:
-            lines.append(f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}")
+            lines.append(
+                f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"
+            )
     return tuple(lines)
 
 
@@ -516,4 +523,7 @@ def _minutes(seconds: float | None) -> str:
 def _about(job: AssemblyJob) -> dict[str, str]:
     """Title and facts for the assembly sheet."""
     facts = {"design": design_hash(job.assembly.deployment, ()), **job.provenance}
-    return {"title": job.name or "Kirigami assembly", "subject": "; ".join(f"{key} {text}" for key, text in facts.items())}
+    return {
+        "title": job.name or "Kirigami assembly",
+        "subject": "; ".join(f"{key} {text}" for key, text in facts.items()),
+    }

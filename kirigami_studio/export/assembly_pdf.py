@@ -391,7 +391,9 @@ def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
     for hinge in assembly.hinges:
         row = min(assembly.by_id[name].panel[0] for name in hinge.pieces)
         rows.setdefault(row, []).append(hinge)
-    return [sorted(rows[row], key=lambda hinge: (places[hinge.node][0], -places[hinge.node][1])) for row in sorted(rows)]
+    return [
+        sorted(rows[row], key=lambda hinge: (places[hinge.node][0], -places[hinge.node][1])) for row in sorted(rows)
+    ]
 
 
 def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> int:

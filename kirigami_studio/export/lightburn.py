@@ -118,7 +118,10 @@ def strokes_lightburn(
     names = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
     cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer != NAME_LAYER]
     root = _project(material, machine, tuple(dict.fromkeys(layer for _, layer in cuts)), bool(names))
-    numbers = [*((stroke, NAME_NUMBER) for stroke in names), *((stroke, PALETTE_NUMBER[layer]) for stroke, layer in cuts)]
+    numbers = [
+        *((stroke, NAME_NUMBER) for stroke in names),
+        *((stroke, PALETTE_NUMBER[layer]) for stroke, layer in cuts),
+    ]
     for stroke, number in numbers:
         _add_path(root, stroke, number)
     return _with_notes(root, material, facts, (), bool(names))

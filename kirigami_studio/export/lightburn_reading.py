@@ -17,7 +17,6 @@ from kirigami_studio.export.lightburn import ProjectPath, read_lightburn
 from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, RED, WHITE
 from kirigami_studio.export.strokes import Stroke, extent
 from kirigami_studio.export.svg_reading import LARGEST_FILE
-from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 

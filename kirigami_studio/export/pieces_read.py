@@ -189,7 +189,9 @@ def same_pieces(one: Mapping[str, FoundPiece], other: Mapping[str, FoundPiece], 
     """Whether all points of pieces agree within a tolerance."""
     if list(one) != list(other):
         return False
-    alike = shapely.equals_exact([piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm)
+    alike = shapely.equals_exact(
+        [piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm
+    )
     holes, others = (
         np.array([(*hole.centre, hole.diameter_mm) for piece in pieces.values() for hole in piece.holes])
         for pieces in (one, other)
