@@ -41,7 +41,7 @@ COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
 #: Distances between pins (unit cells) that sheets have room for.
-MOST_GAP = 0.37
+MOST_GAP = 0.42
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
@@ -73,6 +73,8 @@ PROPORTION_ROOM = 0.12
 START_ROOM = 0.2
 #: Most of a start's area that its flat sheet may cover beside it or leave out; moved mouths take a little more.
 MOST_START_ERROR = 0.0042
+#: The same of pinned sheets, whose grids are coarse and whose rim pieces are cut to the start where they have room.
+MOST_START_ERROR_PINNED = 0.025
 #: What a start that is symmetric is symmetric on: a corner on an axis needs a mouth in the middle of a side.
 SYMMETRIC_GRIDS = ((11, 11), (12, 12), (9, 9), (13, 11), (9, 11))
 #: Details below this (unit-area lengths) do not count as bends.
@@ -224,9 +226,8 @@ def choose_grid(
         coarsest, limit = COARSEST_PINNED, min(limit, FINEST_PINNED)
     found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest))
     found = found or _nearest(target, figures, poses, limit, start)
-    found = [one for one in found if one.start_error <= MOST_START_ERROR] or [
-        min(found, key=lambda one: one.start_error)
-    ]
+    most_error = MOST_START_ERROR_PINNED if pinned else MOST_START_ERROR
+    found = [one for one in found if one.start_error <= most_error] or [min(found, key=lambda one: one.start_error)]
     cuttable = [one for one in found if one.width <= smallest] or [min(found, key=lambda one: one.width)]
     fewest = FEWEST_PINNED if pinned else FEWEST_VOIDS
     best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= fewest] or cuttable)

@@ -24,6 +24,9 @@ from kirigami_studio.polish.preferences import PREFERENCES
 from kirigami_studio.polish.symmetry import KeptSymmetry
 from kirigami_studio.settings.design import USUAL_GRID, DesignChoices, DesignSettings, RimRule, choices_of
 
+#: Width of a sheet whose mouths have moved on a round start, at most, over that of the uniform one.
+WIDER = 1.005
+
 
 @dataclass(frozen=True, slots=True)
 class Request(DesignChoices):
@@ -189,10 +192,14 @@ class Request(DesignChoices):
 
     @property
     def least_gap(self) -> float:
-        """How far apart pins stay, unit cells; 0 for sheets without, and where the grid is open."""
+        """How far apart pins stay, unit cells; 0 for sheets without, and where the grid is open.
+
+        A little more on other starts than rectangles: their width is known as soon as their mouths have moved.
+        """
         if self.grid is None or not self.pinned:
             return 0.0
-        return gap_in_cells(self.least_gap_mm, self.width_mm, width_in_cells(self.grid, self.start))
+        width = width_in_cells(self.grid, self.start)
+        return gap_in_cells(self.least_gap_mm, self.width_mm, width if self.start.is_plain else WIDER * width)
 
     def _in_cells(self, size_mm: float) -> float:
         """A size in unit cells; 0 where that is nearly a cell or more, for no design has it, or the grid is open."""

@@ -25,7 +25,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.normal_equations import FLOOR
-from kirigami_studio.polish.objective import SETTLED, Look, Objective, Slopes
+from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
 
 #: How far above the least size (unit cells) steps aim, and what counts as kept: rounding a sheet takes less.
 AIM, KEPT = 2e-6, 5e-7
@@ -34,6 +34,8 @@ NEAR, MOST_ADDED = 0.1, 0.15
 #: Fewest steps for match and sizes, most for sizes alone; parts of a step that are tried.
 LEAST_STEPS, SIZE_STEPS = 2, 12
 PARTS = (1.0, 0.5, 0.25, 0.1, 0.03)
+#: Most that a step changes the logarithm of a pose's scale.
+LARGEST_GROWTH = 20.0
 #: Damping relative to the diagonal of H, and its growth where no part of a step counts.
 DAMPING, LARGEST_DAMPING, HARDEN = 1e-3, 1e3, 30.0
 #: Weight of missing sizes over the largest multiplier.
@@ -154,7 +156,10 @@ class _SizeDescent:
     def _taken(self, step: FloatArray, weight: float, sizes_alone: bool) -> bool:
         """Take as much of a step as lowers the merit and keeps clear; False where nothing does."""
         before = self._merit(self.here, weight, sizes_alone)
+        scales = np.abs(step[len(step) - self.objective.poses :: POSE]).max()
         for part in PARTS:
+            if part * scales > LARGEST_GROWTH:
+                continue  # conditions contradict each other: no such step lowers anything
             trial = self._moved(part * step)
             if self._merit(trial, weight, sizes_alone) < before:
                 clear = self._is_clear(trial)

@@ -29,6 +29,7 @@ from kirigami_studio.pipeline.auto_grid import (
 )
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import with_grid
+from kirigami_studio.polish.flat_sheet import width_in_cells
 
 
 @pytest.fixture(autouse=True)
@@ -118,6 +119,24 @@ def test_that_panels_are_kept_from_becoming_too_small_to_cut() -> None:
     circle = choose_grid(load("circle"), width_mm=60.0, least_feature_mm=1.0)
     assert circle.code == "grid.coarsest_with_two_mirror_axes"
     assert choose_grid(star, width_mm=1.0, least_feature_mm=5.0).grid[1] <= 9
+
+
+def test_that_grids_of_pinned_sheets_have_room_for_their_pins_and_no_parity_of_mirrors() -> None:
+    for name in ("heart", "star", "hexagon"):
+        choice = choose_grid(load(name), width_mm=240.0, least_gap_mm=9.8)
+        rows, columns = choice.grid
+        assert 7 <= columns <= 9 and 9.8 * (columns + 1) / 240.0 <= 0.42 and rows <= 10
+        assert all(not pose.symmetry.mirrors for pose in choice.poses)
+    heart, small = choose_grid(load("heart"), width_mm=240.0, least_gap_mm=9.8), 100.0
+    assert heart.grid == (8, 8) and heart.code == "grid.pins_would_be_too_near"
+    assert "nearer than 9.8 mm" in heart.reason
+    assert choose_grid(load("heart"), width_mm=small, least_gap_mm=9.8).grid[1] <= 4
+    # Somebody has to put the pieces together: large sheets get large panels.
+    assert max(choose_grid(load("star"), width_mm=900.0, least_gap_mm=9.8).grid) <= 10
+    disk = choose_grid(load("square"), width_mm=240.0, least_gap_mm=9.8, start=start_shape("circle"))
+    assert 9.8 * width_in_cells(disk.grid, start_shape("circle")) / 240.0 <= 0.42
+    request = Request(load("heart"), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.8)
+    assert predicted_for(request) == chosen_for(request) == heart
 
 
 def test_that_a_limit_is_kept() -> None:

@@ -10,6 +10,7 @@ import pytest
 from kirigami_studio.evaluate.candidate import Origin
 from kirigami_studio.evaluate.evenness import evenness, panel_sizes
 from kirigami_studio.evaluate.siou import exact_iou
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -21,6 +22,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
 from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, SearchTask, TrimTask, scored
+from kirigami_studio.polish import kept_sizes
 from kirigami_studio.polish.continuation import FitOptions, Way, fit_from_uniform
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import FitPhase
@@ -98,6 +100,15 @@ def test_that_a_fit_that_cannot_keep_the_size_is_told_to_be_too_thin() -> None:
     (found,) = scored(request, [fit.sheet], 0, fitted=True)
     (note,) = Ranking.of(request).reasons([found])
     assert note.code == "rank.too_thin"
+
+
+def test_that_a_step_that_would_blow_up_the_pose_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    def far(problem: kept_sizes._SizeProblem, damping: float) -> tuple[FloatArray, float]:
+        return np.full(problem.gradient.size, 1e5), 1.0
+
+    monkeypatch.setattr(kept_sizes._SizeProblem, "step", far)
+    fit = polish(RatioField.uniform(4, 4), load("star"), steps=2, least_panel=0.8, free_rim=True)
+    assert np.isfinite(fit.cost) and 1e-3 < fit.pose.scale < 1e3
 
 
 def test_that_no_step_is_taken_where_all_sizes_are_kept_and_none_without_steps() -> None:
