@@ -166,9 +166,7 @@ def fitted(points: np.ndarray, onto: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return turn, shift, float(np.linalg.norm(points @ turn.T + shift - onto, axis=1)[:-1].max(initial=0.0))
 
 
-def moved(
-    record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]
-) -> tuple[float, float]:
+def moved(record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]) -> tuple[float, float]:
     """Farthest that the holes of a pin are apart, and largest overlap within a layer, over the whole motion."""
     pins = overlap = 0.0
     for step in record["motion"]:

@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> the strokes of one bed: numbers, then holes and openings, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, then holes and openings, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
@@ -14,8 +14,9 @@ from functools import cached_property
 import numpy as np
 import shapely
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.nesting import Bed, Placement, nested
+from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.export.profile import NAME_LAYER, Profile
 from kirigami_studio.export.strokes import MITRE_LIMIT, Stroke
@@ -30,13 +31,19 @@ from kirigami_studio.foundation.errors import FabricationError
 
 #: Material (mm) that stays between the cuts of neighbours.
 WEB_MM = 1.0
+#: Chords of a quarter circle of the beam; of a kerf of 5 mm they miss 0.2 um.
+BEAM_CHORDS = 64
+#: Chords of a corner that the beam goes round miss it by this (mm).
+CORNER_CHORD_MM = 1e-4
+#: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
+SHARP_MM = 5e-4
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PieceCuts:
-    """What is cut and engraved of a piece, in its own frame, mm.
+    """Cuts and engraving of a piece, in its own frame, mm.
 
     Attributes
     ----------
@@ -80,26 +87,58 @@ class PieceCuts:
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> FloatArray:
-    """A counter-clockwise ring (L, 2), mm, moved outwards; corners stay sharp."""
+    """A counter-clockwise ring (L, 2), mm, moved outwards.
+
+    Corners stay sharp, unless a side beside one is so short that more material would be left there than the fillet of a
+    beam: then the beam goes round them.
+    """
     if by_mm == 0.0:
         return ring
-    area = shapely.buffer(Polygon(ring), by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    asked = Polygon(ring)
+    area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    least = closed_by(asked, by_mm)
+    if farthest(area.buffer(-by_mm, quad_segs=BEAM_CHORDS), least) > SHARP_MM:
+        area = shapely.buffer(asked, by_mm, quad_segs=_quarter_chords(abs(by_mm)))
     if not isinstance(area, Polygon) or area.is_empty or len(area.interiors):
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
     moved: FloatArray = shapely.get_coordinates(shapely.orient_polygons(area).exterior)[:-1]
     return moved
 
 
+def _quarter_chords(radius: float) -> int:
+    """Chords of a quarter circle that stay within ``CORNER_CHORD_MM`` of it."""
+    return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, CORNER_CHORD_MM / radius)))
+
+
+def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
+    """The area that a beam round it leaves: with fillets where it turns inwards."""
+    if half_mm == 0.0:
+        return area
+    return area.buffer(half_mm, quad_segs=BEAM_CHORDS).buffer(-half_mm, quad_segs=BEAM_CHORDS)
+
+
+def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
+    """Farthest that a corner of a shape is from another shape, mm."""
+    corners = shapely.points(shapely.get_coordinates(one))
+    tree = shapely.STRtree(shapely.points(shapely.get_coordinates(other)))
+    if not len(corners) or not len(tree):
+        return math.inf
+    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
+    # From corner to corner is quick, and nearly always near enough.
+    far = near > SHARP_MM
+    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
+
+
 @dataclass(frozen=True, eq=False)
 class CutBed:
-    """What one file cuts.
+    """Pieces on one bed, which one file cuts.
 
     Attributes
     ----------
     layer, number : int
         Of the pieces, and of the bed among those of its layer, from 1.
     pieces : tuple of PieceCuts
-    places : tuple of Placement
+    places : tuple of LaidShape
         Of each of them; the smallest coordinates of all cuts are 0.
     order : CutOrder
     """
@@ -122,7 +161,7 @@ class CutBed:
         return float(far[0]), float(far[1])
 
     @property
-    def placed(self) -> tuple[tuple[PieceCuts, Placement], ...]:
+    def placed(self) -> tuple[tuple[PieceCuts, LaidShape], ...]:
         """Pieces with their places."""
         return tuple(zip(self.pieces, self.places, strict=True))
 

@@ -1,12 +1,14 @@
-"""Pieces of an assembly as files cut them: found on their beds, and put together over the whole motion.
+"""Pieces of an assembly as files cut them: found on their beds, and put together again.
 
-Tolerances, mm: a finished outline lies within ``SAME_MM`` of the one that was asked for, but for the fillets of half a
-kerf that a beam leaves in corners that point into a piece; centres and diameters of holes are right within as much; pins
-meet within ``MEET_MM`` at every angle; pieces of one layer share no more than ``OVERLAP_MM2`` at any.
+Tolerances: a finished outline lies within ``OUTLINE_MM`` of the one that was asked for, but for the fillets of half a
+kerf that a beam leaves in corners that point into a piece (buffers, by which finished outlines are told, miss half of
+that at most); centres and diameters of holes are right within ``HOLE_MM``; pins meet within as much at every angle;
+pieces of one layer share no more than ``OVERLAP_MM2`` at any.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +18,7 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.pieces import RoundHole
-from kirigami_studio.export.cut_bed import CutBed, PieceCuts
+from kirigami_studio.export.cut_bed import BEAM_CHORDS, CutBed, PieceCuts, closed_by, farthest
 from kirigami_studio.export.profile import NAME_LAYER
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.verification import Finding
@@ -24,11 +26,9 @@ from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest_cut
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
-SAME_MM, MEET_MM, OVERLAP_MM2 = 1e-3, 1e-3, 0.01
+OUTLINE_MM, HOLE_MM, OVERLAP_MM2 = 2e-3, 1e-3, 0.01
 #: Outlines are those of a piece if their middles are nearer than this (mm).
 SAME_PLACE_MM = 0.5
-#: Chords of a quarter circle of the beam; of a kerf of 5 mm they miss 0.2 um.
-BEAM_CHORDS = 64
 #: Share of its margin that a number may be nearer to a cut: rounding.
 NUMBER_NEARER = 0.01
 
@@ -45,15 +45,21 @@ class FoundPiece:
         Finished, with its openings and without its round holes.
     holes : tuple of RoundHole
         Finished.
-    miss_mm : float
-        Farthest that its outline, its openings or its holes are from where they were asked for.
+    outline_miss_mm, hole_miss_mm : float
+        Farthest that its outline and openings, and its holes, are from where they were asked for.
     """
 
     id: str
     layer: int
     area: Polygon
     holes: tuple[RoundHole, ...]
-    miss_mm: float
+    outline_miss_mm: float
+    hole_miss_mm: float
+
+    @property
+    def miss_mm(self) -> float:
+        """The larger of both."""
+        return max(self.outline_miss_mm, self.hole_miss_mm)
 
 
 def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tuple[list[Finding], list[FoundPiece]]:
@@ -88,10 +94,10 @@ def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tupl
         here = place.taken(cuts[outer[number]].travelled(MEASURED_CHORD_MM)[:-1])
         parts = [(place.taken(cuts[one].points), place.taken(cuts[one].travelled(MEASURED_CHORD_MM))) for one in inside]
         pieces.append(_piece(piece, here, parts, kerf_mm))
-    worst = max(pieces, key=lambda one: one.miss_mm)
+    wrong = [one for one in pieces if one.outline_miss_mm > OUTLINE_MM or one.hole_miss_mm > HOLE_MM]
+    worst = max(wrong or pieces, key=lambda one: one.miss_mm)
     told = {"count": len(pieces), "piece": worst.id, "miss_um": round(1e3 * worst.miss_mm, 2)}
-    right = worst.miss_mm <= SAME_MM
-    findings = [Finding.judged(right, "verify.pieces_found" if right else "verify.pieces_differ", **told)]
+    findings = [Finding.judged(not wrong, "verify.pieces_differ" if wrong else "verify.pieces_found", **told)]
     return [*findings, *_number_finding(strokes, cuts, kerf_mm)], pieces
 
 
@@ -120,14 +126,14 @@ def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
 def _piece(
     cuts: PieceCuts, ring: FloatArray, inside: Sequence[tuple[FloatArray, FloatArray]], kerf_mm: float
 ) -> FoundPiece:
-    """A piece with its finished outline and holes, of the beam's ways (points and points along them)."""
+    """A finished piece, of the beam's ways inside it: their points, and points along them."""
     piece, half = cuts.piece, 0.5 * kerf_mm
     holes: list[RoundHole] = []
     openings: list[Polygon] = []
     for points, way in inside:
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
-        if float(np.ptp(radius)) <= SAME_MM and len(openings) + len(inside) - len(holes) > len(piece.openings):
+        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(piece.openings):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
             openings.append(Polygon(way))
@@ -135,42 +141,32 @@ def _piece(
     burned = [opening.buffer(half, quad_segs=BEAM_CHORDS) for opening in openings]
     finished = shapely.difference(area, shapely.union_all(burned)) if burned else area
     if not isinstance(finished, Polygon) or finished.is_empty:
-        return FoundPiece(piece.id, piece.layer, Polygon(ring), tuple(holes), np.inf)
+        return FoundPiece(piece.id, piece.layer, Polygon(ring), tuple(holes), math.inf, math.inf)
     asked = Polygon(piece.outline, piece.openings)
-    miss = max(_outline_miss(finished, asked, half), _holes_miss(holes, piece.holes))
-    return FoundPiece(piece.id, piece.layer, finished, tuple(holes), miss)
+    off = _outline_miss(finished, asked, half), _holes_miss(holes, piece.holes)
+    return FoundPiece(piece.id, piece.layer, finished, tuple(holes), *off)
 
 
 def _outline_miss(finished: Polygon, asked: Polygon, half: float) -> float:
     """Farthest that material is missing, or is left where no beam had to leave it, mm."""
-    whole = asked if half == 0.0 else asked.buffer(half, quad_segs=BEAM_CHORDS).buffer(-half, quad_segs=BEAM_CHORDS)
-    missing, left = _farthest(asked, finished), _farthest(finished, whole)
+    whole = closed_by(asked, half)
+    missing, left = farthest(asked, finished), farthest(finished, whole)
     # Sides that run between corners are judged by the area that both shapes do not share.
     between = shapely.symmetric_difference(finished, whole).area / asked.length
     return float(max(missing, left, between))
 
 
-def _farthest(one: Polygon, other: Polygon) -> float:
-    """Farthest that a corner of a shape is from another shape, mm."""
-    corners = shapely.points(shapely.get_coordinates(one))
-    tree = shapely.STRtree(shapely.points(shapely.get_coordinates(other)))
-    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
-    # From corner to corner is quick, and nearly always near enough.
-    far = near > 0.5 * SAME_MM
-    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
-
-
 def _holes_miss(found: Sequence[RoundHole], asked: Sequence[RoundHole]) -> float:
-    """Farthest that a hole is from the one nearest to it, in place or diameter, mm; infinite unless they pair up."""
+    """Largest fault of a hole, in place or diameter, mm; infinite unless they pair up."""
     if len(found) != len(asked):
-        return np.inf
+        return math.inf
     if not asked:
         return 0.0
     centres, wanted = (np.array([hole.centre for hole in holes]) for holes in (found, asked))
     away = np.linalg.norm(centres[:, None] - wanted[None], axis=2)
     nearest = away.argmin(axis=1)
     if len(set(nearest.tolist())) != len(asked):
-        return np.inf
+        return math.inf
     wider = [abs(hole.diameter_mm - asked[at].diameter_mm) for hole, at in zip(found, nearest, strict=True)]
     return float(max(away.min(axis=1).max(), *wider))
 
@@ -193,7 +189,9 @@ def same_pieces(one: Mapping[str, FoundPiece], other: Mapping[str, FoundPiece], 
     """Whether all points of pieces agree within a tolerance."""
     if list(one) != list(other):
         return False
-    alike = shapely.equals_exact([piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm)
+    alike = shapely.equals_exact(
+        [piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm
+    )
     holes, others = (
         np.array([(*hole.centre, hole.diameter_mm) for piece in pieces.values() for hole in piece.holes])
         for pieces in (one, other)
@@ -225,7 +223,7 @@ def _pin_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], po
     for hinge in record["hinges"]:
         for side, (name, at) in enumerate(zip(hinge["pieces"], hinge["at"], strict=True)):
             holes = pieces[name].holes
-            away = np.array([np.linalg.norm(hole.centre - at) for hole in holes]) if holes else np.array([np.inf])
+            away = np.array([np.linalg.norm(hole.centre - at) for hole in holes]) if holes else np.array([math.inf])
             miss = max(miss, float(away.min()))
             ends[side].append(holes[int(away.argmin())].centre if holes else np.zeros(2))
             wide[side].append(holes[int(away.argmin())].diameter_mm if holes else 0.0)
@@ -235,7 +233,7 @@ def _pin_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], po
         miss = max(miss, float(np.linalg.norm(places[0] - places[1], axis=2).max()))
         miss = max(miss, float(np.abs(np.subtract(*wide)).max()))
     told = {"pins": len(record["hinges"]), "angles": len(poses), "miss_um": round(1e3 * miss, 2)}
-    return Finding.judged(miss <= MEET_MM, "verify.pins_meet" if miss <= MEET_MM else "verify.pins_miss", **told)
+    return Finding.judged(miss <= HOLE_MM, "verify.pins_meet" if miss <= HOLE_MM else "verify.pins_miss", **told)
 
 
 def _carried(points: FloatArray, poses: FloatArray) -> FloatArray:
@@ -260,7 +258,7 @@ def _overlap_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]
 
 
 def _overlaps(pieces: Sequence[FoundPiece], poses: FloatArray) -> list[tuple[int, float, tuple[int, int]]]:
-    """Number of each angle at which pieces lie upon each other, how much of them does, and the first two."""
+    """Angles at which pieces lie upon each other: number, shared area, and the worst two."""
     shapes = np.array([piece.area for piece in pieces], dtype=object)
     coordinates, rings = shapely.get_coordinates(shapes, return_index=True)
     places = coordinates @ (1.0, 1j)

@@ -352,8 +352,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.pieces_found": mark_n(
         "{count} piece is there, and its outline and holes are right within {miss_um:.2f} µm ({piece}).",
-        "All {count} pieces are there once, and their outlines and holes are right within {miss_um:.2f} µm (the worst is "
-        "{piece}).",
+        "All {count} pieces are there once, and their outlines and holes are right within {miss_um:.2f} µm (the worst "
+        "is {piece}).",
     ),
     "verify.pieces_differ": mark(
         "Piece {piece} has an outline or a hole that is {miss_um:.2f} µm from its place. Export it again."
@@ -372,11 +372,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.pieces_pass": mark("Pieces of one layer pass each other at all {angles} angles."),
     "verify.pieces_collide": mark(
-        "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more clearance or "
-        "smaller ears."
+        "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more "
+        "clearance or smaller ears."
     ),
     "verify.motion_as_planned": mark("Pieces, pins and their places at {angles} angles are as planned."),
-    "verify.motion_differs": mark("Pieces, pins or their places at {angles} angles are not as planned. Export it again."),
+    "verify.motion_differs": mark(
+        "Pieces, pins or their places at {angles} angles are not as planned. Export it again."
+    ),
     "assembly.not_as_meant": mark("Nothing was written, for {name:.120} is not as it was meant: {finding}"),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."

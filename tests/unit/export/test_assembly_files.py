@@ -133,7 +133,9 @@ def test_that_two_readers_find_every_piece_in_every_file(job: AssemblyJob, tmp_p
     files = write_assembly(job, tmp_path / "out")
     assert len(files.verifications) == len(KINDS) * len(job.beds) + 1
     assert all(one.ok and all(finding.ok for finding in one.findings) for one in files.verifications)
-    assert {"verify.pieces_found", "verify.numbers", "verify.points_as_planned", "verify.layers_as_planned"} <= codes(files)
+    assert {"verify.pieces_found", "verify.numbers", "verify.points_as_planned", "verify.layers_as_planned"} <= codes(
+        files
+    )
     assert {"verify.pins_meet", "verify.pieces_pass", "verify.motion_as_planned"} <= codes(files)
     for one in files.verifications[:-1]:
         assert one.pieces == len(next(bed for bed in job.beds if bed.name == one.path.stem).pieces)
