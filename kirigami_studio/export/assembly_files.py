@@ -126,7 +126,7 @@ class AssemblyJob:
         Raises
         ------
         FabricationError
-            A hole, a notch or an opening that is narrower than the kerf.
+            A hole or an opening that is narrower than the kerf.
         """
         return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 

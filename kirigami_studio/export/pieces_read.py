@@ -133,7 +133,7 @@ def _piece(
     for points, way in inside:
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
-        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(piece.openings):
+        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(cuts.openings):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
             openings.append(Polygon(way))
