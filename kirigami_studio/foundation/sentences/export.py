@@ -281,6 +281,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file holds {count} cut; its record says {promised}. Export it again.",
         "The file holds {count} cuts; its record says {promised}. Export it again.",
     ),
+    "cut_file.piece_open": mark(
+        "The cut at x = {x:.2f}, y = {y:.2f} mm is not closed: a piece would not come free. Export it again."
+    ),
+    "cut_file.pieces_cross": mark(
+        "The cut at x = {x:.2f}, y = {y:.2f} mm meets another one: a piece would be cut into. Export it again."
+    ),
+    "cut_file.pieces_differ": mark_n(
+        "The file holds {count} piece; its record says {promised}. Export it again.",
+        "The file holds {count} pieces; its record says {promised}. Export it again.",
+    ),
     "cut_file.narrower_than_recorded": mark(
         "Two cuts leave only {width_mm:.3f} mm of material between them; the narrowest connector was made "
         "{recorded_mm:.3f} mm wide."
