@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -28,6 +28,7 @@ help:
 	@echo "make test-all  lint and every test: before a release"
 	@echo "make test-durations  measure every test, for the choice that make test makes: tests/durations.json"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
+	@echo "make pinned  write DESIGNS random pinned designs and read them back without the program"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
@@ -111,6 +112,11 @@ JOBS ?= 2
 fuzz: setup
 	OMP_NUM_THREADS=1 QT_QPA_PLATFORM=offscreen $(BIN)/python tests/fuzzed_readers.py --inputs $(INPUTS) --seed $(SEED) \
 	  --jobs $(JOBS) --out build/fuzz $(READERS)
+
+#: Random pinned designs, written, and read back without the program: make pinned DESIGNS=200
+DESIGNS ?= 200
+pinned: setup
+	OMP_NUM_THREADS=1 $(BIN)/python tests/random_assemblies.py $(DESIGNS)
 
 #: One window for an hour: GENERATIONS runs called off, EDITS undone; what it holds meanwhile, a line of JSON each.
 GENERATIONS ?= 500

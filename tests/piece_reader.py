@@ -113,17 +113,20 @@ def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
     for path in sorted(folder.glob(f"layer-*{kind}")):
         layer = int(re.match(r"layer-(\d+)", path.name)[1])
         rings = READERS[kind](path)
-        outlines = [Polygon(ring) for ring, is_circle in rings if not is_circle]
+        solid = [Polygon(ring) for ring, is_circle in rings if not is_circle]
+        outlines = [one for one in solid if not any(other.contains(one) for other in solid if other is not one)]
+        pockets = [one for one in solid if not any(one is other for other in outlines)]
         holes = [ring.mean(axis=0) for ring, is_circle in rings if is_circle]
         radii = [np.linalg.norm(ring[0] - ring.mean(axis=0)) for ring, is_circle in rings if is_circle]
         for beam in outlines:
             mine = [at for at, hole in enumerate(holes) if beam.contains(shapely.Point(hole))]
-            finished = beam.buffer(-0.5 * kerf_mm, quad_segs=64)
+            burned = [one.buffer(0.5 * kerf_mm, quad_segs=64) for one in pockets if beam.contains(one)]
+            finished = beam.buffer(-0.5 * kerf_mm, quad_segs=64).difference(shapely.union_all(burned))
             here = np.array([holes[at] for at in mine]).reshape(-1, 2)
-            name, turn, shift, miss = recognised(finished, here, layer, wanted, found)
+            name, turn, shift, miss = recognised(finished, here, layer, wanted, found, kerf_mm)
             area = shapely.transform(finished, lambda points, turn=turn, shift=shift: points @ turn.T + shift)
             meant = Polygon(wanted[name]["outline"])
-            fillets = meant.buffer(0.5 * kerf_mm, quad_segs=64).buffer(-0.5 * kerf_mm, quad_segs=64)
+            fillets = filleted(meant, kerf_mm)
             corners = shapely.points(shapely.get_coordinates(area))
             outline_mm = max(outline_mm, shapely.distance(shapely.points(np.array(meant.exterior.coords)), area).max(),
                              shapely.distance(corners, fillets).max())  # fmt: skip
@@ -135,15 +138,20 @@ def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
     return Together(len(found), outline_mm, holes_mm, *moved(record, found, {n: p["layer"] for n, p in wanted.items()}))
 
 
+def filleted(area: Polygon, kerf_mm: float) -> Polygon:
+    """What a round beam leaves that goes round an area."""
+    return area.buffer(0.5 * kerf_mm, quad_segs=64).buffer(-0.5 * kerf_mm, quad_segs=64) if kerf_mm else area
+
+
 def recognised(
-    area: Polygon, holes: np.ndarray, layer: int, wanted: dict[str, dict], found: dict[str, object]
+    area: Polygon, holes: np.ndarray, layer: int, wanted: dict[str, dict], found: dict[str, object], kerf_mm: float
 ) -> tuple[str, np.ndarray, np.ndarray, float]:
     """The piece of a layer that is not found yet and fits best; its turn, its shift, and how far its holes are off."""
     best = ("", np.eye(2), np.zeros(2), np.inf)
     for name, piece in wanted.items():
-        meant = Polygon(piece["outline"])
         if piece["layer"] != layer or name in found or len(piece["holes"]) != len(holes):
             continue
+        meant = filleted(Polygon(piece["outline"]), kerf_mm)
         if abs(meant.area - area.area) > 0.5:
             continue
         middles = np.array([Polygon(ring).centroid.coords[0] for ring in piece["holes"]]).reshape(-1, 2)
@@ -166,9 +174,7 @@ def fitted(points: np.ndarray, onto: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return turn, shift, float(np.linalg.norm(points @ turn.T + shift - onto, axis=1)[:-1].max(initial=0.0))
 
 
-def moved(
-    record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]
-) -> tuple[float, float]:
+def moved(record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]) -> tuple[float, float]:
     """Farthest that the holes of a pin are apart, and largest overlap within a layer, over the whole motion."""
     pins = overlap = 0.0
     for step in record["motion"]:

@@ -30,7 +30,7 @@ GROWTH, BEGIN = 1.04, 1.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placement:
+class LaidShape:
     """Where a shape lies on its bed.
 
     Attributes
@@ -55,7 +55,7 @@ class Placement:
         return rotate(points - self.shift, -self.turn)
 
 
-Bed = tuple[Placement, ...]
+Bed = tuple[LaidShape, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,13 +86,13 @@ class _Rectangle:
         low: FloatArray = turned.min(axis=0)
         return cls(turn, low, turned.max(axis=0) - low)
 
-    def placed(self, shape: int, corner: FloatArray, upright: bool) -> Placement:
-        """The placement with the lower left corner (2,), mm; turned by a right angle where it lies upright."""
+    def placed(self, shape: int, corner: FloatArray, upright: bool) -> LaidShape:
+        """The place of a shape with its lower left corner (2,), mm; a quarter turn where upright."""
         if not upright:
-            return Placement(shape, corner - self.low, self.turn)
+            return LaidShape(shape, corner - self.low, self.turn)
         # A quarter turn to the left takes the rectangle's upper left corner to the lower left one.
         low = np.array([-(self.low[1] + self.size[1]), self.low[0]])
-        return Placement(shape, corner - low, self.turn + 0.5 * math.pi)
+        return LaidShape(shape, corner - low, self.turn + 0.5 * math.pi)
 
 
 def nested(
@@ -113,7 +113,7 @@ def nested(
 
     Returns
     -------
-    beds : list of tuple of Placement
+    beds : list of tuple of LaidShape
         In the frame of the bed; a shape that no bed has room for lies alone on the last ones, at the margin.
     """
     rectangles = [_Rectangle.of(outline) for outline in outlines]
@@ -145,7 +145,10 @@ _Packed = list[list[tuple[int, int, int, int, int]]]
 
 
 def _packed(rectangles: Sequence[tuple[int, int, int]], room: tuple[float, ...]) -> _Packed:
-    """Rectangles on as few beds as are found; what is on the last one lies in a small block, not in a long strip."""
+    """Rectangles on as few beds as are found.
+
+    Those of the last one lie in a small block, not in a long strip.
+    """
     if min(room) > 0.0:
         width, height = (math.floor(side * UNITS) for side in room)
         tried = (_tried(rectangles, way, width, height, len(rectangles)) for way in WAYS)
@@ -172,7 +175,7 @@ def _tried(
 
 
 def _block(rectangles: Sequence[tuple[int, int, int]], width: float, height: float) -> list[Any] | None:
-    """Rectangles in the smallest square that holds them, cut to the sides of the bed; None where none does."""
+    """Rectangles in the smallest square that holds them, which ends at the bed; None where none does."""
     area = BEGIN * sum(wide * high for wide, high, _ in rectangles)
     longest = max(max(wide, high) for wide, high, _ in rectangles)
     while True:

@@ -282,7 +282,7 @@ def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     document = None if arguments.design is None else load(arguments.design)
     found = checked(Path(arguments.file), document)
-    report, record = found.report, found.report.record
+    report, record = found.report, found.report.record or found.report.of_pieces
     problems = [problem.text for problem in report.problems]
     if arguments.json:
         answer: dict[str, object] = {

@@ -1,7 +1,8 @@
-"""A design of several pieces -> a folder: a cut file for each bed, pieces and motion, parts list, assembly sheet.
+"""A design of several pieces -> a folder.
 
-The folder appears whole or not at all.  Every cut file is read back by two readers, and the pieces that were found in
-the files of a kind are put together again by the motion that the folder tells (``pieces_read``).
+It has a cut file for each bed, pieces and their motion, the parts list and the assembly sheet.  The folder appears
+whole or not at all.  Every cut file is read back by two readers, and the pieces that were found in the files of a kind
+are put together again by the motion that the folder tells (``pieces_read``).
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -62,7 +63,6 @@ PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
 OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
-COLUMNS = ("item", "layer", "bed", "file", "count", "diameter_mm", "length_mm", "area_mm2", "cut_mm", "seconds", "note")
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,7 @@ class AssemblyJob:
         Raises
         ------
         FabricationError
-            A hole, a notch or an opening that is narrower than the kerf.
+            A hole or an opening that is narrower than the kerf.
         """
         return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
@@ -137,7 +137,7 @@ class AssemblyJob:
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What to read before cutting."""
+        """Notes to read before cutting."""
         room = self.machine.reach_mm
         large = [
             Note.of("pieces.larger_than_bed", piece=bed.pieces[0].piece.id, width_mm=room[0], height_mm=room[1])
@@ -419,15 +419,18 @@ def _motion_verified(
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """A line of the parts list; what does not apply is None.
+class PartLine:
+    """A line of the parts list, whose entries are its columns; None where one does not apply.
 
     Attributes
     ----------
-    item, note : str
-    layer, bed, count : int or None
+    item : str
+    layer, bed : int or None
     file : str
+        Stem of the cut file.
+    count : int or None
     diameter_mm, length_mm, area_mm2, cut_mm, seconds : float or None
+    note : str
     """
 
     item: str
@@ -443,29 +446,56 @@ class Part:
     note: str = ""
 
 
-def parts(job: AssemblyJob) -> tuple[Part, ...]:
+COLUMNS = tuple(entry.name for entry in fields(PartLine))
+
+
+def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
     """The parts list: pieces of each bed, pins, material, and all together."""
     found = []
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)
         ids = " ".join(cuts.piece.id for cuts in bed.pieces)
         found.append(
-            Part("pieces", bed.layer, bed.number, bed.name, len(bed.pieces), area_mm2=area, cut_mm=work.cut_length_mm,
-                 seconds=work.times.total, note=ids)
-        )  # fmt: skip
+            PartLine(
+                "pieces",
+                bed.layer,
+                bed.number,
+                bed.name,
+                len(bed.pieces),
+                area_mm2=area,
+                cut_mm=work.cut_length_mm,
+                seconds=work.times.total,
+                note=ids,
+            )
+        )
     if job.assembly.hinges:
-        pins = Part("pins", count=len(job.assembly.hinges), diameter_mm=job.hole_mm, length_mm=job.fastener_length_mm,
-                    note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long")  # fmt: skip
+        pins = PartLine(
+            "pins",
+            count=len(job.assembly.hinges),
+            diameter_mm=job.hole_mm,
+            length_mm=job.fastener_length_mm,
+            note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
+        )
         found.append(pins)
-    sheet = f"{job.material.name}, {job.material.thickness_mm:g} mm; area of the rectangles round what is cut"
-    found.append(Part("material", count=len(job.beds), note=sheet,
-                      area_mm2=sum(bed.size_mm[0] * bed.size_mm[1] for bed in job.beds)))  # fmt: skip
+    sheet = f"{job.material.name}; area of the rectangles round what is cut"
     found.append(
-        Part("all cuts", count=len(job.assembly.pieces), area_mm2=sum(map(_area, job.assembly.pieces)),
-             cut_mm=sum(work.cut_length_mm for work in job.works),
-             seconds=sum(work.times.total for work in job.works),
-             note=f"on {job.machine.name}")
-    )  # fmt: skip
+        PartLine(
+            "material",
+            count=len(job.beds),
+            note=sheet,
+            area_mm2=sum(bed.size_mm[0] * bed.size_mm[1] for bed in job.beds),
+        )
+    )
+    found.append(
+        PartLine(
+            "all cuts",
+            count=len(job.assembly.pieces),
+            area_mm2=sum(map(_area, job.assembly.pieces)),
+            cut_mm=sum(work.cut_length_mm for work in job.works),
+            seconds=sum(work.times.total for work in job.works),
+            note=f"on {job.machine.name}",
+        )
+    )
     return tuple(found)
 
 
@@ -481,9 +511,7 @@ def parts_csv(job: AssemblyJob) -> str:
     table = csv.writer(text, lineterminator="\r\n")
     table.writerow(COLUMNS)
     for part in parts(job):
-        table.writerow([_cell(getattr(part, column)) for column in
-                        ("item", "layer", "bed", "file", "count", "diameter_mm", "length_mm", "area_mm2", "cut_mm",
-                         "seconds", "note")])  # fmt: skip
+        table.writerow([_cell(getattr(part, column)) for column in COLUMNS])
     return text.getvalue()
 
 

@@ -1,4 +1,4 @@
-"""The assembly sheet: what the pieces are put together to, in which order, and the flat sheet at 1:1 to lay them on.
+"""The assembly sheet: pictures, parts, steps, and the flat sheet at 1:1 to lay pieces on.
 
 The first page shows the flat and the opened sheet, the parts and the steps, the next ones the pins row by row and where
 pieces lie on their beds.  The last ones show the flat sheet at true size: one large page, or pages of a paper size.
@@ -70,7 +70,7 @@ STEPS = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AssemblySheet:
-    """What the sheet shows.
+    """Content of the sheet.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: its rings, the outer one first, its number, and where that stands."""
+    """A piece in a picture, mm: its rings, the outer one first, its number and its place."""
 
     layer: int
     rings: tuple[FloatArray, ...]
@@ -314,7 +314,7 @@ class _Column:
 
 
 def _printable(text: str) -> str:
-    """What the fonts of every reader of PDF have."""
+    """The letters that the fonts of every reader of PDF have."""
     return text.encode("cp1252", "replace").decode("cp1252")
 
 
@@ -362,7 +362,7 @@ def _legend(canvas: Any, y: float, scale: float) -> None:
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
     for layer, words in ((1, "layer 1, in front"), (2, "layer 2, behind")):
-        ring = square + (x, y)
+        ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
@@ -453,7 +453,7 @@ def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
 
 
 def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
-    """Draw what a page shows of the flat sheet at true size; lines that leave it are cut off there."""
+    """Draw a page's part of the flat sheet at true size; lines that leave it end there."""
     shift, window = to_page(part), shapely.box(*part.window)
     canvas.saveState()
     clip = canvas.beginPath()

@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> the strokes of one bed: numbers, then holes and openings, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, then holes and openings, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
@@ -16,13 +16,14 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.nesting import Bed, Placement, nested
+from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.export.profile import NAME_LAYER, Profile
 from kirigami_studio.export.strokes import MITRE_LIMIT, Stroke
 from kirigami_studio.fabricate.cut_path import CutPath, Layer, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS
 from kirigami_studio.fabricate.engraving import clearance_mm, written_in
+from kirigami_studio.fabricate.finished_sheet import DUST_MM2
 from kirigami_studio.fabricate.options import CutOrder
 from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.routing import Ways, shortest_tour
@@ -43,7 +44,7 @@ ROUND = 16
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PieceCuts:
-    """What is cut and engraved of a piece, in its own frame, mm.
+    """Cuts and engraving of a piece, in its own frame, mm.
 
     Attributes
     ----------
@@ -53,6 +54,7 @@ class PieceCuts:
     holes : tuple of RoundHole
         As the middle of the beam goes.
     openings : tuple of (K, 2) float
+        Those of the piece first, clockwise; then notches that the beam cannot enter by their mouths.
     number : tuple of (P, 2) float
         Open strokes; none where the number has no room.
     """
@@ -70,14 +72,15 @@ class PieceCuts:
         Raises
         ------
         FabricationError
-            A hole that is no wider than the kerf, or a notch or opening that is narrower.
+            A hole that is no wider than the kerf, or an opening that is narrower.
         """
         half = 0.5 * kerf_mm
         if any(hole.diameter_mm <= kerf_mm for hole in piece.holes):
             least = min(hole.diameter_mm for hole in piece.holes)
             raise FabricationError("pieces.hole_within_kerf", piece=piece.id, hole_mm=least, kerf_mm=kerf_mm)
-        outline = _offset(piece, piece.outline, half, kerf_mm)
-        openings = tuple(_offset(piece, opening[::-1], -half, kerf_mm)[::-1] for opening in piece.openings)
+        outline, *pockets = _offset(piece, piece.outline, half, kerf_mm)
+        inner = [_offset(piece, opening[::-1], -half, kerf_mm)[0][::-1] for opening in piece.openings]
+        openings = (*inner, *pockets)
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
         rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
         area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
@@ -86,23 +89,25 @@ class PieceCuts:
         return cls(piece, outline, holes, openings, written_in(free, piece.id))
 
 
-def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> FloatArray:
-    """A counter-clockwise ring (L, 2), mm, moved outwards.
+def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
+    """A counter-clockwise ring (L, 2), mm, moved outwards, and clockwise ones in the notches that this closes.
 
-    Corners stay sharp, unless a side beside one is so short that more material would be left there than the fillet of a
-    beam: then the beam goes round them.
+    A notch whose mouth is narrower than the beam is cut from the inside; its mouth stays.  Corners stay sharp, unless a
+    side beside one is so short that more material would be left there than the fillet of a beam: then the beam goes
+    round them.
     """
     if by_mm == 0.0:
-        return ring
+        return [ring]
     asked = Polygon(ring)
     area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
     if farthest(area.buffer(-by_mm, quad_segs=BEAM_CHORDS), least) > SHARP_MM:
         area = shapely.buffer(asked, by_mm, quad_segs=_quarter_chords(abs(by_mm)))
-    if not isinstance(area, Polygon) or area.is_empty or len(area.interiors):
+    if not isinstance(area, Polygon) or area.is_empty:
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
-    moved: FloatArray = shapely.get_coordinates(shapely.orient_polygons(area).exterior)[:-1]
-    return moved
+    area = shapely.orient_polygons(area)
+    pockets = [pocket for pocket in area.interiors if Polygon(pocket).area > DUST_MM2]
+    return [shapely.get_coordinates(one)[:-1] for one in (area.exterior, *pockets)]
 
 
 def _quarter_chords(radius: float) -> int:
@@ -111,7 +116,7 @@ def _quarter_chords(radius: float) -> int:
 
 
 def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
-    """What a beam leaves that goes round an area at half its width: the area, with fillets where it turns inwards."""
+    """The area that a beam round it leaves: with fillets where it turns inwards."""
     if half_mm == 0.0:
         return area
     return area.buffer(half_mm, quad_segs=BEAM_CHORDS).buffer(-half_mm, quad_segs=BEAM_CHORDS)
@@ -131,14 +136,14 @@ def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
 
 @dataclass(frozen=True, eq=False)
 class CutBed:
-    """What one file cuts.
+    """Pieces on one bed, which one file cuts.
 
     Attributes
     ----------
     layer, number : int
         Of the pieces, and of the bed among those of its layer, from 1.
     pieces : tuple of PieceCuts
-    places : tuple of Placement
+    places : tuple of LaidShape
         Of each of them; the smallest coordinates of all cuts are 0.
     order : CutOrder
     """
@@ -161,7 +166,7 @@ class CutBed:
         return float(far[0]), float(far[1])
 
     @property
-    def placed(self) -> tuple[tuple[PieceCuts, Placement], ...]:
+    def placed(self) -> tuple[tuple[PieceCuts, LaidShape], ...]:
         """Pieces with their places."""
         return tuple(zip(self.pieces, self.places, strict=True))
 

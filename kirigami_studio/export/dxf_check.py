@@ -28,7 +28,7 @@ from kirigami_studio.export.dxf_reading import (
     read_content,
 )
 from kirigami_studio.export.file_content import MILLIMETRES
-from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, record_of
+from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRecord, piece_record_of, record_of
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
@@ -82,6 +82,7 @@ class FileReport:
     min_ligament_mm: float | None  #: finished width of the narrowest place between two cuts
     #: How the file says it was made; None for files of others, of earlier versions, and for damaged records.
     record: FileRecord | None = None
+    of_pieces: PieceRecord | None = None  #: the same of a bed with the pieces of an assembly
 
     @property
     def ok(self) -> bool:
@@ -115,6 +116,13 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     problems = [*content.problems, *_layer_problems(content.layers), *damaged]
     drawn = content.paths
     content = _without_name(content, kerf, problems)
+    try:
+        of_pieces = piece_record_of(content.facts)
+    except ExportError as error:
+        problems.append(Problem.error(error.code, **error.fields))
+        of_pieces = None
+    if of_pieces is not None:
+        return _piece_report(Path(path), content, kerf, of_pieces, problems)
     record = _record(content, problems)
     if not content.paths:
         of_the_name = drawn and "PART" in content.facts
@@ -142,6 +150,41 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         problems.append(Problem.warning("cut_file.narrower_than_recorded", **widths))
     return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(lines), length, twice.length_mm,
                       bounds, kerf, None if pieces is None else copies * pieces, ligament, record)  # fmt: skip
+
+
+def _piece_report(
+    path: Path, content: DxfContent, kerf: float, record: PieceRecord, problems: list[Problem]
+) -> FileReport:
+    """Judge a bed with pieces: all cuts closed, none upon another, as many pieces as its record says."""
+    whole = "PART" not in content.facts
+    if whole and len(content.paths) != record.lines:
+        problems.append(Problem.error("cut_file.lines_differ", count=len(content.paths), promised=record.lines))
+    points = np.concatenate([found.points for found in content.paths] or [np.zeros((1, 2))])
+    width, height = np.ptp(points, axis=0).tolist()
+    problems += _size_problems((width, height)) if content.paths else []
+    for found in content.paths:
+        if not found.closed:
+            x, y = found.points[0].tolist()
+            problems.append(Problem.error("cut_file.piece_open", (x, y)))
+    rings = np.array([LineString(found.points) for found in content.paths], dtype=object)
+    one, other = shapely.STRtree(rings).query(rings, predicate="intersects")
+    for at in one[one < other].tolist():
+        x, y = content.paths[at].points[0].tolist()
+        problems.append(Problem.error("cut_file.pieces_cross", (x, y)))
+    closed = [found.points for found in content.paths if found.closed and len(found.points) > 3]
+    areas = np.array([Polygon(ring) for ring in closed], dtype=object)
+    starts = shapely.points(np.array([ring[0] for ring in closed]).reshape(-1, 2))
+    inside = shapely.STRtree(starts).query(areas, predicate="contains_properly")[1]
+    pieces = len(areas) - len(np.unique(inside))
+    if whole and pieces != record.pieces:
+        problems.append(Problem.error("cut_file.pieces_differ", count=pieces, promised=record.pieces))
+    near = (
+        [shapely.distance(rings[at], np.delete(rings, at)).min() for at in range(len(rings))] if len(rings) > 1 else []
+    )
+    length = sum(found.length for found in content.paths)
+    ligament = float(min(near)) - kerf if near else None
+    return FileReport(path, tuple(problems), content.unit, content.layers, len(content.paths), length, 0.0,
+                      (width, height), kerf, pieces if whole else None, ligament, None, record)  # fmt: skip
 
 
 def _record(content: DxfContent, problems: list[Problem]) -> FileRecord | None:

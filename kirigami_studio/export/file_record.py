@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from kirigami_studio.export.dxf_reading import MOST_PIECES
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.provenance import ONE_SHEET, PROGRAM, SLOT_KERF, VERDICT
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import COPY_GAP_MM, TAB_MM, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.plain_text import plain_line
@@ -190,3 +191,61 @@ class _Facts:
                 break
             words += self.text(f"{key}_{number}").split()
         return words
+
+
+@dataclass(frozen=True, slots=True)
+class PieceRecord:
+    """How the file of a bed with pieces says it was made."""
+
+    version: str  #: of the program
+    design: str  #: identifies the sheet
+    construction: str  #: "pinned", "backed"
+    material: str  #: key of the preset
+    machine: str  #: key of the machine that was asked for, "" for the one that the material is for
+    profile: Profile
+    kerf_mm: float  #: that the cuts allow for
+    layer: int
+    bed: str  #: "1 of 2"
+    pieces: int
+    #: Diameters of holes and ears, and room between pieces that pass each other.
+    pin_mm: float
+    ear_mm: float
+    clearance_mm: float
+    lines: int  #: that are cut
+    verdict: str  #: level of the verdict of the export, "" where there was none
+
+    def to_json(self) -> dict[str, object]:
+        """For the command line."""
+        names = (entry.name for entry in fields(self) if entry.name not in ("profile", "lines", "verdict"))
+        return {name: getattr(self, name) for name in names} | {"profile": self.profile.key}
+
+
+def piece_record_of(facts: Mapping[str, str]) -> PieceRecord | None:
+    """The record of a bed with pieces among a file's facts; None for all other files.
+
+    Raises
+    ------
+    ExportError
+        A record that no export writes.
+    """
+    if PROGRAM not in facts or "PIECES" not in facts:
+        return None
+    read = _Facts(facts)
+    pieces = tuple(one.value for one in Construction if one is not Construction.ONE_SHEET)
+    return PieceRecord(
+        version=read.text(PROGRAM),
+        design=read.text("DESIGN"),
+        construction=read.one_of("CONSTRUCTION", pieces),
+        material=read.text("MATERIAL"),
+        machine=read.text("MACHINE", ""),
+        profile=read.profile(),
+        kerf_mm=read.number("KERF_MM"),
+        layer=read.count("LAYER"),
+        bed=read.text("BED"),
+        pieces=read.count("PIECES"),
+        pin_mm=read.number("PIN_MM"),
+        ear_mm=read.number("EAR_MM"),
+        clearance_mm=read.number("CLEARANCE_MM"),
+        lines=read.count("LINES"),
+        verdict=read.one_of(VERDICT, ("", "ready_to_cut", "cut_with_care", "will_not_work"), ""),
+    )

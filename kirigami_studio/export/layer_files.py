@@ -67,7 +67,7 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
 def fill_layer_folder(
     folder: Path, strokes: Sequence[Stroke], version: str, facts: dict[str, str], record: bytes = b""
 ) -> None:
-    """Write a file for each layer of any strokes into a folder; arguments as for :func:`strokes_dxf`.
+    """Write a file for each layer of any strokes; arguments as for ``strokes_dxf``.
 
     Raises
     ------
@@ -193,7 +193,7 @@ def _refuse_strange_content(folder: Path) -> None:
 
 
 def _exchange_content(fresh: Path, folder: Path, own: re.Pattern[str]) -> None:
-    """Put the entries of one folder among those of another; older ones of ours come back if that fails."""
+    """Put entries of one folder among those of another; older ones come back if that fails."""
     names = [entry.name for entry in fresh.iterdir()]
     old = Path(tempfile.mkdtemp(prefix=f".{folder.name[:NAME_PART]}.old.", dir=folder.parent))
     moved: list[tuple[Path, Path]] = []

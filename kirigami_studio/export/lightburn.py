@@ -114,7 +114,7 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
 def strokes_lightburn(
     strokes: Sequence[Stroke], material: Material, machine: Machine, facts: Mapping[str, str]
 ) -> bytes:
-    """Return the project of any strokes, whose layers have the names of :class:`Layer`, the engraved ones first."""
+    """Return the project of any strokes; their layers have the names of :class:`Layer`."""
     names = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
     cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer != NAME_LAYER]
     root = _project(material, machine, tuple(dict.fromkeys(layer for _, layer in cuts)), bool(names))
@@ -362,7 +362,8 @@ def _circle_curves(shape: ElementTree.Element) -> list[Curve]:
     if place is None or shape.get("Rx") != shape.get("Ry") or not radius > 0.0:
         raise ValueError("an ellipse that is no circle lies on a layer that is cut")
     centre = np.array([float(place[1]), float(place[2])])
-    right, left = centre + (radius, 0.0), centre - (radius, 0.0)
+    arm = np.array([radius, 0.0])
+    right, left = centre + arm, centre - arm
     found: list[Curve] = []
     for start, stop in ((right, left), (left, right)):
         here = start

@@ -1,4 +1,4 @@
-"""Two readers of LightBurn projects for the verification of strokes: by the XML, and by the words of the text alone.
+"""Two readers of strokes in LightBurn projects: by the XML, and by the words of the text.
 
 The second one shares no code with the first, nor with what writes projects.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -103,7 +104,7 @@ def _scanned(text: str, settings: Mapping[str, str]) -> Iterator[Stroke]:
         corners = np.array([[float(x), float(y)] for x, y, _ in _CORNER.findall(_inside(match[2], "VertList"))])
         parts = _PART.findall(_inside(match[2], "PrimList"))
         ways = [(int(one), int(other)) for kind, one, other in parts if kind == "L"]
-        if len(ways) != len(parts) or any(one[1] != other[0] for one, other in zip(ways, ways[1:], strict=False)):
+        if len(ways) != len(parts) or any(one[1] != other[0] for one, other in pairwise(ways)):
             raise ValueError("a shape has curves, or its parts do not follow each other")
         closed = ways[-1][1] == ways[0][0]
         visited = [start for start, _ in ways] + ([] if closed else [ways[-1][1]])

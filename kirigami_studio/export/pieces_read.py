@@ -1,8 +1,8 @@
-"""Pieces of an assembly as files cut them: found on their beds, and put together over the whole motion.
+"""Pieces of an assembly as files cut them: found on their beds, and put together again.
 
 Tolerances: a finished outline lies within ``OUTLINE_MM`` of the one that was asked for, but for the fillets of half a
-kerf that a beam leaves in corners that point into a piece (Shapely's buffers, by which finished outlines are told, miss
-about half of that); centres and diameters of holes are right within ``HOLE_MM``; pins meet within as much at every angle;
+kerf that a beam leaves in corners that point into a piece (buffers, by which finished outlines are told, miss half of
+that at most); centres and diameters of holes are right within ``HOLE_MM``; pins meet within as much at every angle;
 pieces of one layer share no more than ``OVERLAP_MM2`` at any.
 """
 
@@ -126,14 +126,14 @@ def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
 def _piece(
     cuts: PieceCuts, ring: FloatArray, inside: Sequence[tuple[FloatArray, FloatArray]], kerf_mm: float
 ) -> FoundPiece:
-    """A piece with its finished outline and holes, of the beam's ways (points and points along them)."""
+    """A finished piece, of the beam's ways inside it: their points, and points along them."""
     piece, half = cuts.piece, 0.5 * kerf_mm
     holes: list[RoundHole] = []
     openings: list[Polygon] = []
     for points, way in inside:
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
-        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(piece.openings):
+        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(cuts.openings):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
             openings.append(Polygon(way))
@@ -157,7 +157,7 @@ def _outline_miss(finished: Polygon, asked: Polygon, half: float) -> float:
 
 
 def _holes_miss(found: Sequence[RoundHole], asked: Sequence[RoundHole]) -> float:
-    """Farthest that a hole is from the one nearest to it, in place or diameter, mm; infinite unless they pair up."""
+    """Largest fault of a hole, in place or diameter, mm; infinite unless they pair up."""
     if len(found) != len(asked):
         return math.inf
     if not asked:
@@ -258,7 +258,7 @@ def _overlap_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]
 
 
 def _overlaps(pieces: Sequence[FoundPiece], poses: FloatArray) -> list[tuple[int, float, tuple[int, int]]]:
-    """Number of each angle at which pieces lie upon each other, how much of them does, and the first two."""
+    """Angles at which pieces lie upon each other: number, shared area, and the worst two."""
     shapes = np.array([piece.area for piece in pieces], dtype=object)
     coordinates, rings = shapely.get_coordinates(shapes, return_index=True)
     places = coordinates @ (1.0, 1j)

@@ -22,8 +22,11 @@ OURS = "kirigami-studio"
 USUAL_FILES = ("LICENSE", "LICENSE.txt", "LICENSE.md", "COPYING")
 #: Packages that leave the choice of a licence, or come without its text: the one that we take, and what to show.
 CHOSEN = {
-    name: ("LGPL-3.0-only", ("qt.txt", "LGPL-3.0-only.txt", "GPL-3.0-only.txt"))
-    for name in ("pyside6-essentials", "shiboken6")
+    **{
+        name: ("LGPL-3.0-only", ("qt.txt", "LGPL-3.0-only.txt", "GPL-3.0-only.txt"))
+        for name in ("pyside6-essentials", "shiboken6")
+    },
+    "rectpack": ("Apache-2.0", ("Apache-2.0.txt",)),
 }
 #: A longer ``License`` field is no name.
 LONGEST_NAME = 60

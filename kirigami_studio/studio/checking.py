@@ -60,7 +60,7 @@ class Checked:
     @property
     def said(self) -> Level | None:
         """The verdict of the export, as the file has it."""
-        record = self.report.record
+        record = self.report.record or self.report.of_pieces
         return None if record is None or not record.verdict else Level(record.verdict)
 
     @property
@@ -95,6 +95,23 @@ class Checked:
                     version=record.version,
                 )
             )
+        if (pieces := report.of_pieces) is not None:
+            found.append(
+                tr(
+                    "made with: {material}, {construction}, layer {layer}, bed {bed}, pins {pin:g} mm, ears {ear:g} "
+                    "mm, clearance {clearance:g} mm, kerf {kerf:g} mm, profile {profile}, version {version}",
+                    material=pieces.material,
+                    construction=pieces.construction,
+                    layer=pieces.layer,
+                    bed=pieces.bed,
+                    pin=pieces.pin_mm,
+                    ear=pieces.ear_mm,
+                    clearance=pieces.clearance_mm,
+                    kerf=pieces.kerf_mm,
+                    profile=pieces.profile.key,
+                    version=pieces.version,
+                )
+            )
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
         if self.verdict is None and record is not None:
@@ -123,7 +140,8 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         The project has no chosen design.
     """
     report = check_file(path)
-    if document is None or not _is_cut_file(report):
+    # The pieces of one bed say nothing about how all of them move.
+    if document is None or report.of_pieces is not None or not _is_cut_file(report):
         return Checked(report)
     request, unlike = _request(report.record, path, document)
     try:

@@ -281,6 +281,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file holds {count} cut; its record says {promised}. Export it again.",
         "The file holds {count} cuts; its record says {promised}. Export it again.",
     ),
+    "cut_file.piece_open": mark(
+        "The cut at x = {x:.2f}, y = {y:.2f} mm is not closed: a piece would not come free. Export it again."
+    ),
+    "cut_file.pieces_cross": mark(
+        "The cut at x = {x:.2f}, y = {y:.2f} mm meets another one: a piece would be cut into. Export it again."
+    ),
+    "cut_file.pieces_differ": mark_n(
+        "The file holds {count} piece; its record says {promised}. Export it again.",
+        "The file holds {count} pieces; its record says {promised}. Export it again.",
+    ),
     "cut_file.narrower_than_recorded": mark(
         "Two cuts leave only {width_mm:.3f} mm of material between them; the narrowest connector was made "
         "{recorded_mm:.3f} mm wide."
@@ -352,8 +362,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.pieces_found": mark_n(
         "{count} piece is there, and its outline and holes are right within {miss_um:.2f} µm ({piece}).",
-        "All {count} pieces are there once, and their outlines and holes are right within {miss_um:.2f} µm (the worst is "
-        "{piece}).",
+        "All {count} pieces are there once, and their outlines and holes are right within {miss_um:.2f} µm (the worst "
+        "is {piece}).",
     ),
     "verify.pieces_differ": mark(
         "Piece {piece} has an outline or a hole that is {miss_um:.2f} µm from its place. Export it again."
@@ -372,8 +382,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.pieces_pass": mark("Pieces of one layer pass each other at all {angles} angles."),
     "verify.pieces_collide": mark(
-        "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more clearance or "
-        "smaller ears."
+        "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more "
+        "clearance or smaller ears."
     ),
     "verify.motion_as_planned": mark("Pieces, pins and their places at {angles} angles are as planned."),
     "verify.motion_differs": mark(

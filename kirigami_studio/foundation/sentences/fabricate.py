@@ -19,12 +19,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "kerf.negative": mark("The kerf must be 0 mm or more, got {value!r:.40}."),
     "pieces.hole_within_kerf": mark(
-        "A hole of {hole_mm:g} mm in piece {piece:.20} is no wider than the kerf of {kerf_mm:g} mm. Choose a wider hole "
-        "or another machine."
+        "A hole of {hole_mm:g} mm in piece {piece:.20} is no wider than the kerf of {kerf_mm:g} mm. Choose a wider "
+        "hole or another machine."
     ),
     "pieces.narrower_than_kerf": mark(
-        "Piece {piece:.20} has a notch or an opening narrower than the kerf of {kerf_mm:g} mm. Choose a larger sheet or "
-        "more clearance."
+        "Piece {piece:.20} has an opening narrower than the kerf of {kerf_mm:g} mm. Choose a larger sheet or more "
+        "clearance."
     ),
     "pieces.larger_than_bed": mark(
         "Piece {piece:.20} is larger than the bed of {width_mm:g} x {height_mm:g} mm. Choose a smaller sheet, a finer "

@@ -28,6 +28,7 @@ from kirigami_studio.export.assembly_files import (
     pieces_json,
     write_assembly,
 )
+from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
@@ -133,7 +134,9 @@ def test_that_two_readers_find_every_piece_in_every_file(job: AssemblyJob, tmp_p
     files = write_assembly(job, tmp_path / "out")
     assert len(files.verifications) == len(KINDS) * len(job.beds) + 1
     assert all(one.ok and all(finding.ok for finding in one.findings) for one in files.verifications)
-    assert {"verify.pieces_found", "verify.numbers", "verify.points_as_planned", "verify.layers_as_planned"} <= codes(files)
+    assert {"verify.pieces_found", "verify.numbers", "verify.points_as_planned", "verify.layers_as_planned"} <= codes(
+        files
+    )
     assert {"verify.pins_meet", "verify.pieces_pass", "verify.motion_as_planned"} <= codes(files)
     for one in files.verifications[:-1]:
         assert one.pieces == len(next(bed for bed in job.beds if bed.name == one.path.stem).pieces)
@@ -264,3 +267,33 @@ def test_that_a_piece_beyond_the_bed_is_told(assembly: Assembly) -> None:
     tiny = replace(SMALL_BED, bed_width_mm=10.0, bed_height_mm=10.0)
     assert "pieces.larger_than_bed" in {note.code for note in job_of(assembly, machine=tiny).notes}
     assert "pieces.larger_than_bed" not in {note.code for note in job_of(assembly).notes}
+
+
+def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folder: Path, tmp_path: Path) -> None:
+    for kind in KINDS:
+        for bed in job.beds:
+            report = check_file(folder / f"{bed.name}{kind}")
+            assert report.ok, [problem.text for problem in report.problems]
+            assert report.pieces == len(bed.pieces) and report.record is None and report.of_pieces is not None
+            assert report.of_pieces.to_json() | {"version": "", "design": ""} == {
+                "version": "", "design": "", "construction": "pinned", "material": "plywood-co2",
+                "machine": SMALL_BED.key, "profile": "any", "kerf_mm": 0.2, "layer": bed.layer,
+                "bed": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
+                "pieces": len(bed.pieces), "pin_mm": HOLE_MM, "ear_mm": EAR_MM, "clearance_mm": CLEARANCE_MM,
+            }  # fmt: skip
+            assert report.min_ligament_mm is not None and report.min_ligament_mm >= 1.0 - 1e-3
+
+
+@pytest.mark.parametrize("code", ["cut_file.lines_differ", "cut_file.piece_open", "cut_file.pieces_cross"])
+def test_that_a_bed_with_a_fault_is_not_sound(folder: Path, tmp_path: Path, code: str) -> None:
+    lines = (folder / "layer-1.svg").read_text().splitlines()
+    *_, other, last = (number for number, line in enumerate(lines) if "<path" in line)
+    lines[last] = {
+        "cut_file.lines_differ": "",
+        "cut_file.piece_open": lines[last].replace(" Z", ""),
+        "cut_file.pieces_cross": lines[other],
+    }[code]
+    path = tmp_path / "bed.svg"
+    path.write_text("\n".join(lines))
+    report = check_file(path)
+    assert not report.ok and code in {problem.code for problem in report.problems}

@@ -12,6 +12,7 @@ from shapely.geometry import LineString, Point, Polygon
 
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.export.cut_bed import WEB_MM, CutBed, laid_on_beds, too_large
+from kirigami_studio.export.pieces_read import found_pieces
 from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.fabricate.engraving import clearance_mm
 from kirigami_studio.foundation.errors import FabricationError
@@ -107,17 +108,28 @@ def test_that_openings_are_cut_within_their_outline(pieces: tuple[Piece, ...]) -
     assert not Polygon(opening).exterior.is_ccw
 
 
-def test_that_a_hole_or_a_notch_that_the_kerf_would_use_up_is_refused(pieces: tuple[Piece, ...]) -> None:
+def test_that_a_hole_or_an_opening_that_the_kerf_would_use_up_is_refused(pieces: tuple[Piece, ...]) -> None:
     tiny = replace(pieces[0], holes=(RoundHole(np.zeros(2), KERF_MM),))
     with pytest.raises(FabricationError) as refusal:
         laid_on_beds([tiny], KERF_MM, BED)
     assert refusal.value.code == "pieces.hole_within_kerf"
-    slot = [[9.0, -0.05], [2.0, -0.05], [2.0, -2.0], [-2.0, -2.0], [-2.0, 2.0], [2.0, 2.0], [2.0, 0.05], [9.0, 0.05]]
-    outline = np.array([*slot, [9.0, 9.0], [-9.0, 9.0], [-9.0, -9.0], [9.0, -9.0]])
-    notched = Piece("A1", 1, (0, 0), outline if Polygon(outline).exterior.is_ccw else outline[::-1])
+    slit = np.array([[-2.0, -0.05], [-2.0, 0.05], [2.0, 0.05], [2.0, -0.05]])
     with pytest.raises(FabricationError) as refusal:
-        laid_on_beds([notched], KERF_MM, BED)
+        laid_on_beds([replace(pieces[0], openings=(slit,))], KERF_MM, BED)
     assert refusal.value.code == "pieces.narrower_than_kerf"
+
+
+def test_that_a_notch_with_a_narrow_mouth_is_cut_from_the_inside() -> None:
+    notch = [[9.0, -0.05], [2.0, -0.05], [2.0, -2.0], [-2.0, -2.0], [-2.0, 2.0], [2.0, 2.0], [2.0, 0.05], [9.0, 0.05]]
+    outline = np.array([*notch, [9.0, 9.0], [-9.0, 9.0], [-9.0, -9.0], [9.0, -9.0]])
+    piece = Piece("A1", 1, (0, 0), outline if Polygon(outline).exterior.is_ccw else outline[::-1])
+    (bed,) = laid_on_beds([piece], KERF_MM, BED)
+    (cuts,) = bed.pieces
+    assert np.abs(cuts.outline).max() == pytest.approx(9.0 + 0.5 * KERF_MM)
+    (pocket,) = cuts.openings
+    assert Polygon(pocket).area == pytest.approx((4.0 - KERF_MM) ** 2, rel=0.01)
+    findings, _ = found_pieces(bed.strokes(find_profile("any")), bed, KERF_MM)
+    assert [finding.code for finding in findings] == ["verify.pieces_found", "verify.numbers"]
 
 
 def test_that_a_piece_beyond_the_bed_is_noticed(pieces: tuple[Piece, ...]) -> None:

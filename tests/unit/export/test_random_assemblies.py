@@ -1,0 +1,27 @@
+"""A few random pinned designs, written and read back without the program; ``make pinned`` tries more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from random_assemblies import faults, random_job
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_that_files_of_random_designs_are_put_together_by_another_reader(seed: int, tmp_path: Path) -> None:
+    assert faults(seed, tmp_path / "out", most=3) == []
+
+
+def test_that_the_other_reader_finds_faults(tmp_path: Path) -> None:
+    """A hole that is moved by 5 µm in a written file."""
+    assert faults(0, tmp_path / "out", most=2) == []
+    path = tmp_path / "out" / "layer-1.svg"
+    text = path.read_text()
+    at = text.index(" A ")
+    start = text.rindex("M ", 0, at) + 2
+    x = text[start : text.index(",", start)]
+    path.write_text(text[:start] + f"{float(x) + 0.01:.4f}" + text[start + len(x) :])
+    from piece_reader import put_together
+
+    assert put_together(tmp_path / "out", ".svg", random_job(0, 2).allowed_mm).holes_mm > 1e-3
