@@ -83,7 +83,7 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     lines = [measured_line(path.points, path.bulges, path.closed) for path in inner]
     boundary = Polygon(plan.outline)
-    pieces = _pieces(inner, boundary, kerf)
+    pieces = finished_pieces(plan, kerf)
     ligament = smallest_ligament(lines, boundary.exterior, kerf, joined_pairs(plan, inner, lines))
     twice = overlap([LineString(path.travelled) for path in plan.paths])
     edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
@@ -110,10 +110,20 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
     )
 
 
-def _pieces(inner: Sequence[CutPath], boundary: Polygon, kerf: float) -> list[Polygon]:
-    """What is left of the sheet once its tabs are broken; what falls out of relief holes does not count."""
+def finished_pieces(plan: CutPlan, kerf_mm: float | None = None) -> list[Polygon]:
+    """Pieces of the finished sheet with its tabs broken, largest first.
+
+    The middle of relief holes falls out.
+
+    Parameters
+    ----------
+    plan : CutPlan
+    kerf_mm : float, optional
+        The plan's own unless given.
+    """
+    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     cuts = [Polygon(path.flattened) if path.closed else LineString(path.flattened) for path in inner]
-    return remaining_pieces(boundary, cuts, kerf)
+    return remaining_pieces(Polygon(plan.outline), cuts, plan.kerf_mm if kerf_mm is None else kerf_mm)
 
 
 def piece_problems(pieces: Sequence[Polygon], boundary: Polygon, kerf_mm: float, removed: int) -> list[Problem]:

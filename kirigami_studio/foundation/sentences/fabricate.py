@@ -373,4 +373,27 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Choose a larger sheet, so that every slit end has room for its style, thinner material or "
         "a target angle nearer to flat."
     ),
+    # Backed and printed sheets
+    "backed.gap_not_positive": mark(
+        "The gap between tiles must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "backed.relief_negative": mark(
+        "The radius that tiles leave free round a connector must be 0 mm or more, got {value!r:.40}."
+    ),
+    "printed.thickness_not_positive": mark(
+        "The thickness of a print must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "printed.falls_apart": mark(
+        "The sheet is in {pieces} pieces after cutting, and cannot be printed as one. Widen the connectors."
+    ),
+    "printed.no_tiles": mark(
+        "No panel is large enough for a tile with a gap of {gap_mm:g} mm. Make the sheet larger or the gap smaller."
+    ),
+    "printed.not_one_body": mark(
+        "The body {name:.40} is in {pieces} parts or does not close. Make the sheet larger or its slits narrower."
+    ),
+    "printed.larger_than_bed": mark(
+        "The body {name:.40} is {width_mm:.1f} x {depth_mm:.1f} mm, larger than the bed of {bed_width_mm:g} x "
+        "{bed_depth_mm:g} mm. Make the sheet smaller."
+    ),
 }

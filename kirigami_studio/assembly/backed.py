@@ -1,0 +1,154 @@
+"""Backed sheets: rigid tiles glued on a soft hinge layer, whose cuts are those of one sheet.
+
+The hinge layer is cut by its ``CutPlan`` as it is.  The board layer is every panel that those cuts leave, smaller by
+half a gap on all sides, so that glue has room and the blade or beam its kerf.  Round every connector a disc of the
+board is left out: there the hinge layer has to bend, over the flexure length of the connector.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from kirigami_studio.assembly.pieces import Assembly, Piece
+from kirigami_studio.fabricate.cut_panels import cut_panels
+from kirigami_studio.fabricate.cut_path import check_length
+from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.lattice.deployment import Deployment
+
+GAP_MM = 1.0
+#: A tile in which no disc of this diameter (mm) has room is left out: nobody can glue it.
+LEAST_TILE_MM = 1.0
+#: Segments of a quarter of a relief disc, and how well the middle of a tile is found (mm).
+DISC_SEGMENTS, LABEL_MM = 16, 0.05
+#: A number takes this share of the diameter of the largest disc in its tile, and no more than so many mm.
+LABEL_SHARE, LARGEST_LABEL_MM = 0.5, 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class TileSizes:
+    """Sizes that decide on the tiles.
+
+    Attributes
+    ----------
+    gap_mm : float
+        Between neighbouring tiles.
+    relief_mm : float or None
+        Radius that is left free round every connector; None for the length over which it bends.
+
+    Raises
+    ------
+    FabricationError
+        A gap that is not positive, or a radius below 0.
+    """
+
+    gap_mm: float = GAP_MM
+    relief_mm: float | None = None
+
+    def __post_init__(self) -> None:
+        check_length("backed.gap_not_positive", self.gap_mm)
+        if self.relief_mm is not None:
+            check_length("backed.relief_negative", self.relief_mm, zero_allowed=True)
+
+    def radii(self, plan: CutPlan) -> FloatArray:
+        """Radius (H,), mm, that is left free round each connector of a plan; 0 where it has none."""
+        there = ~plan.hinges.removed & (plan.hinges.finished_mm > 0.0)
+        radii: FloatArray = np.where(there, plan.hinges.flexure_mm if self.relief_mm is None else self.relief_mm, 0.0)
+        return radii
+
+
+@dataclass(frozen=True, eq=False)
+class BackedSheet:
+    """A hinge layer and the tiles that are glued on it.
+
+    Attributes
+    ----------
+    plan : CutPlan
+        Of the hinge layer.
+    deployment : Deployment
+        The sheet that the plan cuts.
+    phi_target : float, radians
+    tile_sizes : TileSizes
+    """
+
+    plan: CutPlan
+    deployment: Deployment
+    phi_target: float
+    tile_sizes: TileSizes
+
+    @classmethod
+    def of(
+        cls, plan: CutPlan, design: Deployment, phi_target: float = 0.0, tile_sizes: TileSizes | None = None
+    ) -> BackedSheet:
+        """Back the sheet that is cut by the plan of a design."""
+        return cls(plan, plan.cut_from(design), phi_target, tile_sizes or TileSizes())
+
+    @cached_property
+    def cell_mm(self) -> float:
+        """Size of a unit cell of the lattice, mm."""
+        return self.plan.size_mm[0] / float(np.ptp(self.deployment.compact[:, 0]))
+
+    @cached_property
+    def shift(self) -> FloatArray:
+        """Shift (2,), mm, of the flat deployment into the frame of the plan."""
+        nodes = cut_table(*self.deployment.sheet.grid).hinge_node
+        found: FloatArray = (self.plan.hinges.position - self.cell_mm * self.deployment.compact[nodes]).mean(axis=0)
+        return found
+
+    @cached_property
+    def flat_tiles(self) -> dict[tuple[int, int], Polygon]:
+        """Tiles in the frame of the plan by the row and column of their panels, in reading order."""
+        columns = self.deployment.topology.columns + 1
+        panels = cut_panels(self.plan).outlines
+        centres = self.plan.hinges.position if self.plan.centres is None else self.plan.centres
+        radii = self.tile_sizes.radii(self.plan)
+        discs = shapely.buffer(shapely.points(centres[radii > 0.0]), radii[radii > 0.0], quad_segs=DISC_SEGMENTS)
+        free = shapely.union_all(discs)
+        found = {}
+        for number, ring in zip(panels.panel.tolist(), panels.split(panels.points), strict=True):
+            inset = shapely.buffer(Polygon(ring), -0.5 * self.tile_sizes.gap_mm, join_style="mitre")
+            largest = max(shapely.get_parts(shapely.difference(inset, free)), key=shapely.area, default=Polygon())
+            if not largest.is_empty and _room(largest)[1] >= 0.5 * LEAST_TILE_MM:
+                found[divmod(number, columns)] = Polygon(largest.exterior)
+        return found
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """Tiles as pieces of layer 2, with their numbers.
+
+        The hinge layer joins them: there are no pins.
+        """
+        corners = self.cell_mm * self.deployment.panels(math.pi) + self.shift
+        pieces = []
+        for number, (panel, tile) in enumerate(self.flat_tiles.items(), start=1):
+            origin = corners[panel].mean(axis=0)
+            middle, radius = _room(tile)
+            ring = shapely.get_coordinates(shapely.orient_polygons(tile).exterior)[:-1] - origin
+            height = min(LABEL_SHARE * 2.0 * radius, LARGEST_LABEL_MM)
+            pieces.append(Piece(f"A{number}", 2, panel, ring, label_at=middle - origin, label_mm=height))
+        return Assembly(self.deployment, self.cell_mm, self.phi_target, tuple(pieces), ())
+
+    @property
+    def missing(self) -> int:
+        """How many panels of the hinge layer have no tile, because nothing is left to glue."""
+        return len(cut_panels(self.plan).outlines.panel) - len(self.flat_tiles)
+
+    @property
+    def covered(self) -> float:
+        """Share of the area of all panels that tiles cover."""
+        panels = cut_panels(self.plan).outlines
+        whole = sum(Polygon(ring).area for ring in panels.split(panels.points))
+        return sum(tile.area for tile in self.flat_tiles.values()) / whole
+
+
+def _room(tile: Polygon) -> tuple[FloatArray, float]:
+    """Middle (2,) and radius of the largest disc in a tile, mm."""
+    line = shapely.maximum_inscribed_circle(tile, tolerance=LABEL_MM)
+    return shapely.get_coordinates(line)[0], float(line.length)
