@@ -41,7 +41,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 
 #: Seconds of the clock after which a session gives up: nothing is measured by it.
-PATIENCE = 240.0
+PATIENCE = 600.0
 MANY, LARGE = 64, (24, 24)
 MOST, USUAL = 256, (10, 10)
 THEME = "switch the theme"

@@ -42,6 +42,7 @@ class Construction(StrEnum):
     ONE_SHEET = "one-sheet"  #: bridges of the sheet itself turn
     PINNED = "pinned"  #: two layers of rigid panels turn on pins
     BACKED = "backed"  #: tiles are glued on a hinge layer
+    PRINTED = "printed"  #: a 3D printer makes the sheet, its tiles, or panels with their pins in place
 
 
 def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:

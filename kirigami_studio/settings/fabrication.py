@@ -8,6 +8,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
+from kirigami_studio.fabricate.fastener import SIZES, WALL_MM, Fastener
 from kirigami_studio.fabricate.machine import (
     Machine,
     cuttable,
@@ -17,13 +18,38 @@ from kirigami_studio.fabricate.machine import (
     material_on,
     usual_material,
 )
-from kirigami_studio.fabricate.material import DEFAULT_PRESET, Material, default_material, find_material, library
+from kirigami_studio.fabricate.material import (
+    DEFAULT_PRESET,
+    Construction,
+    Material,
+    default_material,
+    find_material,
+    library,
+)
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
 from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
 from kirigami_studio.foundation.words import mark
 
 LARGEST_SHEET_MM = 10_000.0
+
+
+def _millimetres(about: str, label: str, option: str, low: float, high: float) -> Mapping[str, Setting]:
+    """Describe a length of a construction."""
+    setting = Setting(
+        about=about,
+        label=label,
+        option=option,
+        low=low,
+        high=high,
+        least=low,
+        most=high,
+        code="settings.length_out_of_range",
+        undo=mark("Change the construction"),
+        step=0.1,
+        unit="mm",
+    )
+    return setting.metadata
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +64,16 @@ class FabricationSettings:
         Key of a material preset.
     machine : str
         Key of the machine that cuts it; "" for the one that the material is for.
+    construction : Construction or None
+        Way of making the sheet; None takes the one that suits the material.
+    fastener : Fastener
+        Pins of pinned sheets.
+    pin_mm, ear_mm : float or None
+        Diameters of the hole for a pin, and of the ear round it; None takes those of the fastener.
+    clearance_mm : float
+        Between ears and pieces that pass each other in one layer, and between printed parts that turn.
+    gap_mm : float
+        By which the tiles of backed sheets are smaller than their panels, all round.
     connector_mm : float or None
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
@@ -111,6 +147,86 @@ class FabricationSettings:
             spoken=mark("Material preset"),
             option="--material",
         ).metadata,
+    )
+    construction: Construction | None = field(
+        default=None,
+        metadata=Setting(
+            about=mark("How the sheet is made: out of one sheet, or of rigid pieces."),
+            help="how the sheet is made (default: as suits the material)",
+            code="settings.no_such_choice",
+            undo=mark("Change the construction"),
+            label=mark("Construction"),
+            choices=(
+                Choice(None, mark("As suits the material"), mark("The construction that works in the material.")),
+                Choice(
+                    Construction.ONE_SHEET,
+                    mark("One sheet"),
+                    mark("Narrow connectors of the sheet itself bend where panels turn."),
+                ),
+                Choice(
+                    Construction.PINNED,
+                    mark("Two layers on pins"),
+                    mark("Rigid pieces in two layers turn on screws, brads or rivets: for plywood, acrylic and card."),
+                ),
+                Choice(
+                    Construction.BACKED,
+                    mark("Tiles on a soft sheet"),
+                    mark("Rigid tiles are glued on a sheet that is cut and bends between them."),
+                ),
+                Choice(Construction.PRINTED, mark("3D printed"), mark("A printer makes the parts, pins in place.")),
+            ),
+            option="--construction",
+        ).metadata,
+    )
+    fastener: Fastener = field(
+        default=Fastener.M3,
+        metadata=Setting(
+            about=mark("What the pieces of pinned sheets turn on."),
+            help="pins of pinned sheets: sets hole, ear and parts list",
+            code="settings.no_such_choice",
+            undo=mark("Change the pins"),
+            label=mark("Pins"),
+            choices=(
+                Choice(Fastener.M3, mark("M3 screws")),
+                Choice(Fastener.M2, mark("M2 screws")),
+                Choice(Fastener.BRAD, mark("Brads")),
+                Choice(Fastener.EYELET, mark("Eyelets")),
+                Choice(Fastener.RIVET, mark("Rivets")),
+            ),
+            option="--fastener",
+        ).metadata,
+    )
+    pin_mm: float | None = field(
+        default=None,
+        metadata=_millimetres(
+            mark("Diameter of the holes that pins turn in, mm."), mark("Pin hole, mm"), "--pin-mm", 0.5, 50.0
+        ),
+    )
+    ear_mm: float | None = field(
+        default=None,
+        metadata=_millimetres(
+            mark("Diameter of the ear round each pin, mm; neighbouring pins keep further apart."),
+            mark("Ear, mm"),
+            "--ear-mm",
+            1.0,
+            200.0,
+        ),
+    )
+    clearance_mm: float = field(
+        default=0.6,
+        metadata=_millimetres(
+            mark("Room between pieces that pass each other, mm."), mark("Clearance, mm"), "--clearance-mm", 0.0, 20.0
+        ),
+    )
+    gap_mm: float = field(
+        default=1.0,
+        metadata=_millimetres(
+            mark("Tiles on a soft sheet are smaller than their panels by this much all round, mm."),
+            mark("Tile gap, mm"),
+            "--gap-mm",
+            0.0,
+            20.0,
+        ),
     )
     connector_mm: float | None = field(
         default=None,
@@ -256,6 +372,12 @@ class SheetChange(TypedDict, total=False):
     width_mm: float
     material: str
     machine: str
+    construction: Construction | str | None
+    fastener: Fastener | str
+    pin_mm: float | None
+    ear_mm: float | None
+    clearance_mm: float
+    gap_mm: float
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
@@ -305,6 +427,65 @@ def material_for(settings: FabricationSettings) -> Material:
     material = stored if stored is not None and own else find_material(settings.material)
     machine = named_machine(settings)
     return material if machine is None else material_on(material, machine)
+
+
+def construction_for(settings: FabricationSettings) -> Construction:
+    """Return the construction of the settings, or else the one that suits their material.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    return settings.construction or material_for(settings).construction
+
+
+@dataclass(frozen=True, slots=True)
+class PinSizes:
+    """Measures of pins and ears.
+
+    Attributes
+    ----------
+    hole_mm, ear_mm : float
+        Diameters.
+    clearance_mm : float
+        Between pieces of one layer that pass each other.
+    head_mm : float
+        Diameter of the widest part of the pin.
+    """
+
+    hole_mm: float
+    ear_mm: float
+    clearance_mm: float
+    head_mm: float
+
+    @property
+    def apart_mm(self) -> float:
+        """Least distance of pins on one piece and of those that come nearest in the closed states."""
+        return self.ear_mm + self.clearance_mm
+
+
+def pin_sizes(settings: FabricationSettings) -> PinSizes:
+    """Measures of the pins of the settings, those that are left open by their fastener.
+
+    Raises
+    ------
+    UsageError
+        An ear that is no wider than its hole.
+    """
+    size = SIZES[settings.fastener]
+    hole = settings.pin_mm if settings.pin_mm is not None else size.hole_mm
+    ear = settings.ear_mm if settings.ear_mm is not None else hole + 2.0 * WALL_MM
+    if ear <= hole:
+        raise UsageError("settings.ear_within_hole", ear_mm=ear, pin_mm=hole)
+    return PinSizes(hole, ear, settings.clearance_mm, size.head_mm)
+
+
+def pin_gap_mm(settings: FabricationSettings) -> float:
+    """Return how far apart pins have to stay in the closed states, mm; 0 unless the sheet is pinned."""
+    if construction_for(settings) is not Construction.PINNED:
+        return 0.0
+    return pin_sizes(settings).apart_mm
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:

@@ -67,6 +67,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.engrave_not_true_or_false": mark("Engraving the name is on or off (true or false), got {value!r:.40}."),
     "settings.markers_not_true_or_false": mark("Connector markers are on or off (true or false), got {value!r:.40}."),
     "settings.connector_width": mark("The connector width must be above 0 and at most {most:g} mm, got {value!r:.40}."),
+    "settings.length_out_of_range": mark("{name} must be from {least:g} to {most:g} mm, got {value!r:.40}."),
+    "settings.ear_within_hole": mark(
+        "An ear of {ear_mm:g} mm leaves no wall round a hole of {pin_mm:g} mm. Make the ear wider or the hole smaller."
+    ),
     "settings.kerf_width": mark("The kerf must be from 0 to {most:g} mm, got {value!r:.40}."),
     # Project files
     "project.not_readable": mark("Cannot read the project {path}: {reason}. Check its name."),

@@ -1,0 +1,125 @@
+"""Pinned designs: panels in two layers of rigid pieces, joined by pins through ears."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from shapely import affinity
+from shapely.geometry import Polygon
+
+from kirigami_studio.assembly.options import PinOptions
+from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
+from kirigami_studio.assembly.rim_pieces import EndState, extend_to, label_place, trim_to
+from kirigami_studio.assembly.shaping import Shaping
+from kirigami_studio.evaluate.boundary import as_points
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.sheet import RimPath
+from kirigami_studio.outlines.outline import Outline
+
+#: Width of a character of a label, in its heights.
+CHARACTER = 0.7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PinnedPlan:
+    """A design as pieces on pins.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    options : PinOptions
+    pose : Similarity
+        Layout frame at the target angle, in unit cells, to the target's frame: smaller than the design's by the margin.
+    opened, flat : Polygon
+        The outlines to show in both end states, frame of the deployment, mm.
+    broken : tuple of str
+        Pieces whose ears do not hang together.
+    """
+
+    assembly: Assembly
+    options: PinOptions
+    pose: Similarity
+    opened: Polygon
+    flat: Polygon
+    broken: tuple[str, ...]
+
+
+def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOptions | None = None) -> PinnedPlan:
+    """Make the pieces of a design.
+
+    Parameters
+    ----------
+    design : PosedDesign
+        What trimming took is not looked at: pieces are trimmed by rules of their own.
+    target : Outline
+    width_mm : float
+        Of the flat assembly, with its margin.
+    options : PinOptions, optional
+    """
+    options = options or PinOptions()
+    deployment, phi, margin = design.deployment, design.phi_target, options.rim_mm
+    cell_mm = (width_mm - 2.0 * margin) / float(np.ptp(deployment.compact[:, 0]))
+    shown = Polygon(design.pose.inverse().apply(target.points) * cell_mm)
+    # The target is so much larger that its area is that of an outline all round the margin farther out.
+    scale = math.sqrt(1.0 + margin * (shown.length + math.pi * margin) / shown.area)
+    pose = replace(design.pose, scale=design.pose.scale / scale, shift=tuple(x / scale for x in design.pose.shift))
+    shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
+    flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
+    shaping = Shaping.of(deployment, cell_mm, phi, options)
+    opened = EndState.of(deployment, phi, cell_mm, shaping.motion.opening, shown, options.reach_mm)
+    closed = EndState.of(deployment, math.pi, cell_mm, 0.0, flat, options.reach_mm)
+    spare = (1.0 - options.least_flat) * flat.area
+    spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
+    trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
+    spare -= extend_to(shaping, opened, closed, spare)
+    extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+    assembly = assembled(shaping, deployment, cell_mm, phi)
+    names = [piece.id for piece in assembly.pieces]
+    return PinnedPlan(assembly, options, pose, shown, flat, tuple(names[index] for index in sorted(shaping.broken)))
+
+
+def _start_outline(deployment: Deployment):
+    sheet = deployment.sheet
+    return RimPath(*sheet.grid, sheet.start, sheet.cell).outline()[::-1] - deployment.compact[0]
+
+
+def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: float) -> Assembly:
+    """Drill the holes, and give the pieces their names and frames."""
+    motion, options = shaping.motion, shaping.options
+    columns = deployment.sheet.columns + 1
+    number = [0, 0, 0]
+    pieces, owners = [], {}
+    origins = as_points(motion.corners.mean(axis=1))
+    for index, body in enumerate(shaping.bodies):
+        layer = int(motion.layer[index])
+        number[layer] += 1
+        name = f"{'-AB'[layer]}{number[layer]}"
+        shape = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
+        pins = as_points(motion.corners[index]) - origins[index]
+        hinged = motion.hinged[index]
+        drilled = shape.difference(shapely.union_all(shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)))
+        place, room = label_place(drilled)
+        pieces.append(
+            Piece(
+                id=name,
+                layer=layer,
+                panel=divmod(index, columns),
+                outline=shapely.get_coordinates(shape.exterior)[:-1],
+                holes=tuple(RoundHole(pin, options.pin_mm) for pin in pins[hinged]),
+                openings=tuple(shapely.get_coordinates(ring)[:-1] for ring in shape.interiors),
+                label_at=place,
+                label_mm=2.0 * room / math.hypot(1.0, CHARACTER * len(name)),
+            )
+        )
+        for corner in np.flatnonzero(hinged):
+            owners.setdefault(int(motion.nodes[index, corner]), []).append((layer, name, pins[corner]))
+    hinges = []
+    for node, shared in sorted(owners.items()):
+        (_, first, at), (_, second, other) = sorted(shared, key=lambda one: one[0])
+        hinges.append(Hinge((first, second), (at, other), node))
+    return Assembly(deployment, cell_mm, phi, tuple(pieces), tuple(hinges))

@@ -1,0 +1,51 @@
+"""Pins of pinned sheets: hole, head, and the length that they clamp."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from kirigami_studio.foundation.words import mark
+
+#: Material (mm) round a hole, unless given; the ear is that much wider on either side.
+WALL_MM = 3.0
+
+
+class Fastener(StrEnum):
+    """Kind of pin; the values stand on the command line and in files."""
+
+    BRAD = "brad"
+    M2 = "m2"
+    M3 = "m3"
+    EYELET = "eyelet"
+    RIVET = "rivet"
+
+
+@dataclass(frozen=True, slots=True)
+class FastenerSize:
+    """Measures of a pin.
+
+    Attributes
+    ----------
+    name : str
+        In parts lists.
+    hole_mm, head_mm : float
+        Diameter of the hole that it turns in, and of its head, nut or washer, whichever is widest.
+    beyond_mm : float
+        How much longer than the two layers it has to be: nut, roll or legs.
+    """
+
+    name: str
+    hole_mm: float
+    head_mm: float
+    beyond_mm: float
+
+
+#: Screws: holes of the fine series of ISO 273, washers of ISO 7089; others: as craft shops sell them.
+SIZES: dict[Fastener, FastenerSize] = {
+    Fastener.BRAD: FastenerSize(mark("Brads (paper fasteners), 1.5 mm shank"), 1.6, 5.0, 6.0),
+    Fastener.M2: FastenerSize(mark("M2 screws with lock nuts and washers"), 2.2, 5.0, 4.0),
+    Fastener.M3: FastenerSize(mark("M3 screws with lock nuts and washers"), 3.2, 7.0, 6.0),
+    Fastener.EYELET: FastenerSize(mark("Eyelets, 3 mm"), 3.2, 5.5, 2.0),
+    Fastener.RIVET: FastenerSize(mark("Hollow rivets, 3 mm"), 3.2, 6.5, 3.0),
+}
