@@ -1,7 +1,7 @@
 """Backed sheets: rigid tiles glued on a soft hinge layer, whose cuts are those of one sheet.
 
-The hinge layer is cut by its ``CutPlan`` as it is.  The board layer is every panel that those cuts leave, smaller by
-half a gap on all sides, so that glue has room and the blade or beam its kerf.  Round every connector a disc of the
+The hinge layer is cut by its ``CutPlan`` as it is.  The board layer is every panel that those cuts leave, smaller by a
+gap all round, so that glue has room.  Round every connector a disc of the
 board is left out: there the hinge layer has to bend, over the flexure length of the connector.
 """
 
@@ -19,6 +19,7 @@ from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.finished_sheet import BLADE_MM
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
@@ -39,21 +40,21 @@ class TileSizes:
     Attributes
     ----------
     gap_mm : float
-        Between neighbouring tiles.
+        How much smaller than their finished panels tiles are, all round.
     relief_mm : float or None
         Radius that is left free round every connector; None for the length over which it bends.
 
     Raises
     ------
     FabricationError
-        A gap that is not positive, or a radius below 0.
+        A length below 0.
     """
 
     gap_mm: float = GAP_MM
     relief_mm: float | None = None
 
     def __post_init__(self) -> None:
-        check_length("backed.gap_not_positive", self.gap_mm)
+        check_length("backed.gap_negative", self.gap_mm, zero_allowed=True)
         if self.relief_mm is not None:
             check_length("backed.relief_negative", self.relief_mm, zero_allowed=True)
 
@@ -111,9 +112,10 @@ class BackedSheet:
         radii = self.tile_sizes.radii(self.plan)
         discs = shapely.buffer(shapely.points(centres[radii > 0.0]), radii[radii > 0.0], quad_segs=DISC_SEGMENTS)
         free = shapely.union_all(discs)
+        inset_mm = self.tile_sizes.gap_mm + 0.5 * max(self.plan.kerf_mm, BLADE_MM)
         found = {}
         for number, ring in zip(panels.panel.tolist(), panels.split(panels.points), strict=True):
-            inset = shapely.buffer(Polygon(ring), -0.5 * self.tile_sizes.gap_mm, join_style="mitre")
+            inset = shapely.buffer(Polygon(ring), -inset_mm, join_style="mitre")
             largest = max(shapely.get_parts(shapely.difference(inset, free)), key=shapely.area, default=Polygon())
             if not largest.is_empty and _room(largest)[1] >= 0.5 * LEAST_TILE_MM:
                 found[divmod(number, columns)] = Polygon(largest.exterior)

@@ -68,8 +68,10 @@ def write_meshes(job: ExportJob, path: Path) -> tuple[Path, ...]:
     plan = job.required_plan
     about = "; ".join(f"{key} {value}" for key, value in facts_of(plan, find_profile("any")).items())
     encode, decode = KINDS[path.suffix.lower()]
+    kept = None if job.trim is None else job.trim.kept
+    plates = print_plates(plan, job.deployment, job.phi, job.printing, kept)
     written = []
-    for number, plate in enumerate(print_plates(plan, job.deployment, job.phi, job.printing), start=1):
+    for number, plate in enumerate(plates, start=1):
         goal = path if number == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}")
 
         def verify(draft: Path, plate: Plate = plate) -> None:
