@@ -1,4 +1,4 @@
-"""Solids to print: one-sheet designs and tiles, extruded, and panels that turn on pins printed with them.
+"""Solids to print: extruded sheets and tiles, panels on pins that are printed with them.
 
 Outlines are on a grid of a tenth of a micrometre: no two vertices fall together in single precision, which STL has.
 """
@@ -36,7 +36,7 @@ from kirigami_studio.lattice.deployment import Deployment
 
 #: Coordinates of outlines are multiples of the first (mm), and of the second beyond ``LARGE_MM``.
 GRID_MM, COARSE_GRID_MM, LARGE_MM = 1e-4, 1e-3, 1000.0
-#: Edges of bodies are longer than this (mm).
+#: Edges of panels on pins that are shorter than this (mm) are none.
 SHORTEST_EDGE_MM = 1e-3
 #: Width (mm) of slits that take no material away, as blades cut them: something has to be between both sides.
 LEAST_SLIT_MM = 0.01
@@ -158,7 +158,6 @@ def solid_of(name: str, layer: int, body: Manifold, volume_mm3: float) -> Solid:
     FabricationError
         Its surface does not close, or it is in several pieces, or in none.
     """
-    body = body.simplify(SHORTEST_EDGE_MM)
     pieces = 0 if body.status() != Error.NoError else len(body.decompose())
     if pieces != 1:
         raise FabricationError("printed.not_one_body", name=name, pieces=pieces)
@@ -241,7 +240,9 @@ def pinned_solids(
     thickness_mm: float,
     pins: PrintedPins,
 ) -> Plate:
-    """Panels in the flat sheet that turn on pins printed with them, one body each, named A1 ... and B1 ... by layer.
+    """Panels in the flat sheet that turn on pins printed with them.
+
+    A body for each, named A1 ... in layer 1 and B1 ... in layer 2.
 
     Parameters
     ----------
@@ -285,6 +286,8 @@ def pinned_solids(
         body = prism(area, thickness_mm) - taken
         if layer == 1:
             body = Manifold.batch_boolean([body, *(pin.translate(place) for place in places)], OpType.Add)
+        # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
+        body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
         solids.append(solid_of(name, layer, body, body.volume()))
     return tuple(solids)
 
@@ -338,7 +341,10 @@ class _SeenMotion:
         return [_largest(area.buffer(-0.5 * pins.clearance_mm, join_style="mitre")) for area in areas]
 
     def hinges(self, there: Sequence[bool], regions: Sequence[Polygon]) -> dict[int, tuple[int, int]]:
-        """The panels that hang together at each node, that of layer 1 first, where trimming left both there."""
+        """The two panels that hang together at each node, that of layer 1 first.
+
+        Nodes that trimming took from one of them are left out.
+        """
         found: dict[int, list[int]] = {}
         for index in np.flatnonzero(there).tolist():
             for node in self.panels[index].tolist():
@@ -361,7 +367,10 @@ class _SeenMotion:
     def printed_area(
         self, index: int, region: Polygon, hinges: Mapping[int, tuple[int, int]], pins: PrintedPins
     ) -> Polygon | None:
-        """A panel with its ears, less what other ears sweep; None where it does not hang together with its own."""
+        """A panel with its ears, less all that other ears sweep.
+
+        None where it does not hang together with its own.
+        """
         sense = 1.0 if self.layer[index] == 1 else -1.0
         others = [node for node, pair in hinges.items() if index not in pair]
         own = [node for node, pair in hinges.items() if index in pair]
@@ -379,8 +388,9 @@ class _SeenMotion:
         core = shapely.buffer(whole, -0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)
         for part in shapely.get_parts(shapely.buffer(core, 0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)):
             if np.all(shapely.contains_xy(part, *self.flat[own].T)):
-                # The discs on pins come with the pins.
-                return shapely.intersection(part, rest if self.layer[index] == 1 else whole)
+                # Sides that nearly coincide cross in stray vertices, which no ear may have; pins bring their own ears.
+                shape = shapely.simplify(shapely.intersection(part, rest), SHORTEST_EDGE_MM)
+                return shape if self.layer[index] == 1 else shapely.union_all([shape, *ears])
         return None
 
 
