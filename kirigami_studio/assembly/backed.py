@@ -8,23 +8,30 @@ board is left out: there the hinge layer has to bend, over the flexure length of
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from kirigami_studio.assembly.pieces import Assembly, Piece
+from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.finished_sheet import BLADE_MM
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.fabricate.strain import ROUNDING_MM, RigidPanels
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
 GAP_MM = 1.0
+#: Width (mm) of the frame round the tiles, and diameter of its registration holes.
+FRAME_MM, REGISTRATION_MM = 15.0, 3.0
+#: Name of the frame among the pieces of the board.
+FRAME = "FRAME"
 #: A tile in which no disc of this diameter (mm) has room is left out: nobody can glue it.
 LEAST_TILE_MM = 1.0
 #: Segments of a quarter of a relief disc, and how well the middle of a tile is found (mm).
@@ -63,6 +70,70 @@ class TileSizes:
         there = ~plan.hinges.removed & (plan.hinges.finished_mm > 0.0)
         radii: FloatArray = np.where(there, plan.hinges.flexure_mm if self.relief_mm is None else self.relief_mm, 0.0)
         return radii
+
+
+class BoardCut(StrEnum):
+    """How tiles are cut; the values stand on the command line and in files."""
+
+    KISS = "kiss"  #: through the board, not its liner: tiles stay in place, what is between them is weeded
+    THROUGH = "through"  #: all through: tape over the board keeps tiles in place
+
+
+@dataclass(frozen=True, slots=True)
+class Jig:
+    """What keeps tiles in register with their hinge layer.
+
+    Attributes
+    ----------
+    cut : BoardCut
+    frame_mm : float
+        Width of the frame that is cut round the tiles.
+    pin_mm : float
+        Diameter of the registration holes, in the frame and in what is left over round the hinge layer.
+
+    Raises
+    ------
+    FabricationError
+        A length that is not positive, or holes wider than half of the frame.
+    """
+
+    cut: BoardCut = BoardCut.THROUGH
+    frame_mm: float = FRAME_MM
+    pin_mm: float = REGISTRATION_MM
+
+    def __post_init__(self) -> None:
+        check_length("backed.frame_not_positive", self.frame_mm)
+        check_length("backed.pin_not_positive", self.pin_mm)
+        if self.pin_mm > 0.5 * self.frame_mm:
+            raise FabricationError("backed.pin_too_wide", pin_mm=self.pin_mm, frame_mm=self.frame_mm)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Board:
+    """Tiles and their frame as they lie on the flat hinge layer: what is cut, and the template for gluing.
+
+    Attributes
+    ----------
+    pieces : tuple of Piece
+        Tiles, then the frame, each in its own frame of coordinates.
+    places : (P, 2) float, mm
+        Where their origins lie; the lower left corner of the frame is (0, 0).
+    layer_at : (2,) float, mm
+        Where the origin of the hinge layer's plan lies.
+    kissed : frozenset of str
+        Pieces that are not cut through, and the weeding line in the frame with them.
+    """
+
+    pieces: tuple[Piece, ...]
+    places: FloatArray
+    layer_at: FloatArray
+    kissed: frozenset[str]
+
+    @property
+    def registration(self) -> tuple[RoundHole, ...]:
+        """Holes to be made in what is left over round the hinge layer, in the frame of its plan."""
+        at = self.places[-1] - self.layer_at
+        return tuple(replace(hole, centre=hole.centre + at) for hole in self.pieces[-1].holes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +207,48 @@ class BackedSheet:
             height = min(LABEL_SHARE * 2.0 * radius, LARGEST_LABEL_MM)
             pieces.append(Piece(f"A{number}", 2, panel, ring, label_at=middle - origin, label_mm=height))
         return Assembly(self.deployment, self.cell_mm, self.phi_target, tuple(pieces), ())
+
+    def rigid_panels(self, phi: float, flexure_mm: FloatArray | None = None) -> RigidPanels:
+        """Free lengths of all connectors between tiles, for the strain of the hinge layer opened to ``phi``.
+
+        Parameters
+        ----------
+        phi : float, radians
+        flexure_mm : (H,) float, optional
+            Over which strains were found that tiles are to make larger; those of the plan unless given.
+        """
+        length = self.plan.hinges.flexure_mm if flexure_mm is None else flexure_mm
+        gap = self.tile_sizes.gap_mm + 0.5 * max(self.plan.kerf_mm, BLADE_MM)
+        free = 2.0 * np.maximum(self.tile_sizes.radii(self.plan), gap)
+        return RigidPanels(free, np.maximum(length, ROUNDING_MM), math.pi - phi)
+
+    def board(self, jig: Jig) -> Board:
+        """Lay tiles into a frame with registration holes.
+
+        The opening of the frame is the sheet's outline, a gap larger.  Of four holes, one in each corner, one is out of
+        line, so that board and hinge layer fit one way only.
+        """
+        outline = Polygon(self.plan.outline)
+        opening = shapely.buffer(outline, max(self.tile_sizes.gap_mm, GAP_MM), join_style="mitre")
+        left, bottom, right, top = opening.bounds
+        low = np.array([left, bottom]) - jig.frame_mm
+        size = np.array([right, top]) + jig.frame_mm - low
+        inset = 0.5 * jig.frame_mm
+        holes = [inset, size - inset, np.array([inset, size[1] - inset]), np.array([size[0] - 3.0 * inset, inset])]
+        frame = Piece(
+            FRAME,
+            2,
+            (-1, -1),
+            np.array([[0.0, 0.0], [size[0], 0.0], size, [0.0, size[1]]]),
+            tuple(RoundHole(np.broadcast_to(hole, 2) + 0.0, jig.pin_mm) for hole in holes),
+            (shapely.get_coordinates(shapely.orient_polygons(opening).exterior)[:0:-1] - low,),
+            np.array([2.0 * jig.frame_mm, inset]),
+            min(LABEL_SHARE * jig.frame_mm, LARGEST_LABEL_MM),
+        )
+        flat = self.assembly.poses(math.pi)[:, :2] + self.shift - low
+        kissed = frozenset(piece.id for piece in self.assembly.pieces) if jig.cut is BoardCut.KISS else frozenset[str]()
+        places = np.concatenate([flat, np.zeros((1, 2))])
+        return Board((*self.assembly.pieces, frame), places, -low, kissed)
 
     @property
     def missing(self) -> int:

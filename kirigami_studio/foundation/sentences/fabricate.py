@@ -327,6 +327,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
         "plane, across its thickness."
     ),
+    "strain.held_by_tiles": mark(
+        "The hinge layer is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}, but the tiles "
+        "leave it too short to bend out of the plane: it bends across its width."
+    ),
     "strain.stays_flat": mark(
         "The sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
         "plane, across its width."
@@ -378,6 +382,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "backed.relief_negative": mark(
         "The radius that tiles leave free round a connector must be 0 mm or more, got {value!r:.40}."
     ),
+    "backed.frame_not_positive": mark(
+        "The frame round the tiles must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "backed.pin_not_positive": mark("Registration holes must be a number of millimetres above 0, got {value!r:.40}."),
+    "backed.pin_too_wide": mark(
+        "Registration holes of {pin_mm:g} mm are too wide for a frame of {frame_mm:g} mm. Make the frame wider."
+    ),
     "printed.thickness_not_positive": mark(
         "The thickness of a print must be a number of millimetres above 0, got {value!r:.40}."
     ),
@@ -389,8 +400,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The cones of printed pins must rise by 45 to 80 degrees to need no support, got {cone_deg!r:.40}."
     ),
     "printed.ear_too_small": mark(
-        "An ear of {ear_mm:g} mm has no room for a pin of {pin_mm:g} mm that cannot come out, and for its wall. Make it "
-        "at least {least_mm:.1f} mm wide."
+        "An ear of {ear_mm:g} mm has no room for a pin of {pin_mm:g} mm that cannot come out, and for its wall. Make "
+        "it at least {least_mm:.1f} mm wide."
     ),
     "printed.too_thin_for_pins": mark(
         "Panels of {thickness_mm:g} mm are too thin for pins that are printed in place: with ears of {ear_mm:g} mm "
