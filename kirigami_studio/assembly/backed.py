@@ -44,21 +44,14 @@ LABEL_SHARE, LARGEST_LABEL_MM = 0.5, 5.0
 class TileSizes:
     """Sizes that decide on the tiles.
 
-    Attributes
-    ----------
-    gap_mm : float
-        How much smaller than their finished panels tiles are, all round.
-    relief_mm : float or None
-        Radius that is left free round every connector; None for the length over which it bends.
-
     Raises
     ------
     FabricationError
         A length below 0.
     """
 
-    gap_mm: float = GAP_MM
-    relief_mm: float | None = None
+    gap_mm: float = GAP_MM  #: how much smaller than their finished panels tiles are, all round
+    relief_mm: float | None = None  #: radius free of tiles round connectors; None for the length they bend over
 
     def __post_init__(self) -> None:
         check_length("backed.gap_negative", self.gap_mm, zero_allowed=True)
@@ -83,14 +76,6 @@ class BoardCut(StrEnum):
 class Jig:
     """What keeps tiles in register with their hinge layer.
 
-    Attributes
-    ----------
-    cut : BoardCut
-    frame_mm : float
-        Width of the frame that is cut round the tiles.
-    pin_mm : float
-        Diameter of the registration holes, in the frame and in what is left over round the hinge layer.
-
     Raises
     ------
     FabricationError
@@ -98,8 +83,10 @@ class Jig:
     """
 
     cut: BoardCut = BoardCut.THROUGH
-    frame_mm: float = FRAME_MM
-    pin_mm: float = REGISTRATION_MM
+    frame_mm: float = FRAME_MM  #: width of the frame that is cut round the tiles
+    pin_mm: float = (
+        REGISTRATION_MM  #: diameter of the holes in the frame, and in what is left over round the hinge layer
+    )
 
     def __post_init__(self) -> None:
         check_length("backed.frame_not_positive", self.frame_mm)
@@ -110,24 +97,12 @@ class Jig:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Board:
-    """Tiles and their frame as they lie on the flat hinge layer: what is cut, and the template for gluing.
+    """Tiles and their frame as they lie on the flat hinge layer: what is cut, and the template for gluing."""
 
-    Attributes
-    ----------
-    pieces : tuple of Piece
-        Tiles, then the frame, each in its own frame of coordinates.
-    places : (P, 2) float, mm
-        Where their origins lie; the lower left corner of the frame is (0, 0).
-    layer_at : (2,) float, mm
-        Where the origin of the hinge layer's plan lies.
-    kissed : frozenset of str
-        Pieces that are not cut through, and the weeding line in the frame with them.
-    """
-
-    pieces: tuple[Piece, ...]
-    places: FloatArray
-    layer_at: FloatArray
-    kissed: frozenset[str]
+    pieces: tuple[Piece, ...]  #: tiles, then the frame, each in its own frame of coordinates
+    places: FloatArray  #: (P, 2) where their origins lie; the lower left corner of the frame is (0, 0)
+    layer_at: FloatArray  #: (2,) where the origin of the hinge layer's plan lies
+    kissed: frozenset[str]  #: ids of pieces that are not cut through; with them the opening of the frame
 
     @property
     def registration(self) -> tuple[RoundHole, ...]:
@@ -138,21 +113,11 @@ class Board:
 
 @dataclass(frozen=True, eq=False)
 class BackedSheet:
-    """A hinge layer and the tiles that are glued on it.
+    """A hinge layer and the tiles that are glued on it."""
 
-    Attributes
-    ----------
-    plan : CutPlan
-        Of the hinge layer.
-    deployment : Deployment
-        The sheet that the plan cuts.
-    phi_target : float, radians
-    tile_sizes : TileSizes
-    """
-
-    plan: CutPlan
-    deployment: Deployment
-    phi_target: float
+    plan: CutPlan  #: of the hinge layer
+    deployment: Deployment  #: the sheet that the plan cuts
+    phi_target: float  #: radians
     tile_sizes: TileSizes
 
     @classmethod

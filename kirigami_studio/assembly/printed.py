@@ -176,18 +176,11 @@ class PinJoint:
     The pin of layer 1 stands on the plate: a cone up to its neck, then a wider cone up to the disc that it carries.
     The ear of layer 2 is a ring round it, at the clearance on all sides; it lies on the plate, too.  Whatever hangs
     over rises by the cones' angle from its own body, so that nothing needs support; the neck holds the ring both ways.
-
-    Attributes
-    ----------
-    pin, round_pin : Polygon
-        The body of layer 1, and what layer 2 leaves out for it.
-    round_ring : Polygon
-        What layer 1 leaves out for the ring of layer 2.
     """
 
-    pin: Polygon
-    round_pin: Polygon
-    round_ring: Polygon
+    pin: Polygon  #: the body of layer 1
+    round_pin: Polygon  #: what layer 2 leaves out for it
+    round_ring: Polygon  #: what layer 1 leaves out for the ring of layer 2
 
     @classmethod
     def of(cls, pins: PrintedPins, thickness_mm: float) -> PinJoint:
@@ -294,28 +287,13 @@ def pinned_solids(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _SeenMotion:
-    """Nodes over the motion, as they are seen from panels.
+    """Nodes over the motion, as they are seen from panels."""
 
-    Attributes
-    ----------
-    nodes : (S, N) complex, mm
-        Of every node at each of S angles, from flat to the target.
-    turns : (S,) float, radians
-        Of panels of layer 1, clockwise; those of layer 2 turn the other way.
-    panels : (P, 4) int
-        Nodes of every panel, row by row.
-    layer : (P,) int
-        1 for panels with I + J even, 2 for the others.
-    flat : (N, 2) float, mm
-        Nodes of the flat sheet.
-    cell_mm : float
-    """
-
-    nodes: ComplexArray
-    turns: FloatArray
-    panels: IntArray
-    layer: IntArray
-    flat: FloatArray
+    nodes: ComplexArray  #: (S, N) mm, of every node at each of S angles, from flat to the target
+    turns: FloatArray  #: (S,) radians, of panels of layer 1, clockwise; those of layer 2 turn the other way
+    panels: IntArray  #: (P, 4) nodes of every panel, row by row
+    layer: IntArray  #: (P,) 1 for panels with I + J even, 2 for the others
+    flat: FloatArray  #: (N, 2) mm, nodes of the flat sheet
     cell_mm: float
 
     @classmethod

@@ -34,27 +34,16 @@ class PrintForm(StrEnum):
 class PrintedPins:
     """Sizes of pins that are printed in place.
 
-    Attributes
-    ----------
-    ear_mm : float
-        Diameter of the discs that turn on each other at a node.
-    pin_mm : float
-        Diameter of the pin where it is narrowest.
-    clearance_mm : float
-        Between all that moves past each other.
-    cone_deg : float
-        How steep the cones of pin and ear are, from the plate: from 45 degrees on, printers need no support.
-
     Raises
     ------
     FabricationError
         Sizes that make no sense.
     """
 
-    ear_mm: float = 6.4
-    pin_mm: float = 2.4
-    clearance_mm: float = 0.3
-    cone_deg: float = 45.0
+    ear_mm: float = 6.4  #: diameter of the discs that turn on each other at a node
+    pin_mm: float = 2.4  #: diameter of the pin where it is narrowest
+    clearance_mm: float = 0.3  #: between all that moves past each other
+    cone_deg: float = 45.0  #: slope of the cones from the plate: from 45 degrees on they need no support
 
     def __post_init__(self) -> None:
         sizes = (self.pin_mm, self.clearance_mm, self.ear_mm - self.pin_mm)
@@ -74,18 +63,6 @@ class PrintedPins:
 class Printing:
     """How a design is printed.
 
-    Attributes
-    ----------
-    form : PrintForm
-    thickness_mm : float or None
-        None for that of the material.
-    tile_sizes : TileSizes
-        Of tiles.
-    pins : PrintedPins
-        Of panels on pins.
-    bed_mm : (width, depth)
-        Of the printer; 0 for any size.
-
     Raises
     ------
     FabricationError
@@ -93,10 +70,10 @@ class Printing:
     """
 
     form: PrintForm = PrintForm.SHEET
-    thickness_mm: float | None = None
-    tile_sizes: TileSizes = field(default_factory=TileSizes)
-    pins: PrintedPins = field(default_factory=PrintedPins)
-    bed_mm: tuple[float, float] = (0.0, 0.0)
+    thickness_mm: float | None = None  #: None for that of the material
+    tile_sizes: TileSizes = field(default_factory=TileSizes)  #: of tiles
+    pins: PrintedPins = field(default_factory=PrintedPins)  #: of panels on pins
+    bed_mm: tuple[float, float] = (0.0, 0.0)  #: (width, depth) of the printer; 0 for any size
 
     def __post_init__(self) -> None:
         if self.thickness_mm is not None:
@@ -105,25 +82,13 @@ class Printing:
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """One body with a closed surface.
-
-    Attributes
-    ----------
-    name : str
-    layer : int
-        That decides on its colour: 1 or 2.
-    vertices : (V, 3) float, mm
-    faces : (F, 3) int
-        Counter-clockwise from outside.
-    volume_mm3 : float
-        As planned: area of its outline times thickness.
-    """
+    """One body with a closed surface."""
 
     name: str
-    layer: int
-    vertices: FloatArray
-    faces: IntArray
-    volume_mm3: float
+    layer: int  #: 1 or 2, which decides on its colour
+    vertices: FloatArray  #: (V, 3) mm
+    faces: IntArray  #: (F, 3) counter-clockwise from outside
+    volume_mm3: float  #: as planned: area of its outline times thickness
 
     @cached_property
     def low(self) -> FloatArray:

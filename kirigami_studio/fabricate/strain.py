@@ -43,21 +43,11 @@ class StrainFigure(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigidPanels:
-    """Panels that do not bend: what they leave free of every connector.
+    """Panels that do not bend: what they leave free of every connector."""
 
-    Attributes
-    ----------
-    free_mm : (H,) float
-        Length between the rigid parts of both panels.
-    flexure_mm : (H,) float
-        Length over which the connector bends between panels of the sheet alone, by which its strain was found.
-    turn : float, radians
-        By which connectors turn altogether.
-    """
-
-    free_mm: FloatArray
-    flexure_mm: FloatArray
-    turn: float
+    free_mm: FloatArray  #: (H,) length between the rigid parts of both panels
+    flexure_mm: FloatArray  #: (H,) length over which it bends between panels of the sheet alone, behind its strain
+    turn: float  #: by which connectors turn altogether, radians
 
     def of(self, connectors: IntArray) -> RigidPanels:
         """The same of some connectors, by number."""
@@ -77,29 +67,14 @@ class RigidPanels:
 
 @dataclass(frozen=True, slots=True)
 class Survival:
-    """Strain and limit of the connector that is nearest to breaking, by the figure believed.
+    """Strain and limit of the connector that is nearest to breaking, by the figure believed."""
 
-    Attributes
-    ----------
-    strain : float
-        Of the figure that is believed.
-    figure : StrainFigure
-    thinness : float
-        Thickness of the sheet over the connector's width.
-    limit : float
-        Strain at which it breaks: elongation at break in the plane, in bending out of it.
-    yields_at : float
-        Strain above which it stays bent; 0 where the material has no such strain.
-    held : bool
-        Thin enough to escape, but between rigid panels that leave no length for it.
-    """
-
-    strain: float
+    strain: float  #: of the figure that is believed
     figure: StrainFigure
-    thinness: float
-    limit: float
-    yields_at: float
-    held: bool = False
+    thinness: float  #: thickness of the sheet over the connector's width
+    limit: float  #: strain at which it breaks: elongation at break in the plane, in bending out of it
+    yields_at: float  #: strain above which it stays bent; 0 where the material has no such strain
+    held: bool = False  #: thin enough to escape, but between rigid panels that leave no length for it
 
     @property
     def breaks(self) -> bool:
