@@ -74,7 +74,7 @@ class BoardCut(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Jig:
-    """What keeps tiles in register with their hinge layer.
+    """Frame and pins that keep tiles in register with their hinge layer.
 
     Raises
     ------
@@ -84,9 +84,7 @@ class Jig:
 
     cut: BoardCut = BoardCut.THROUGH
     frame_mm: float = FRAME_MM  #: width of the frame that is cut round the tiles
-    pin_mm: float = (
-        REGISTRATION_MM  #: diameter of the holes in the frame, and in what is left over round the hinge layer
-    )
+    pin_mm: float = REGISTRATION_MM  #: diameter of the holes in the frame and in the rest of the hinge layer
 
     def __post_init__(self) -> None:
         check_length("backed.frame_not_positive", self.frame_mm)
@@ -97,7 +95,7 @@ class Jig:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Board:
-    """Tiles and their frame as they lie on the flat hinge layer: what is cut, and the template for gluing."""
+    """Tiles and their frame as they lie on the flat hinge layer: cut file and template for gluing."""
 
     pieces: tuple[Piece, ...]  #: tiles, then the frame, each in its own frame of coordinates
     places: FloatArray  #: (P, 2) where their origins lie; the lower left corner of the frame is (0, 0)
@@ -174,7 +172,7 @@ class BackedSheet:
         return Assembly(self.deployment, self.cell_mm, self.phi_target, tuple(pieces), ())
 
     def rigid_panels(self, phi: float, flexure_mm: FloatArray | None = None) -> RigidPanels:
-        """Free lengths of all connectors between tiles, for the strain of the hinge layer opened to ``phi``.
+        """Free lengths of all connectors between tiles, for the strain of the hinge layer.
 
         Parameters
         ----------

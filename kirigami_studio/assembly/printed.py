@@ -17,7 +17,9 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.assembly.solids import (
+    LAYER_MM,
     ROUNDING_MM,
+    TILE_MM,
     Plate,
     PrintedPins,
     PrintForm,
@@ -62,6 +64,8 @@ def print_plates(
 ) -> tuple[Plate, ...]:
     """Make the solids of a design, as many plates of them as the bed asks for.
 
+    A sheet is as thick as its material unless asked for.
+
     Parameters
     ----------
     plan : CutPlan
@@ -78,14 +82,15 @@ def print_plates(
     FabricationError
         A sheet that falls apart, a body larger than the bed, or one whose surface does not close.
     """
-    thickness = plan.material.thickness_mm if printing.thickness_mm is None else printing.thickness_mm
+    wanted = printing.thickness_mm
     if printing.form is PrintForm.TILES:
-        solids = tile_solids(BackedSheet.of(plan, design, phi, printing.tile_sizes), thickness)
+        solids = tile_solids(BackedSheet.of(plan, design, phi, printing.tile_sizes), wanted or TILE_MM)
     elif printing.form is PrintForm.PINNED:
+        thickness = wanted or LAYER_MM * math.ceil(PinJoint.least_mm(printing.pins) / LAYER_MM)
         solids = pinned_solids(design, kept, plan.size_mm[0], phi, thickness, printing.pins)
         return on_one_plate(solids, printing.bed_mm)
     else:
-        solids = sheet_solids(plan, thickness)
+        solids = sheet_solids(plan, wanted or plan.material.thickness_mm)
     return on_plates(solids, printing.bed_mm)
 
 
@@ -191,15 +196,9 @@ class PinJoint:
         FabricationError
             Panels too thin, or ears too small for a pin that stays in.
         """
-        slope = math.tan(math.radians(pins.cone_deg))
+        slope, foot = math.tan(math.radians(pins.cone_deg)), cls._foot(pins)
         ear, neck, gap = 0.5 * pins.ear_mm, 0.5 * pins.pin_mm, pins.clearance_mm
-        beside = gap / math.sin(math.radians(pins.cone_deg))  # of a gap between cones, along the plate
-        foot = ear - LEAST_WALL_MM - beside
-        if foot < neck + beside + HELD_MM - ROUNDING_MM:
-            least = 2.0 * (neck + 2.0 * beside + HELD_MM + LEAST_WALL_MM)
-            raise FabricationError("printed.ear_too_small", ear_mm=pins.ear_mm, pin_mm=pins.pin_mm, least_mm=least)
-        upper = slope * (ear + gap - neck)
-        least = upper + slope * (foot - neck) + LEAST_WEB_MM
+        least = cls.least_mm(pins)
         if thickness_mm < least - ROUNDING_MM:
             raise FabricationError(
                 "printed.too_thin_for_pins", thickness_mm=thickness_mm, ear_mm=pins.ear_mm, least_mm=least
@@ -215,6 +214,23 @@ class PinJoint:
         reach, low = ear + gap, height + LAPPED_MM
         ring = [(0.0, -above), (reach, -above), (reach, low + slope * (reach - neck)), (neck, low), (0.0, low)]
         return cls(Polygon(pin), shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above)), Polygon(ring))
+
+    @classmethod
+    def least_mm(cls, pins: PrintedPins) -> float:
+        """Thickness that panels need at least."""
+        widths = cls._foot(pins) + 0.5 * pins.ear_mm + pins.clearance_mm - pins.pin_mm
+        return math.tan(math.radians(pins.cone_deg)) * widths + LEAST_WEB_MM
+
+    @staticmethod
+    def _foot(pins: PrintedPins) -> float:
+        """Radius of the pin on the plate: all that the wall of the ring round it leaves."""
+        ear, neck = 0.5 * pins.ear_mm, 0.5 * pins.pin_mm
+        beside = pins.clearance_mm / math.sin(math.radians(pins.cone_deg))  # of a gap between cones, along the plate
+        foot = ear - LEAST_WALL_MM - beside
+        if foot < neck + beside + HELD_MM - ROUNDING_MM:
+            least = 2.0 * (neck + 2.0 * beside + HELD_MM + LEAST_WALL_MM)
+            raise FabricationError("printed.ear_too_small", ear_mm=pins.ear_mm, pin_mm=pins.pin_mm, least_mm=least)
+        return foot
 
     def bodies(self) -> tuple[Manifold, Manifold, Manifold]:
         """The three areas turned about the axis; no corner of the first is at one of the others."""

@@ -18,6 +18,8 @@ from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import FabricationError
 
+#: Usual thickness of printed tiles (mm); of panels on pins it is the least, in layers of so much.
+TILE_MM, LAYER_MM = 1.6, 0.2
 #: Bodies may be larger than their room by this much (mm).
 ROUNDING_MM = 1e-6
 
@@ -70,7 +72,7 @@ class Printing:
     """
 
     form: PrintForm = PrintForm.SHEET
-    thickness_mm: float | None = None  #: None for that of the material
+    thickness_mm: float | None = None  #: None for the usual one of the form
     tile_sizes: TileSizes = field(default_factory=TileSizes)  #: of tiles
     pins: PrintedPins = field(default_factory=PrintedPins)  #: of panels on pins
     bed_mm: tuple[float, float] = (0.0, 0.0)  #: (width, depth) of the printer; 0 for any size

@@ -160,11 +160,11 @@ def survival(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Judged:
-    """Which figure of each connector (H,) is believed, that figure (..., H), and its share of the limit (..., H)."""
+    """The figures believed, and their shares of the limit."""
 
-    bent: BoolArray
-    strains: FloatArray
-    shares: FloatArray
+    bent: BoolArray  #: (H,) out of the plane
+    strains: FloatArray  #: (..., H)
+    shares: FloatArray  #: (..., H)
 
 
 def _judged(

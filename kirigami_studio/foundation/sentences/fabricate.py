@@ -401,11 +401,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "printed.ear_too_small": mark(
         "An ear of {ear_mm:g} mm has no room for a pin of {pin_mm:g} mm that cannot come out, and for its wall. Make "
-        "it at least {least_mm:.1f} mm wide."
+        "it at least {least_mm:.2f} mm wide."
     ),
     "printed.too_thin_for_pins": mark(
         "Panels of {thickness_mm:g} mm are too thin for pins that are printed in place: with ears of {ear_mm:g} mm "
-        "they have to be at least {least_mm:.1f} mm thick."
+        "they have to be at least {least_mm:.2f} mm thick."
     ),
     "printed.pins_too_near": mark(
         "Two pins come within {apart_mm:.1f} mm of each other, but their ears need {needed_mm:.1f} mm. Make the sheet "

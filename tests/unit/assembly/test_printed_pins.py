@@ -12,7 +12,7 @@ from manifold3d import Manifold, Mesh64
 from refusals import refused
 from solid_reader import read_3mf, read_stl
 
-from kirigami_studio.assembly.printed import pinned_solids
+from kirigami_studio.assembly.printed import PinJoint, pinned_solids
 from kirigami_studio.assembly.solids import Plate, PrintedPins, PrintForm, Printing
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.registry import export
@@ -110,6 +110,15 @@ def test_that_sizes_that_do_not_fit_are_refused_with_the_least_that_do(design: D
         PrintedPins(cone_deg=30.0)
     with refused(FabricationError, "printed.pins_not_positive"):
         PrintedPins(ear_mm=2.0, pin_mm=2.4)
+
+
+def test_that_the_usual_thickness_is_the_least_in_whole_layers(design: Deployment, tmp_path: Path) -> None:
+    job = ExportJob(design, plan=plan_cuts(design, WIDTH, 1.0, 0.2), printing=Printing(PrintForm.PINNED))
+    least = PinJoint.least_mm(PINS)
+    height = read_stl(export(job, tmp_path / "pins.stl")).bounds[1, 2]
+    assert least <= height < least + 0.2 and height / 0.2 == pytest.approx(round(height / 0.2), abs=1e-4)
+    with refused(FabricationError, "printed.too_thin_for_pins"):
+        pinned_solids(design, None, WIDTH, 0.0, least - 0.01, PINS)
 
 
 def test_that_pins_without_room_for_their_ears_are_refused() -> None:
