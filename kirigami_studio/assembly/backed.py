@@ -197,13 +197,15 @@ class BackedSheet:
         low = np.array([left, bottom]) - jig.frame_mm
         size = np.array([right, top]) + jig.frame_mm - low
         inset = 0.5 * jig.frame_mm
-        holes = [inset, size - inset, np.array([inset, size[1] - inset]), np.array([size[0] - 3.0 * inset, inset])]
+        width, height = size
+        corners = ((inset, inset), (width - inset, height - inset), (inset, height - inset))
+        holes = (*corners, (width - 3.0 * inset, inset))
         frame = Piece(
             FRAME,
             2,
             (-1, -1),
-            np.array([[0.0, 0.0], [size[0], 0.0], size, [0.0, size[1]]]),
-            tuple(RoundHole(np.broadcast_to(hole, 2) + 0.0, jig.pin_mm) for hole in holes),
+            np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]),
+            tuple(RoundHole(np.array(hole), jig.pin_mm) for hole in holes),
             (shapely.get_coordinates(shapely.orient_polygons(opening).exterior)[:0:-1] - low,),
             np.array([2.0 * jig.frame_mm, inset]),
             min(LABEL_SHARE * jig.frame_mm, LARGEST_LABEL_MM),

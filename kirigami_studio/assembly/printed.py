@@ -137,7 +137,7 @@ def extruded(name: str, layer: int, region: Polygon, thickness_mm: float) -> Sol
     return solid_of(name, layer, prism(region, thickness_mm), region.area * thickness_mm)
 
 
-def prism(region: Polygon, thickness_mm: float) -> Manifold:
+def prism(region: BaseGeometry, thickness_mm: float) -> Manifold:
     """The body over an area (mm), from z = 0."""
     grid = COARSE_GRID_MM if max(map(abs, region.bounds)) > LARGE_MM else GRID_MM
     rings = _rings(region, grid)
@@ -213,7 +213,11 @@ class PinJoint:
         room = shapely.buffer(Polygon(both), gap, join_style="mitre", mitre_limit=MITRE)
         reach, low = ear + gap, height + LAPPED_MM
         ring = [(0.0, -above), (reach, -above), (reach, low + slope * (reach - neck)), (neck, low), (0.0, low)]
-        return cls(Polygon(pin), shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above)), Polygon(ring))
+        return cls(
+            Polygon(pin),
+            _largest(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
+            Polygon(ring),
+        )
 
     @classmethod
     def least_mm(cls, pins: PrintedPins) -> float:
@@ -352,7 +356,7 @@ class _SeenMotion:
         places = self.nodes[:, list(hinges)]
         nearest = math.inf
         for moment in places:
-            tree = shapely.STRtree(shapely.points(as_points(moment)))
+            tree = shapely.STRtree([shapely.Point(place) for place in as_points(moment)])
             found = tree.query_nearest(tree.geometries, exclusive=True, return_distance=True, all_matches=False)[1]
             nearest = min(nearest, float(found.min(initial=math.inf)))
         if nearest < apart_mm - ROUNDING_MM:
@@ -360,7 +364,7 @@ class _SeenMotion:
 
     def printed_area(
         self, index: int, region: Polygon, hinges: Mapping[int, tuple[int, int]], pins: PrintedPins
-    ) -> Polygon | None:
+    ) -> BaseGeometry | None:
         """A panel with its ears, less all that other ears sweep.
 
         None where it does not hang together with its own.
@@ -371,17 +375,17 @@ class _SeenMotion:
         corner = int(self.panels[index][0])
         back = np.exp(1j * sense * self.turns)[:, None]
         seen = (self.nodes[:, others] - self.nodes[:, [corner]]) * back + complex(*self.flat[corner])
-        ways = shapely.linestrings(np.stack([seen.T.real, seen.T.imag], axis=-1))
+        ways = np.array([shapely.LineString(as_points(way)) for way in seen.T], dtype=object)
         radius = 0.5 * pins.ear_mm + pins.clearance_mm + SAGITTA_MM
         near = ways[shapely.distance(ways, region) < radius]
         angles = 2.0 * math.pi * (np.arange(ROUND_SEGMENTS) + 0.5) / ROUND_SEGMENTS  # as the pins have them
         disc = 0.5 * pins.ear_mm * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        ears = shapely.polygons(self.flat[own][:, None] + disc)
+        ears = [Polygon(place + disc) for place in self.flat[own]]
         rest = shapely.difference(region, shapely.union_all(shapely.buffer(near, radius)))
         whole = shapely.union_all([rest, *ears])
         core = shapely.buffer(whole, -0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)
         for part in shapely.get_parts(shapely.buffer(core, 0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)):
-            if np.all(shapely.contains_xy(part, *self.flat[own].T)):
+            if np.all(shapely.contains_xy(part, self.flat[own])):
                 # Sides that nearly coincide cross in stray vertices, which no ear may have; pins bring their own ears.
                 shape = shapely.simplify(shapely.intersection(part, rest), SHORTEST_EDGE_MM)
                 return shape if self.layer[index] == 1 else shapely.union_all([shape, *ears])

@@ -159,8 +159,8 @@ def threemf_bytes(plate: Plate, about: str) -> bytes:
     for name, colour in LAYER_COLOURS.values():
         ElementTree.SubElement(materials, "base", {"name": name, "displaycolor": colour})
     for number, solid in enumerate(plate, start=2):
-        colour = {"pid": "1", "pindex": f"{list(LAYER_COLOURS).index(solid.layer)}"}
-        head = {"id": f"{number}", "type": "model", "name": solid.name, **colour}
+        head = {"id": f"{number}", "type": "model", "name": solid.name, "pid": "1"}
+        head["pindex"] = f"{list(LAYER_COLOURS).index(solid.layer)}"
         mesh = ElementTree.SubElement(ElementTree.SubElement(resources, "object", head), "mesh")
         vertices = ElementTree.SubElement(mesh, "vertices")
         for x, y, z in solid.vertices.tolist():
@@ -173,8 +173,8 @@ def threemf_bytes(plate: Plate, about: str) -> bytes:
     model = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     stream = BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        for place, content in (("[Content_Types].xml", CONTENT_TYPES), ("_rels/.rels", RELATIONSHIPS), (MODEL, model)):
-            entry = zipfile.ZipInfo(place)  # of 1980: the same plan gives the same bytes
+        for name, content in (("[Content_Types].xml", CONTENT_TYPES), ("_rels/.rels", RELATIONSHIPS), (MODEL, model)):
+            entry = zipfile.ZipInfo(name)  # of 1980: the same plan gives the same bytes
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, content)
     return stream.getvalue()

@@ -316,11 +316,11 @@ def flexing(plan: CutPlan, phi: float, rigid: RigidPanels | None = None) -> Flex
     if np.all(plan.hinges.removed):
         return None
     there = np.flatnonzero(~plan.hinges.removed)
-    figures = [figure[there] for figure in _both_figures(plan, phi)]
+    in_plane, out_of_plane = (figure[there] for figure in _both_figures(plan, phi))
     widths = np.maximum(plan.hinges.finished_mm[there], LEAST_MM)
     tiles = None if rigid is None else rigid.of(there)
-    worst = there[int(np.argmax(used_up(plan.material, widths, *figures, tiles)))]
-    found = survival(plan.material, widths, *figures, tiles)
+    worst = there[int(np.argmax(used_up(plan.material, widths, in_plane, out_of_plane, tiles)))]
+    found = survival(plan.material, widths, in_plane, out_of_plane, tiles)
     x, y = plan.hinges.position[worst]
     length = _lengths(plan)[worst] if rigid is None else min(_lengths(plan)[worst], rigid.free_mm[worst])
     return Flexing(hinge_turn(phi), found.strain, (float(x), float(y)), float(length), found)
