@@ -437,7 +437,8 @@ class Design:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files; ``.png``: the closed sheet; ``.gif``: its motion.
+            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files; ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the
+            closed sheet; ``.gif``: its motion.
 
         Returns
         -------
@@ -655,7 +656,7 @@ class Cuts:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.png`` or ``.gif``.
+            ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.stl``, ``.3mf``, ``.obj``, ``.png`` or ``.gif``.
         record : bool
             Whether all settings are written as .json beside it.
         phi : float, radians, optional

@@ -75,8 +75,8 @@ class LayerMotion:
     def without(self, nodes: Collection[int]) -> LayerMotion:
         """The motion with as many of these nodes' pins left out as it keeps being the only one.
 
-        They are left out one by one: a pin without which pieces would move in other ways stays.  The motion itself where
-        all stay.
+        They are left out one by one: a pin without which pieces would move in other ways stays.  Where all stay it is
+        this motion itself.
         """
         found = self
         for node in sorted(nodes):

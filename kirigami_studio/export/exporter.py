@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from kirigami_studio.assembly.solids import Printing
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
@@ -59,6 +60,8 @@ class ExportJob:
         Where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked.
     verdict : str
         Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it.
+    printing : Printing
+        How files of solids are made: the planned sheet, as thick as its material, unless given.
     """
 
     deployment: Deployment
@@ -78,6 +81,7 @@ class ExportJob:
     record: bytes = b""
     simulated_jam: float | None = None
     verdict: str = ""
+    printing: Printing = field(default_factory=Printing)
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

@@ -37,6 +37,13 @@ def _lightburn(job: ExportJob, path: Path) -> None:
     write_lightburn(job.required_plan, path, job.markers)
 
 
+def _meshes(job: ExportJob, path: Path) -> tuple[Path, ...]:
+    """Write the job's solids, a file for each plate."""
+    from kirigami_studio.export.meshes import write_meshes  # with libraries that few need
+
+    return write_meshes(job, path)
+
+
 #: Writers by extension (lower case, with the dot); of GIF from phi = pi to the job's angle, or as far as it comes.
 WRITERS: Mapping[str, Writer] = MappingProxyType(
     {
@@ -46,6 +53,9 @@ WRITERS: Mapping[str, Writer] = MappingProxyType(
         ".png": write_png,
         ".gif": write_animation,
         ".lbrn2": _lightburn,
+        ".stl": _meshes,
+        ".3mf": _meshes,
+        ".obj": _meshes,
     }
 )
 
@@ -73,11 +83,22 @@ def export(job: ExportJob, path: str | Path) -> Path:
     Raises
     ------
     ExportError
+        As :func:`export_files`.
+    """
+    return export_files(job, path)[0]
+
+
+def export_files(job: ExportJob, path: str | Path) -> tuple[Path, ...]:
+    """Write one file, the folder of its layers, or a file for each plate; return their paths.
+
+    Raises
+    ------
+    ExportError
         Unknown extension, missing plan, unwritable place, or a file that did not pass its own re-reading.
     """
     goal = Path(path)
-    find_writer(goal)(job, goal)
-    return written_path(goal, job.profile)
+    written = find_writer(goal)(job, goal)
+    return written if isinstance(written, tuple) else (written_path(goal, job.profile),)
 
 
 def written_path(path: Path, profile_key: str) -> Path:

@@ -28,7 +28,7 @@ from kirigami_studio.fabricate.joints import joined_pairs
 from kirigami_studio.fabricate.machine import kinds_for
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import SmallPlace, smallest_edge, smallest_neck, trimmed_neck_below
-from kirigami_studio.fabricate.strain import Survival, escapes, survival, used_up
+from kirigami_studio.fabricate.strain import RigidPanels, Survival, escapes, survival, used_up
 from kirigami_studio.foundation.arrays import FloatArray
 
 #: Overlaps shorter than this (mm) are rounding.
@@ -55,7 +55,9 @@ class PlanReport:
         return not any(problem.severity is Severity.ERROR for problem in self.problems)
 
 
-def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None) -> PlanReport:
+def check_plan(
+    plan: CutPlan, kerf_mm: float | None = None, phi: float | None = None, rigid: RigidPanels | None = None
+) -> PlanReport:
     """Cut the plan in the computer and look at what is left.
 
     Parameters
@@ -64,16 +66,18 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
         The kerf the machine really has; the plan's own unless given.
     phi : float, radians, optional
         Target angle of the deployment; without it nothing is said about how far the connectors bend.
+    rigid : RigidPanels, optional
+        Tiles on the sheet, which is the hinge layer under them.
     """
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     lines = [measured_line(path.points, path.bulges, path.closed) for path in inner]
     boundary = Polygon(plan.outline)
-    pieces = _pieces(inner, boundary, kerf)
+    pieces = finished_pieces(plan, kerf)
     ligament = smallest_ligament(lines, boundary.exterior, kerf, joined_pairs(plan, inner, lines))
     twice = overlap([LineString(path.travelled) for path in plan.paths])
     edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
-    bent = None if phi is None else flexing(plan, phi)
+    bent = None if phi is None else flexing(plan, phi, rigid)
     problems = [
         *piece_problems(pieces, boundary, kerf, len(plan.options.removed)),
         *tab_problems(plan),
@@ -96,10 +100,20 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
     )
 
 
-def _pieces(inner: Sequence[CutPath], boundary: Polygon, kerf: float) -> list[Polygon]:
-    """What is left of the sheet once its tabs are broken; what falls out of relief holes does not count."""
+def finished_pieces(plan: CutPlan, kerf_mm: float | None = None) -> list[Polygon]:
+    """Pieces of the finished sheet with its tabs broken, largest first.
+
+    The middle of relief holes falls out.
+
+    Parameters
+    ----------
+    plan : CutPlan
+    kerf_mm : float, optional
+        The plan's own unless given.
+    """
+    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     cuts = [Polygon(path.flattened) if path.closed else LineString(path.flattened) for path in inner]
-    return remaining_pieces(boundary, cuts, kerf)
+    return remaining_pieces(Polygon(plan.outline), cuts, plan.kerf_mm if kerf_mm is None else kerf_mm)
 
 
 def piece_problems(pieces: Sequence[Polygon], boundary: Polygon, kerf_mm: float, removed: int) -> list[Problem]:
@@ -294,17 +308,22 @@ class Flexing:
     survival: Survival
 
 
-def flexing(plan: CutPlan, phi: float) -> Flexing | None:
-    """Estimate what opening the sheet to an angle (radians) does to its connectors; None for a sheet without any."""
+def flexing(plan: CutPlan, phi: float, rigid: RigidPanels | None = None) -> Flexing | None:
+    """Estimate how opening the sheet to an angle (radians) bends its connectors; None for a sheet without any.
+
+    With ``rigid`` panels, whose arrays are of all hinges, connectors bend only where they are free.
+    """
     if np.all(plan.hinges.removed):
         return None
     there = np.flatnonzero(~plan.hinges.removed)
-    figures = [figure[there] for figure in _both_figures(plan, phi)]
+    in_plane, out_of_plane = (figure[there] for figure in _both_figures(plan, phi))
     widths = np.maximum(plan.hinges.finished_mm[there], LEAST_MM)
-    worst = there[int(np.argmax(used_up(plan.material, widths, *figures)))]
-    found = survival(plan.material, widths, *figures)
+    tiles = None if rigid is None else rigid.of(there)
+    worst = there[int(np.argmax(used_up(plan.material, widths, in_plane, out_of_plane, tiles)))]
+    found = survival(plan.material, widths, in_plane, out_of_plane, tiles)
     x, y = plan.hinges.position[worst]
-    return Flexing(hinge_turn(phi), found.strain, (float(x), float(y)), float(_lengths(plan)[worst]), found)
+    length = _lengths(plan)[worst] if rigid is None else min(_lengths(plan)[worst], rigid.free_mm[worst])
+    return Flexing(hinge_turn(phi), found.strain, (float(x), float(y)), float(length), found)
 
 
 def hinge_turn(phi: float) -> float:

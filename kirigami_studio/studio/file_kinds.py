@@ -34,6 +34,9 @@ FILE_KINDS = (
     FileKind(
         ".lbrn2", mark("LightBurn project"), mark("Named layers in cutting order; connectors on the tool layer"), True
     ),
+    FileKind(".stl", mark("STL solid, mm"), mark("The sheet as one closed body, to print or to mill"), True),
+    FileKind(".3mf", mark("3MF solid, mm"), mark("Closed bodies with names and colours of the layers, to print"), True),
+    FileKind(".obj", mark("OBJ solid, mm"), mark("Closed bodies with names, for modelling programs"), True),
 )
 
 

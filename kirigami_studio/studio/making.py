@@ -557,7 +557,7 @@ def written(
     """
     from kirigami_studio.export.export_set import export_all, placed
     from kirigami_studio.export.provenance import sidecar_path, write_sidecar
-    from kirigami_studio.export.registry import export
+    from kirigami_studio.export.registry import export_files
     from kirigami_studio.export.verification import FORMATS
 
     job = replace(export_job(request, made), motion=motion, picture_phi=picture_phi, simulated_jam=jam_of(as_cut))
@@ -575,14 +575,14 @@ def written(
     if path.suffix.lower() in FORMATS:
         places: list[Path] = []
         job, found_in_files = placed(job, ((path, job.dxf_version),), told, places.append)
-        verified, (place,) = tuple(found_in_files), places
+        verified, files = tuple(found_in_files), tuple(places)
     else:
         job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
-        place = export(job, path)
+        files = export_files(job, path)
     verdict = judged(request, made, as_cut, verified)
-    files = (place,)
+    place = files[0]
     if output.record:
-        files = (place, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
+        files = (*files, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
     return ExportedFiles(place, made, verified, motion=motion, verdict=verdict, files=files)
 
 

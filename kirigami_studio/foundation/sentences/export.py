@@ -152,6 +152,22 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The LightBurn project did not read back as planned: {found_mm:.3f} instead of {planned_mm:.3f} mm of {layer}. "
         "Nothing was written. Please report it."
     ),
+    "mesh.other_bodies": mark(
+        "The file of solids did not read back as planned: {found} bodies instead of {planned}, or other names. Nothing "
+        "was written. Please report it."
+    ),
+    "mesh.not_closed": mark(
+        "The surface of {name:.40} does not close in the file of solids. Nothing was written. Make the sheet larger or "
+        "its slits wider."
+    ),
+    "mesh.other_volume": mark(
+        "The file of solids did not read back as planned: {name:.40} has {found_mm3:.3f} instead of {planned_mm3:.3f} "
+        "mm³. Nothing was written. Please report it."
+    ),
+    "mesh.other_place": mark(
+        "The file of solids did not read back as planned: {name:.40} is of another size or in another place. Nothing "
+        "was written. Please report it."
+    ),
     "png.other_size": mark(
         "The PNG did not read back as planned: {width} x {height} pixels instead of {planned_width} x "
         "{planned_height}. Nothing was written. Please report it."

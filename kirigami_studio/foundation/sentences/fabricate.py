@@ -350,6 +350,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
         "plane, across its thickness."
     ),
+    "strain.held_by_tiles": mark(
+        "The hinge layer is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}, but the tiles "
+        "leave it too short to bend out of the plane: it bends across its width."
+    ),
     "strain.stays_flat": mark(
         "The sheet is {ratio:.2f} times as thick as the connector is wide, not below {threshold:g}: it bends in the "
         "plane, across its width."
@@ -395,5 +399,62 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "(an estimate with the assumption that it bends evenly over {flexure_mm:.3f} mm). {why} "
         "Choose a larger sheet, so that every slit end has room for its style, thinner material or "
         "a target angle nearer to flat."
+    ),
+    # Backed and printed sheets
+    "backed.gap_negative": mark("The gap round tiles must be 0 mm or more, got {value!r:.40}."),
+    "backed.relief_negative": mark(
+        "The radius that tiles leave free round a connector must be 0 mm or more, got {value!r:.40}."
+    ),
+    "backed.frame_not_positive": mark(
+        "The frame round the tiles must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "backed.pin_not_positive": mark("Registration holes must be a number of millimetres above 0, got {value!r:.40}."),
+    "backed.pin_too_wide": mark(
+        "Registration holes of {pin_mm:g} mm are too wide for a frame of {frame_mm:g} mm. Make the frame wider."
+    ),
+    "printed.thickness_not_positive": mark(
+        "The thickness of a print must be a number of millimetres above 0, got {value!r:.40}."
+    ),
+    "printed.pins_not_positive": mark(
+        "Printed pins need sizes in millimetres above 0, and ears wider than their pins, got ear {ear_mm!r:.40}, pin "
+        "{pin_mm!r:.40}, clearance {clearance_mm!r:.40}."
+    ),
+    "printed.cone_too_flat": mark(
+        "The cones of printed pins must rise by 45 to 80 degrees to need no support, got {cone_deg!r:.40}."
+    ),
+    "printed.ear_too_small": mark(
+        "An ear of {ear_mm:g} mm has no room for a pin of {pin_mm:g} mm that cannot come out, and for its wall. Make "
+        "it at least {least_mm:.2f} mm wide."
+    ),
+    "printed.too_thin_for_pins": mark(
+        "Panels of {thickness_mm:g} mm are too thin for pins that are printed in place: with ears of {ear_mm:g} mm "
+        "they have to be at least {least_mm:.2f} mm thick."
+    ),
+    "printed.pins_too_near": mark(
+        "Two pins come within {apart_mm:.1f} mm of each other, but their ears need {needed_mm:.1f} mm. Make the sheet "
+        "larger, the ears smaller, or choose a design that was made for pins."
+    ),
+    "printed.panel_too_small": mark(
+        "The panel {name:.40} does not hang together with its ears. Make the sheet larger or the ears smaller."
+    ),
+    "printed.loose_parts": mark(
+        "The panels do not all hang together by pins: they are in {parts} parts. Trim less of the sheet."
+    ),
+    "printed.assembly_larger_than_bed": mark(
+        "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
+        "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."
+    ),
+    "printed.falls_apart": mark(
+        "The sheet is in {pieces} pieces after cutting, and cannot be printed as one. Widen the connectors."
+    ),
+    "printed.no_tiles": mark(
+        "No panel is large enough for a tile with a gap of {gap_mm:g} mm. Make the sheet larger or the gap smaller."
+    ),
+    "printed.not_one_body": mark(
+        "The body {name:.40} is in {pieces} parts or does not close. Make the sheet larger or its slits narrower."
+    ),
+    "printed.larger_than_bed": mark(
+        "The body {name:.40} is {width_mm:.1f} x {depth_mm:.1f} mm, larger than the bed of {bed_width_mm:g} x "
+        "{bed_depth_mm:g} mm. Make the sheet smaller."
     ),
 }

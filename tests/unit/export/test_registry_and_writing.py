@@ -34,6 +34,9 @@ def job(make_design: Callable[..., Deployment]) -> ExportJob:
         (".png", b"\x89PNG"),
         (".gif", b"GIF89a"),
         (".lbrn2", b"<?xml"),
+        (".stl", b"Kirigami Studio"),
+        (".3mf", b"PK"),
+        (".obj", b"# Kirigami Studio"),
     ],
 )
 def test_that_every_extension_writes_its_kind_of_file(
@@ -52,7 +55,7 @@ def test_that_an_unknown_extension_is_refused_with_the_known_ones(
         export(job, tmp_path / name)
 
 
-@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".lbrn2"])
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".lbrn2", ".stl", ".3mf", ".obj"])
 def test_that_a_cut_file_without_a_plan_is_refused(extension: str, job: ExportJob, tmp_path: Path) -> None:
     with refused(ExportError, "export.no_plan"):
         export(ExportJob(job.deployment), tmp_path / f"cut{extension}")
@@ -64,7 +67,7 @@ def test_that_the_version_and_profile_of_the_job_reach_the_file(job: ExportJob, 
     assert check_file(export(old, tmp_path / "cut.dxf")).unit == "none"
 
 
-@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2"])
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2", ".stl", ".3mf", ".obj"])
 def test_that_a_place_that_cannot_be_written_is_refused_by_name(extension: str, job: ExportJob, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with refused(ExportError, "file.not_written"):
@@ -98,7 +101,7 @@ def test_that_a_refused_file_leaves_the_old_one_and_nothing_else(tmp_path: Path)
     assert goal.read_bytes() == b"new"
 
 
-@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2"])
+@pytest.mark.parametrize("extension", [".dxf", ".svg", ".pdf", ".png", ".gif", ".lbrn2", ".stl", ".3mf", ".obj"])
 def test_that_an_export_onto_a_link_writes_the_file_behind_it(extension: str, job: ExportJob, tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     kept.mkdir()
