@@ -197,8 +197,7 @@ site-serve: setup $(DOCS_STAMP)
 # The translators' template: every sentence of the program, without line numbers, so that only new words change it.
 messages: setup
 	@mkdir -p build
-	$(BIN)/pybabel -q extract -k tr -k mark -k tr_n:1,2 -k mark_n:1,2 --no-default-keywords --no-location --sort-output --omit-header \
-	  -o build/kirigami_studio.pot kirigami_studio
+	$(BIN)/python packaging/messages.py > build/kirigami_studio.pot
 
 # docs/releasing.md says what has to agree.  Both make environments of their own, below build.
 package:

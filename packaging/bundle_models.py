@@ -11,7 +11,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from kirigami_studio.generator.weights import load_weights, model_folder, store_model, variants_about
+from kirigami_studio.generator.weights import model_folder
+from kirigami_studio.lab.trained_weights import load_weights, store_model, variants_about
 
 
 def bundle(name: str, weights: Path) -> Path:

@@ -127,7 +127,7 @@ def model_folder() -> Path:
     """Small weights with their manifest, in a folder."""
     from small_networks import random_network
 
-    from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.lab.trained_weights import store_model
 
     folder = Path(_FOLDER.name)
     store_model("a", random_network(), folder, {})

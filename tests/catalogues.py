@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
-from babel.messages.extract import extract_from_dir
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCALE = ROOT / "resources" / "locale"
 DOMAIN = "kirigami_studio"
-#: The calls that hold sentences, and which arguments; `make messages` names the same.
-KEYWORDS = {"tr": None, "mark": None, "tr_n": (1, 2), "mark_n": (1, 2)}
 
 
 @cache
 def template() -> Catalog:
-    """All sentences of the program, without translations."""
-    found = Catalog()
-    for _, _, message, _, _ in extract_from_dir(ROOT / "kirigami_studio", [("**.py", "python")], keywords=KEYWORDS):
-        found.add(message)
+    """All sentences of the program, without translations, as `make messages` collects them."""
+    spec = importlib.util.spec_from_file_location("messages", ROOT / "packaging" / "messages.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found: Catalog = module.template()
     return found
 
 

@@ -82,8 +82,8 @@ def learned() -> list[Writer]:
     import torch
     from small_networks import random_network
 
-    from kirigami_studio.generator.weights import store_model
     from kirigami_studio.lab.benchmark.run_store import RunStore
+    from kirigami_studio.lab.trained_weights import store_model
     from kirigami_studio.lab.training.dataset import Split
     from kirigami_studio.lab.training.learner import Checkpoint
 

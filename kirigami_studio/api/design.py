@@ -756,13 +756,7 @@ class Exported:
 
 
 def _plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
-    """Plan and check the cuts of a design, with choices on top of those of its project.
-
-    Raises
-    ------
-    FabricationError, UsageError
-        No such material or choice, or cuts that cannot be planned.
-    """
+    """Plan and check the cuts of a design, with choices on top of those of its project."""
     document = design.document
     request = CutRequest.of(document, with_choices(document.fabrication, given))
     check_connectors(request.candidate, request.settings.options)

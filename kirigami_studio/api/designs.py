@@ -286,13 +286,7 @@ design.__doc__ = explicit_docstring(design, *SEARCH)
 
 
 def _grid(grid: object) -> tuple[int, int] | None:
-    """None for ``auto``.
-
-    Raises
-    ------
-    GridError
-        Not a pair either.
-    """
+    """None for ``auto``."""
     if isinstance(grid, str) and grid.strip().lower() == "auto":
         return None
     if isinstance(grid, str) or not isinstance(grid, (Sequence, np.ndarray)) or len(grid) != 2:

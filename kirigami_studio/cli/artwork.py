@@ -92,13 +92,7 @@ def _artwork(arguments: argparse.Namespace, document: Document) -> Artwork:
 
 
 def _laid(arguments: argparse.Namespace, document: Document) -> Laid:
-    """The first picture, and where it lies.
-
-    Raises
-    ------
-    ExportError
-        Numbers that no placed picture has.
-    """
+    """The first picture, and where it lies."""
     stored = None if document.artwork is None else document.artwork.first
     changes: dict[str, Any] = {}
     if arguments.on is not None:

@@ -118,25 +118,13 @@ def design(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class DesignJob:
-    """One target to design.
+    """One target to design."""
 
-    Attributes
-    ----------
-    request : Request
-        Its grid may be open.
-    fabrication : FabricationSettings
-    least_panel_mm : float
-    files : bool
-        Whether the design comes with its files.
-    name : str
-        Of the best design; "" for the name that it gets by itself.
-    """
-
-    request: Request
+    request: Request  #: its grid may be open
     fabrication: FabricationSettings
     least_panel_mm: float
-    files: bool
-    name: str = ""
+    files: bool  #: whether the design comes with its files
+    name: str = ""  #: of the best design; "" for the name that it gets by itself
 
 
 @dataclass(frozen=True, slots=True, eq=False)

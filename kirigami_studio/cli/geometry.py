@@ -43,7 +43,8 @@ def decode(arguments: argparse.Namespace) -> int:
     batch = is_batch(arguments.sheets)
 
     def one(name: str, sheet: Sheet) -> None:
-        _check_grid(arguments.grid, sheet, name)
+        if (grid := arguments.grid) is not None and parse_grid(grid) != sheet.grid:
+            raise RatioError("decode.other_grid", name=name, rows=sheet.rows, columns=sheet.columns, grid=grid)
         answer = decoded(sheet, phi)
         _deliver(arguments, {"source": name} | answer if batch else answer, name, batch, "layout")
         if not arguments.json and not batch:
@@ -225,11 +226,6 @@ def target_angle(phi: float) -> float:
     if not 0.0 <= phi < math.pi:
         raise AngleError("request.angle_out_of_range", value=phi)
     return phi
-
-
-def _check_grid(grid: str | None, sheet: Sheet, name: str) -> None:
-    if grid is not None and parse_grid(grid) != sheet.grid:
-        raise RatioError("decode.other_grid", name=name, rows=sheet.rows, columns=sheet.columns, grid=grid)
 
 
 def _deliver(arguments: argparse.Namespace, answer: dict[str, object], name: str, batch: bool, kind: str) -> None:

@@ -47,17 +47,10 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True, slots=True)
 class Named(Generic[Value]):
-    """One input, read when it is asked for, with the name that batch output repeats.
-
-    Attributes
-    ----------
-    name : str
-    read : callable
-        Reads and validates it; raises a KirigamiError that names it.
-    """
+    """One input, read when it is asked for, with the name that batch output repeats."""
 
     name: str
-    read: Callable[[], Value]
+    read: Callable[[], Value]  #: reads and validates it; raises a KirigamiError that names it
 
 
 def is_batch(sources: Sequence[str]) -> bool:

@@ -12,7 +12,6 @@ import numpy as np
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.cli.inputs import PROJECTS, read_sheets
-from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.strain import StrainFigure, Survival, strain_note, survival
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
@@ -60,26 +59,15 @@ def mechanics(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Cut:
-    """A sheet as it is cut.
+    """A sheet as it is cut."""
 
-    Attributes
-    ----------
-    design, deployment : Deployment
-        As designed, and as it is cut.
-    sheet : SheetNetwork
-    settings : FabricationSettings
-    target : Outline or None
-    phi : float, radians
-        At which the sheet is meant to show the target.
-    material : Material
-    """
-
+    #: design, deployment: as designed, and as it is cut.
     design: Deployment
     deployment: Deployment
     sheet: SheetNetwork
     settings: FabricationSettings
     target: Outline | None
-    phi: float
+    phi: float  #: radians; at which the sheet is meant to show the target
     material: Material
 
 
@@ -108,7 +96,8 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
         jam_phi = found.jam_phi(tolerated)
         lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design)
     load = loads(found, cut.material.yield_strain)
-    breaks, judged = breaking_phi(cut.material, found), _survival(cut, found)
+    breaks = breaking_phi(cut.material, found)
+    judged = survival(cut.material, cut.sheet.connectors.width_mm, found.in_plane, found.out_of_plane)
     if arguments.json:
         answer = _steps(cut, found, gripped) | load.in_plane.to_json() | {"tolerated_stretch_widths": tolerated}
         answer |= {name: getattr(load, name).to_json() for name in ("in_plane_yielding", "out_of_plane")}
@@ -122,7 +111,9 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
         return 0
     _tell_steps(found, load)
     _tell_loads(load, judged)
-    _tell_survival(cut.material, breaks, judged)
+    if breaks is not None:
+        say(tr("Its connectors break at {angle:.0f} degrees.", angle=math.degrees(breaks)))
+    say(strain_note(cut.material, judged).text)
     _tell_jam(jam, source, tolerated, breaks is not None)
     stable = ", ".join(f"{angle:.0f}" for angle in np.degrees(found.stable_phi))
     say(tr("Rests by itself at (degrees): {angles}.", angles=stable or tr("nowhere on this path")))
@@ -139,7 +130,8 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     path, target, phi, kept = Path(arguments.source), None, 0.0, None
     if path.suffix.lower() in PROJECTS:
         document = load(path)
-        candidate = _chosen(document.candidate, path)
+        if (candidate := document.candidate) is None:
+            raise MechanicsError("mechanics.no_design_chosen", path=path)
         deployment, saved = deploy(candidate.final_sheet), document.fabrication
         target, phi = document.target, candidate.final_phi
         kept = None if candidate.trim is None else candidate.trim.kept
@@ -153,12 +145,6 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     on_nodes = arguments.centres == "node"
     sheet = planned_sheet(deployment, plan, settings.width_mm, kept, on_nodes, arguments.young_gpa)
     return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi, plan.material)
-
-
-def _chosen(candidate: Candidate | None, path: Path) -> Candidate:
-    if candidate is None:
-        raise MechanicsError("mechanics.no_design_chosen", path=path)
-    return candidate
 
 
 def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
@@ -190,10 +176,6 @@ def _ended_early(found: Closing, tolerated: float) -> bool:
     """Whether the sheet was not driven as far as it would go, so that its jam is unknown."""
     free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
     return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
-
-
-def _survival(cut: _Cut, found: Closing) -> Survival:
-    return survival(cut.material, cut.sheet.connectors.width_mm, found.in_plane, found.out_of_plane)
 
 
 def _tell_steps(found: Closing, load: Loads) -> None:
@@ -231,13 +213,6 @@ def _tell_loads(load: Loads, judged: Survival) -> None:
                     force=force,
                 )
             )
-
-
-def _tell_survival(material: Material, breaks: float | None, judged: Survival) -> None:
-    """Whether connectors break, and where, by which figure."""
-    if breaks is not None:
-        say(tr("Its connectors break at {angle:.0f} degrees.", angle=math.degrees(breaks)))
-    say(strain_note(material, judged).text)
 
 
 def _tell_jam(jam: float, source: Source, tolerated: float, breaks: bool) -> None:

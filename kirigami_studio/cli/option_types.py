@@ -30,7 +30,6 @@ def setting_options(kind: type, *names: str, over: object = None) -> tuple[Optio
 
     Parameters
     ----------
-    kind : type
     *names : str
         Of the settings; all without any.
     over : object, optional

@@ -35,23 +35,13 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 
 @dataclass(frozen=True, slots=True)
 class SubCommand:
-    """One sub-command.
+    """One sub-command."""
 
-    Attributes
-    ----------
-    name, about : str
-        A name of two words belongs to a group.
-    run : str
-        ``module:function`` of ``cli``, or of ``lab`` with its folder, imported when the command is called.
-    options : tuple
-        ``add_argument`` calls.
-    examples : tuple of str
-    """
-
+    #: name, about: a name of two words belongs to a group.
     name: str
     about: str
-    run: str
-    options: tuple[Option, ...]
+    run: str  #: ``module:function`` of ``cli``, or of ``lab`` with its folder, imported when the command is called
+    options: tuple[Option, ...]  #: ``add_argument`` calls
     examples: tuple[str, ...]
 
 

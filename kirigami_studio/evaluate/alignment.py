@@ -22,8 +22,14 @@ import shapely
 from numpy import newaxis
 
 from kirigami_studio.evaluate.alignment_target import CYCLE, AlignmentTarget, alignment_target
-from kirigami_studio.evaluate.boundary import as_points, edge_parts, resampled
-from kirigami_studio.evaluate.outline_batch import Boundaries, OutlineBatch
+from kirigami_studio.evaluate.boundary import (
+    as_plane,
+    as_points,
+    checked_polygons,
+    edge_parts,
+    moments_of_many,
+    resampled,
+)
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
@@ -77,6 +83,48 @@ SLIDING_PARTS = 64
 
 #: Slides: convergence is quadratic, so two reach a copy to rounding.
 ROUNDS = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Boundaries:
+    """Outlines as sums over short parts, ready for boundary integrals."""
+
+    points: ComplexArray  #: (B, Q); midpoints of parts of the edges
+    steps: ComplexArray  #: (B, Q); those parts as vectors
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OutlineBatch:
+    """Outlines to be aligned, each in its own normal frame (area 1, centroid at the origin)."""
+
+    vertices: ComplexArray  #: (B, L); counter-clockwise
+    axis: FloatArray  #: (B,), radians; direction of the longer principal axis
+    to_normal: tuple[Similarity, ...]  #: source frame -> normal frame
+
+    @classmethod
+    def from_outlines(cls, outlines: Sequence[npt.ArrayLike]) -> OutlineBatch:
+        """Normalise polygons (L, 2) that all have the same number of vertices.
+
+        Raises
+        ------
+        KirigamiError
+            One of them is not finite, has fewer than three points, or no area.
+        """
+        planes = as_plane(checked_polygons(outlines))
+        area, centroid, axis = moments_of_many(planes)
+        scale = np.abs(area) ** -0.5
+        planes = np.where(area[:, newaxis] > 0, planes, planes[:, ::-1])
+        return cls(
+            vertices=planes * scale[:, newaxis] - (centroid * scale)[:, newaxis],
+            axis=axis,
+            to_normal=tuple(
+                Similarity.from_complex(complex(s), complex(-c * s)) for s, c in zip(scale, centroid, strict=True)
+            ),
+        )
+
+    def boundaries(self, spare: int) -> Boundaries:
+        """The outlines in L + ``spare`` parts each: more parts, more accurate integrals."""
+        return Boundaries(*edge_parts(self.vertices, spare))
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,42 +47,18 @@ CYCLE = 128
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlignmentTarget:
-    """A fixed outline in its own normal frame (area 1, centroid at the origin) with its lookup tables.
+    """A fixed outline in its own normal frame (area 1, centroid at the origin) with its lookup tables."""
 
-    Attributes
-    ----------
-    to_source : Similarity
-        Normal frame -> frame of the points that it was made from.
-    polygon : shapely.Polygon or MultiPolygon
-        The filled outline in the normal frame, prepared.
-    ring : shapely.LinearRing
-        Its boundary.
-    area : float
-        Area of ``polygon``: 1 unless the outline crosses itself.
-    axis : float, radians
-        Direction of the longer principal axis.
-    spectrum : (128,) complex
-        Discrete Fourier transform of the boundary, resampled by arc length.
-    corner : complex
-        Lower left point of the lattice, x + iy.
-    step : float
-        Lattice spacing.
-    table : (193 * 193,) complex, read-only
-        F + i depth at the lattice points, rows of constant y, bottom first.
-    stretch : (193 * 193,) float, read-only
-        F alone.
-    """
-
-    to_source: Similarity
-    polygon: BaseGeometry
-    ring: shapely.LinearRing
-    area: float
-    axis: float
-    spectrum: ComplexArray
-    corner: complex
-    step: float
-    table: ComplexArray
-    stretch: FloatArray
+    to_source: Similarity  #: normal frame -> frame of the points that it was made from
+    polygon: BaseGeometry  #: the filled outline in the normal frame, prepared
+    ring: shapely.LinearRing  #: its boundary
+    area: float  #: area of ``polygon``: 1 unless the outline crosses itself
+    axis: float  #: radians; direction of the longer principal axis
+    spectrum: ComplexArray  #: (128,); discrete Fourier transform of the boundary, resampled by arc length
+    corner: complex  #: lower left point of the lattice, x + iy
+    step: float  #: lattice spacing
+    table: ComplexArray  #: (193 * 193,), read-only; F + i depth at the lattice points, rows of constant y, bottom first
+    stretch: FloatArray  #: (193 * 193,), read-only; F alone
 
     @classmethod
     def from_points(cls, points: npt.ArrayLike) -> AlignmentTarget:

@@ -26,43 +26,22 @@ class Origin(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A sheet, its score and where it came from.
-
-    Attributes
-    ----------
-    sheet : Sheet
-    score : Score
-        Against the request's target at the request's angle.
-    seed : int
-        Seed of the run that sampled it.
-    index : int
-        Its place in that run's sampling order.
-    polished : bool
-        Whether a fit on the exact geometry has improved it after sampling.
-    sampled_sheet : Sheet or None
-        The sheet as it was sampled, where a fit has improved it.
-    trim : Trim or None
-        The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
-    variant : str
-        Generator that sampled it, "" where that is not known.
-    origin : Origin
-    second : SecondMatch or None
-        How well its sheet, untrimmed, shows a second target on its way, where one was asked for.
-    made_with : tuple of (name, text)
-        Settings of the run that sampled it, by their names in a provenance; empty where they are not known.  The same
-        design is the same whatever is known of its run: this takes no part in comparisons.
-    """
+    """A sheet, its score and where it came from."""
 
     sheet: Sheet
-    score: Score
-    seed: int
-    index: int
-    polished: bool = False
-    sampled_sheet: Sheet | None = None
+    score: Score  #: against the request's target at the request's angle
+    seed: int  #: seed of the run that sampled it
+    index: int  #: its place in that run's sampling order
+    polished: bool = False  #: whether a fit on the exact geometry has improved it after sampling
+    sampled_sheet: Sheet | None = None  #: the sheet as it was sampled, where a fit has improved it
+    #: The same design fitted to cover the target and trimmed, where that was asked for; its score is its own.
     trim: Trim | None = None
-    variant: str = ""
+    variant: str = ""  #: generator that sampled it, "" where that is not known
     origin: Origin = Origin.SAMPLED
+    #: How well its sheet, untrimmed, shows a second target on its way, where one was asked for.
     second: SecondMatch | None = None
+    #: tuple of (name, text); settings of the run that sampled it, by their names in a provenance; empty where they are
+    #: not known.  The same design is the same whatever is known of its run: this takes no part in comparisons.
     made_with: tuple[tuple[str, str], ...] = attribute(default=(), compare=False)
 
     @property

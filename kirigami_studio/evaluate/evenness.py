@@ -23,27 +23,17 @@ AT_LIMIT = LOG_RATIO_LIMIT - math.log10(1.01)
 
 @dataclass(frozen=True, slots=True)
 class Evenness:
-    """Figures of one compact sheet.
+    """Figures of one compact sheet."""
 
-    Attributes
-    ----------
-    area_cv : float
-        Coefficient of variation of the panels' areas: standard deviation over mean.  The uniform sheet has 0; about 0.4
-        looks regular, 0.8 does not.
-    least_edge, least_neck : float, unit cells
-        The shortest edge of all panels, and the smallest distance from a panel's corner to an edge that does not meet
-        it.
-    width : float, unit cells
-        Of the compact sheet.
-    at_limit : float, 0..1
-        Share of the ratios within 1 % of 0.1 or 10, where fits stop.
-    """
-
+    #: Coefficient of variation of the panels' areas: standard deviation over mean.  The uniform sheet has 0; about 0.4
+    #: looks regular, 0.8 does not.
     area_cv: float
+    #: least_edge, least_neck: unit cells; the shortest edge of all panels, and the smallest distance from a panel's
+    #: corner to an edge that does not meet it.
     least_edge: float
     least_neck: float
-    width: float
-    at_limit: float
+    width: float  #: unit cells; of the compact sheet
+    at_limit: float  #: 0..1; share of the ratios within 1 % of 0.1 or 10, where fits stop
 
     def least_feature_mm(self, width_mm: float) -> float:
         """The shortest edge or narrowest neck between centre lines of cuts, on a sheet ``width_mm`` wide."""
@@ -92,23 +82,15 @@ class PanelSizes:
     A neck is the distance from a corner to an edge that does not meet it.  Each size is the distance between a corner
     and a place on the line from node ``start`` to node ``end``, ``share`` of the way; for an edge that place is the
     next corner.
-
-    Attributes
-    ----------
-    corner, start, end : (F,) int
-        Node numbers.
-    share : (F,) float
-    gap : (F, 2) float, unit cells
-        From the place to the corner.
-    size : (F,) float, unit cells
     """
 
+    #: corner, start, end: (F,); node numbers.
     corner: IntArray
     start: IntArray
     end: IntArray
-    share: FloatArray
-    gap: FloatArray
-    size: FloatArray
+    share: FloatArray  #: (F,)
+    gap: FloatArray  #: (F, 2), unit cells; from the place to the corner
+    size: FloatArray  #: (F,), unit cells
 
     def below(self, least: float) -> PanelSizes:
         """Those sizes that are smaller than ``least``."""

@@ -37,18 +37,10 @@ CONTACT_ACCURACY = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """First self-contact of the outline on the way from the compact sheet to the target angle.
+    """First self-contact of the outline on the way from the compact sheet to the target angle."""
 
-    Attributes
-    ----------
-    phi : float, radians
-        Largest angle found at which the outline crosses itself, exact to 1e-4.
-    where : (x, y) float, unit cells
-        Place of the crossing in the layout's own frame at that angle.
-    """
-
-    phi: float
-    where: tuple[float, float]
+    phi: float  #: radians; largest angle found at which the outline crosses itself, exact to 1e-4
+    where: tuple[float, float]  #: (x, y), unit cells; place of the crossing in the layout's own frame at that angle
 
     def to_json(self) -> dict[str, object]:
         """Plain numbers: ``phi`` (radians) and ``where`` [x, y]."""
@@ -70,10 +62,15 @@ class Feasibility:
 
 def feasibility_of_many(deployments: Sequence[Deployment], phi: float) -> list[Feasibility]:
     """Check designs of one grid at an angle in [0, pi]: the three checks, shared between all designs."""
-    sheets = _Sheets(deployments)
-    n_invalid = np.count_nonzero(bad_quads(sheets.quads(phi)), axis=1)
-    loop = deployments[0].topology.outline_nodes
-    clear = stays_clear(sheets.even[:, loop], sheets.odd[:, loop], phi, PATH_ANGLES)
+    tables = deployments[0].topology
+    even, odd = (as_plane(np.stack([getattr(one, part) for one in deployments])) for part in ("even_part", "odd_part"))
+    nodes = tables.panel_nodes.reshape(-1, 4)
+    if ZIPPED_BELOW < phi < math.pi - ZIPPED_BELOW:
+        nodes = np.concatenate([nodes, tables.void_nodes.reshape(-1, 4)])
+    turn = cmath.exp(0.5j * (math.pi - phi))
+    n_invalid = np.count_nonzero(bad_quads((turn.conjugate() * even + turn * odd)[:, nodes]), axis=1)
+    loop = tables.outline_nodes
+    clear = stays_clear(even[:, loop], odd[:, loop], phi, PATH_ANGLES)
     return [
         # What is not certainly clear is looked at again one by one.
         Feasibility(int(count), 0.0, None)
@@ -191,22 +188,3 @@ def _edges_cross(a: ComplexArray, b: ComplexArray, c: ComplexArray, d: ComplexAr
 def _side(a: ComplexArray, b: ComplexArray, p: ComplexArray) -> FloatArray:
     side: FloatArray = (np.conj(b - a) * (p - a)).imag
     return side
-
-
-class _Sheets:
-    """Nodes of several designs of one grid."""
-
-    def __init__(self, deployments: Sequence[Deployment]) -> None:
-        self.deployments = deployments
-        self.even = as_plane(np.stack([deployment.even_part for deployment in deployments]))
-        self.odd = as_plane(np.stack([deployment.odd_part for deployment in deployments]))
-
-    def quads(self, phi: float) -> ComplexArray:
-        """The quads that count at an angle, see :func:`quads_that_count`: (B, Q, 4) complex."""
-        tables = self.deployments[0].topology
-        nodes = tables.panel_nodes.reshape(-1, 4)
-        if ZIPPED_BELOW < phi < math.pi - ZIPPED_BELOW:
-            nodes = np.concatenate([nodes, tables.void_nodes.reshape(-1, 4)])
-        turn = cmath.exp(0.5j * (math.pi - phi))
-        places: ComplexArray = (turn.conjugate() * self.even + turn * self.odd)[:, nodes]
-        return places

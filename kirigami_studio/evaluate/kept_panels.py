@@ -37,24 +37,12 @@ FARTHEST = 4.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelTable:
-    """Panels of a grid, row by row.
+    """Panels of a grid, row by row."""
 
-    Attributes
-    ----------
-    index : (E,) int
-        Number of each in the row-major order of all panels.
-    corners : (E, 4) int
-        Nodes: top, left, bottom, right.
-    hinged : (E, 4) bool
-        Corners that are shared with a neighbour.
-    even : (E,) bool
-        Panels with I + J even: they turn by -a when the sheet opens, the others by +a.
-    """
-
-    index: IntArray
-    corners: IntArray
-    hinged: BoolArray
-    even: BoolArray
+    index: IntArray  #: (E,); number of each in the row-major order of all panels
+    corners: IntArray  #: (E, 4); nodes: top, left, bottom, right
+    hinged: BoolArray  #: (E, 4); corners that are shared with a neighbour
+    even: BoolArray  #: (E,); panels with I + J even: they turn by -a when the sheet opens, the others by +a
 
 
 @cache
@@ -76,20 +64,11 @@ def edge_panels(rows: int, columns: int) -> PanelTable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptPanels:
-    """What stays of some panels, in the compact sheet's frame.
+    """What stays of some panels, in the compact sheet's frame."""
 
-    Attributes
-    ----------
-    shapes : (E,) Polygon or None
-        None where a panel stays whole, an empty one where nothing of it stays.
-    removed : (E,) float, unit cells squared
-    lost : (E,) float, unit cells squared
-        Removed area that lies on the target: pieces without a hinge.
-    """
-
-    shapes: GeometryArray
-    removed: FloatArray
-    lost: FloatArray
+    shapes: GeometryArray  #: (E,) Polygon; None where a panel stays whole, an empty one where nothing of it stays
+    removed: FloatArray  #: (E,), unit cells squared
+    lost: FloatArray  #: (E,), unit cells squared; removed area that lies on the target: pieces without a hinge
 
 
 def kept_panels(corners: FloatArray, hinged: BoolArray, targets: GeometryArray, keep: float) -> KeptPanels:
@@ -143,7 +122,6 @@ def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, 
 
     Parameters
     ----------
-    kept : KeptPanels
     corners, targets
         As for :func:`kept_panels`.
     whole : geometry

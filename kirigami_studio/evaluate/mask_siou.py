@@ -240,21 +240,15 @@ def _widened(part: slice) -> slice:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedMask:
-    """A silhouette at the paper's resolution.
+    """A silhouette at the paper's resolution."""
 
-    Attributes
-    ----------
-    coverage : (H, W) float, 0..1, read-only
-        0 or 1 inside; one empty pixel all around; the longer side of the silhouette measures 128 pixels.
-    canvas : (slice, slice)
-        Rows and columns of the original image in the pixels of ``coverage``; may begin below 0.
-    to_source : Similarity
-        Plane of ``coverage`` -> plane of the original mask; both in pixels, x right, y up, origin in the lower left
-        corner of the image.
-    """
-
+    #: (H, W), 0..1, read-only; 0 or 1 inside; one empty pixel all around; the longer side of the silhouette measures
+    #: 128 pixels.
     coverage: FloatArray
+    #: (slice, slice); rows and columns of the original image in the pixels of ``coverage``; may begin below 0.
     canvas: tuple[slice, slice]
+    #: Plane of ``coverage`` -> plane of the original mask; both in pixels, x right, y up, origin in the lower left
+    #: corner of the image.
     to_source: Similarity
 
     @classmethod
@@ -358,13 +352,7 @@ class FittedMask:
 
 
 def _foreground(mask: npt.ArrayLike, number: int) -> BoolArray:
-    """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that).
-
-    Raises
-    ------
-    KirigamiError
-        Not 2-D, not numbers, not finite, or empty.
-    """
+    """Threshold a 2-D mask at half of its range (1 for booleans and 0/1, 255 beyond that)."""
     try:
         array = np.asarray(mask)
     except ValueError:

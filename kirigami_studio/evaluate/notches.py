@@ -62,22 +62,6 @@ NOTHING = Polygon()
 EIGHT_WAYS = np.ones((3, 3), dtype=np.intp)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DeepCut:
-    """What stays of all panels.
-
-    Attributes
-    ----------
-    kept : KeptPanels
-        Of every panel of the sheet, row by row.
-    voids : (m, n) bool
-        The voids that stay.
-    """
-
-    kept: KeptPanels
-    voids: BoolArray
-
-
 def deep_cut(
     corners: FloatArray,
     targets: GeometryArray,
@@ -85,7 +69,7 @@ def deep_cut(
     void_gain: FloatArray,
     keep: float,
     images: IntArray | None = None,
-) -> DeepCut:
+) -> tuple[KeptPanels, BoolArray]:
     """Trim all panels of a sheet to a target, and give up those that lie in its notches.
 
     Parameters
@@ -103,6 +87,13 @@ def deep_cut(
     images : (G, m n) int, optional
         For each move of the sheet's symmetry, the void that each void is the image of.
 
+    Returns
+    -------
+    kept : KeptPanels
+        What stays of every panel, row by row.
+    voids : (m, n) bool
+        The voids that stay.
+
     Raises
     ------
     KirigamiError
@@ -113,7 +104,7 @@ def deep_cut(
     if not voids.any():
         raise KirigamiError("trim.nothing_left")
     voids = cut.opened(cut.improved(voids, images), images)
-    return DeepCut(cut.parts(voids), voids)
+    return cut.parts(voids), voids
 
 
 @dataclass(frozen=True, slots=True, eq=False)

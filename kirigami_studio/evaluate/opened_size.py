@@ -17,18 +17,11 @@ SAME_SIZE = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class OpenedSize:
-    """The target as an opened sheet shows it, and as it was drawn.
+    """The target as an opened sheet shows it, and as it was drawn."""
 
-    Attributes
-    ----------
-    opened : (width, height) float, mm
-        Of the target in its own orientation, at the scale at which the opened sheet fits it best.
-    drawn : (width, height) float or None, mm
-        Its real size; None when its source has none in mm.
-    """
-
+    #: (width, height), mm; of the target in its own orientation, at the scale at which the opened sheet fits it best.
     opened: tuple[float, float]
-    drawn: tuple[float, float] | None
+    drawn: tuple[float, float] | None  #: (width, height), mm; its real size; None when its source has none in mm.
 
     @classmethod
     def of(cls, target: Outline, flat: float, width_mm: float) -> OpenedSize:
@@ -56,12 +49,8 @@ def opened_size(deployment: Deployment, pose: Similarity, target: Outline, width
 
     Parameters
     ----------
-    deployment : Deployment
     pose : Similarity
         Layout frame at the target angle (unit cells) -> target frame (area 1), as a score or a trim has it.
-    target : Outline
-    width_mm : float
-        Width of the flat sheet.
 
     Raises
     ------

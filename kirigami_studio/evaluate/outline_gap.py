@@ -36,7 +36,6 @@ def outline_gap(deployment: Deployment, phi: float) -> OutlineGap | None:
 
     Parameters
     ----------
-    deployment : Deployment
     phi : float, radians, in [0, pi]
 
     Returns

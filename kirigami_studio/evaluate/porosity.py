@@ -23,18 +23,10 @@ from kirigami_studio.lattice.deployment import Deployment, check_phi
 
 @dataclass(frozen=True, slots=True)
 class Porosity:
-    """Areas of one sheet, untrimmed, as functions of the angle.
+    """Areas of one sheet, untrimmed, as functions of the angle."""
 
-    Attributes
-    ----------
-    panels : float, unit cells squared
-        Sum of the panels' areas: that of the flat sheet.
-    opened : float, unit cells squared
-        Sum of a b over all voids: what they cover half way.
-    """
-
-    panels: float
-    opened: float
+    panels: float  #: unit cells squared; sum of the panels' areas: that of the flat sheet
+    opened: float  #: unit cells squared; sum of a b over all voids: what they cover half way
 
     @classmethod
     def of(cls, deployment: Deployment) -> Porosity:

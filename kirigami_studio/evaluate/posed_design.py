@@ -38,21 +38,12 @@ class PosedDesign:
     From ``phi_target`` to the flat sheet it turns with the angle until the flat sheet is upright: rectangles by an
     eighth of a turn or a degree more, so that they may stand on their short side; other start outlines to the side that
     is theirs.
-
-    Attributes
-    ----------
-    deployment : Deployment
-    pose : Similarity
-        Layout frame at ``phi_target`` -> world.
-    phi_target : float, radians
-    trim : Trim or None
-        What was cut off the edge panels.
     """
 
     deployment: Deployment
-    pose: Similarity
-    phi_target: float
-    trim: Trim | None = None
+    pose: Similarity  #: layout frame at ``phi_target`` -> world
+    phi_target: float  #: radians
+    trim: Trim | None = None  #: what was cut off the edge panels
 
     @property
     def turn(self) -> float:
@@ -187,27 +178,13 @@ def polygons_of(rings: Sequence[FloatArray]) -> npt.NDArray[np.object_]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rings:
-    """Polygons that each move with one panel.
+    """Polygons that each move with one panel."""
 
-    Attributes
-    ----------
-    panel : (R,) int
-        Number of the panel, row by row.
-    anchor : (R,) int
-        Its top node.
-    even : (R,) bool
-        Panels with I + J even turn by -a while the sheet opens, the others by +a.
-    ends : (R,) int
-        Where each ring ends in ``offsets``.
-    offsets : (P,) complex, unit cells
-        Vertices seen from the anchor, in the compact sheet.
-    """
-
-    panel: IntArray
-    anchor: IntArray
-    even: BoolArray
-    ends: IntArray
-    offsets: ComplexArray
+    panel: IntArray  #: (R,); number of the panel, row by row
+    anchor: IntArray  #: (R,); its top node
+    even: BoolArray  #: (R,); panels with I + J even turn by -a while the sheet opens, the others by +a
+    ends: IntArray  #: (R,); where each ring ends in ``offsets``
+    offsets: ComplexArray  #: (P,), unit cells; vertices seen from the anchor, in the compact sheet
 
     @classmethod
     def of(cls, deployment: Deployment, numbered: list[tuple[int, FloatArray]]) -> Rings:

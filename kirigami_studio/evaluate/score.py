@@ -30,54 +30,22 @@ STAY = 0.003
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shape match, total variation, evenness and feasibility of one design against one target at one angle.
+    """Shape match, total variation, evenness and feasibility of one design against one target at one angle."""
 
-    Attributes
-    ----------
-    siou : float, 0..1
-        IoU of the 128 x 128 masks under the best similarity.
-    siou_gain : float
-        ``siou - uniform_siou``.
-    uniform_siou : float, 0..1
-        The same number for the uniform layout of the same grid: the floor.
-    iou_exact : float, 0..1
-        IoU of the polygons under the same similarity, without a raster.
-    uniform_iou : float, 0..1
-        ``iou_exact`` of the uniform layout.
-    tv : float
-        The paper's total variation of the ratios divided by m n.
-    tv_log10 : float
-        Mean ``|d log10 x|`` per pair of neighbouring voids.
-    feasible : bool
-        No invalid quad, overlap ratio at most 0.02, and no contact on the way.
-    n_invalid : int
-        Collapsed or self-crossing quads at the angle.
-    overlap_ratio : float, 0..1
-        ``1 - area of the union / sum of areas``.
-    contact : Contact or None
-        First self-contact on the way from the compact sheet, if any.
-    transform : Similarity
-        Layout frame at the angle (unit cells) -> target frame (area 1).
-    evenness : Evenness
-        Of the flat sheet: how even its panels are, and how small.
-    phi : float, radians
-        The angle that all of this is about.
-    """
-
-    siou: float
-    siou_gain: float
-    uniform_siou: float
-    iou_exact: float
-    uniform_iou: float
-    tv: float
-    tv_log10: float
-    feasible: bool
-    n_invalid: int
-    overlap_ratio: float
-    contact: Contact | None
-    transform: Similarity
-    evenness: Evenness
-    phi: float = 0.0
+    siou: float  #: 0..1; IoU of the 128 x 128 masks under the best similarity
+    siou_gain: float  #: ``siou - uniform_siou``
+    uniform_siou: float  #: 0..1; the same number for the uniform layout of the same grid: the floor
+    iou_exact: float  #: 0..1; IoU of the polygons under the same similarity, without a raster
+    uniform_iou: float  #: 0..1; ``iou_exact`` of the uniform layout
+    tv: float  #: the paper's total variation of the ratios divided by m n
+    tv_log10: float  #: mean ``|d log10 x|`` per pair of neighbouring voids
+    feasible: bool  #: no invalid quad, overlap ratio at most 0.02, and no contact on the way
+    n_invalid: int  #: collapsed or self-crossing quads at the angle
+    overlap_ratio: float  #: 0..1; ``1 - area of the union / sum of areas``
+    contact: Contact | None  #: first self-contact on the way from the compact sheet, if any
+    transform: Similarity  #: layout frame at the angle (unit cells) -> target frame (area 1)
+    evenness: Evenness  #: of the flat sheet: how even its panels are, and how small
+    phi: float = 0.0  #: radians; the angle that all of this is about
 
     def to_json(self) -> dict[str, object]:
         """The keys of the command line's ``score``, plain numbers only."""
@@ -93,8 +61,6 @@ def evaluate(deployment: Deployment, outline: Outline, phi: float = 0.0) -> Scor
 
     Parameters
     ----------
-    deployment : Deployment
-    outline : Outline
     phi : float, radians, in [0, pi]
 
     Raises
@@ -129,13 +95,6 @@ def confirmed(deployments: Sequence[Deployment], scores: Sequence[Score], outlin
     """Keep scores from a file that say what their designs have; designs with another score are scored again.
 
     A design is measured in the pose that its score names, which takes a hundredth of the time of scoring it.
-
-    Parameters
-    ----------
-    deployments : sequence of Deployment
-    scores : sequence of Score
-        One for each.
-    outline : Outline
     """
     found = list(scores)
     kinds = [(deployment.sheet.grid, score.phi) for deployment, score in zip(deployments, scores, strict=True)]
@@ -187,8 +146,6 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
 
     Parameters
     ----------
-    deployment : Deployment
-    outline : Outline
     phi : float, radians, in [0, pi]
     pose : Similarity
         Layout frame at ``phi`` -> target frame, of the design before it was changed.

@@ -107,17 +107,10 @@ class SecondTarget:
 
 @dataclass(frozen=True, slots=True)
 class SecondMatch:
-    """How well a design shows its second target.
-
-    Attributes
-    ----------
-    target : SecondTarget
-    match : ShapeMatch
-        Under the similarity that suits that angle best.
-    """
+    """How well a design shows its second target."""
 
     target: SecondTarget
-    match: ShapeMatch
+    match: ShapeMatch  #: under the similarity that suits that angle best
 
     @property
     def price(self) -> float:

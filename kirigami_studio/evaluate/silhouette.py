@@ -18,20 +18,12 @@ LARGEST_MASK = 8192
 
 @dataclass(frozen=True, slots=True)
 class RasterFrame:
-    """Where the pixels of a mask lie in the plane; row 0 on top, y up.
+    """Where the pixels of a mask lie in the plane; row 0 on top, y up."""
 
-    Attributes
-    ----------
-    left, top : float
-        Upper left corner of pixel (0, 0).
-    pixel : float, > 0
-        Side of a pixel, in the units of the polygon.
-    rows, columns : int
-    """
-
+    #: left, top: upper left corner of pixel (0, 0).
     left: float
     top: float
-    pixel: float
+    pixel: float  #: > 0; side of a pixel, in the units of the polygon
     rows: int
     columns: int
 
@@ -83,7 +75,6 @@ def rasterise_in_frame(polygon: npt.ArrayLike, frame: RasterFrame) -> BoolArray:
     ----------
     polygon : (L, 2) float
         Parts outside the frame are cut off.
-    frame : RasterFrame
 
     Returns
     -------
@@ -108,7 +99,6 @@ def filled_in_frame(planes: ComplexArray, frame: RasterFrame) -> tuple[BoolArray
     ----------
     planes : (B, L) complex
         Vertices x + iy of closed polygons that cover more than a line.
-    frame : RasterFrame
 
     Returns
     -------

@@ -15,20 +15,11 @@ from kirigami_studio.foundation.errors import KirigamiError
 
 @dataclass(frozen=True, slots=True)
 class Similarity:
-    """Scale, then rotate about the origin, then shift: ``q = scale R(angle) p + shift``.
+    """Scale, then rotate about the origin, then shift: ``q = scale R(angle) p + shift``."""
 
-    Attributes
-    ----------
-    scale : float, > 0
-        Length in the new frame of one unit of the old frame.
-    angle : float, radians
-        Counter-clockwise rotation, kept in (-pi, pi].
-    shift : (x, y) float, units of the new frame
-    """
-
-    scale: float = 1.0
-    angle: float = 0.0
-    shift: tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0  #: > 0; length in the new frame of one unit of the old frame
+    angle: float = 0.0  #: radians; counter-clockwise rotation, kept in (-pi, pi]
+    shift: tuple[float, float] = (0.0, 0.0)  #: (x, y), units of the new frame
 
     def __post_init__(self) -> None:
         scale, angle = float(self.scale), float(self.angle)

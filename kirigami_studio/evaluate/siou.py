@@ -33,20 +33,11 @@ FARTHEST = 10.0
 
 @dataclass(frozen=True, slots=True)
 class ShapeMatch:
-    """How well a silhouette covers the target.
+    """How well a silhouette covers the target."""
 
-    Attributes
-    ----------
-    siou : float, 0..1
-    iou_exact : float, 0..1
-        The same on the polygons.
-    transform : Similarity
-        Frame of the silhouette -> frame of the target; both numbers hold under it.
-    """
-
-    siou: float
-    iou_exact: float
-    transform: Similarity
+    siou: float  #: 0..1
+    iou_exact: float  #: 0..1; the same on the polygons
+    transform: Similarity  #: frame of the silhouette -> frame of the target; both numbers hold under it
 
     def is_near(self, other: ShapeMatch) -> bool:
         """Whether both numbers are those of another match but for rounding."""

@@ -46,39 +46,19 @@ SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them.
-
-    Attributes
-    ----------
-    sheet : Sheet
-    phi : float, radians
-        The angle at which the panels were cut.
-    pose : Similarity
-        Layout frame at ``phi`` to target frame.
-    keep : float, unit cells
-        Depth of the material that stays at every hinge.
-    deep : bool
-        Whether panels inside the sheet were cut too, and panels and hinges given up.
-    kept : tuple of (P, 2) float or None, unit cells
-        What stays of every panel, row by row, in the compact sheet's frame, counter-clockwise; None for a whole one, no
-        points for one that was given up.
-    iou : float, 0..1
-        Exact IoU of the trimmed silhouette with the target.
-    untrimmed_iou : float, 0..1
-        The same of the whole silhouette in the same pose.
-    removed_share : float, 0..1
-        Removed part of the sheet's area.
-    """
+    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them."""
 
     sheet: Sheet
-    phi: float
-    pose: Similarity
-    keep: float
-    deep: bool
+    phi: float  #: radians; the angle at which the panels were cut
+    pose: Similarity  #: layout frame at ``phi`` to target frame
+    keep: float  #: unit cells; depth of the material that stays at every hinge
+    deep: bool  #: whether panels inside the sheet were cut too, and panels and hinges given up
+    #: tuple of (P, 2) float or None, unit cells; what stays of every panel, row by row, in the compact sheet's frame,
+    #: counter-clockwise; None for a whole one, no points for one that was given up.
     kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
-    iou: float = attribute(compare=False)
-    untrimmed_iou: float = attribute(compare=False)
-    removed_share: float = attribute(compare=False)
+    iou: float = attribute(compare=False)  #: 0..1; exact IoU of the trimmed silhouette with the target
+    untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
+    removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
 
     @property
     def given_up(self) -> int:
@@ -98,8 +78,6 @@ def trim(
 
     Parameters
     ----------
-    deployment : Deployment
-    target : Outline
     phi : float, radians, in [0, pi]
     pose : Similarity
         Layout frame at ``phi`` to target frame.
@@ -175,9 +153,9 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     symmetry = symmetry_of(deployment.sheet)
     images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
     gain = shared - STICKING_OUT * (area - shared)
-    cut = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
-    left_out = ~cut.voids
-    return _Parts(panels.index, cut.kept, float(area[left_out].sum()), float(shared[left_out].sum()))
+    kept, stay = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
+    left_out = ~stay
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()))
 
 
 def check_keep(keep: float) -> float:

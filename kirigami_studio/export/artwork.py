@@ -29,23 +29,15 @@ USUAL_STRIPES, FEWEST_STRIPES, MOST_STRIPES = 160, 2, 1000
 class ArtPicture:
     """A picture to be printed.
 
-    Attributes
-    ----------
-    name : str
-        Of the file it was read from.
-    content : bytes
-        PNG or JPEG, upright, 8 bits a channel, RGB or RGBA.
-    size : (width, height) int, pixels
-
     Raises
     ------
     TargetError
         Too many bytes for a project to keep, or no pixels.
     """
 
-    name: str
-    content: bytes
-    size: tuple[int, int]
+    name: str  #: of the file it was read from
+    content: bytes  #: PNG or JPEG, upright, 8 bits a channel, RGB or RGBA
+    size: tuple[int, int]  #: (width, height), pixels
 
     def __post_init__(self) -> None:
         if len(self.content) > LARGEST_PICTURE or min(self.size) < 1:
@@ -81,20 +73,6 @@ class PictureFit(Enum):
 class Laid:
     """A picture and where it lies.
 
-    Attributes
-    ----------
-    picture : ArtPicture
-    state : SheetState
-        On the target, or on the flat sheet.
-    fitting : PictureFit
-        Into the box around the target, or around the flat sheet.
-    scale : float
-        Times the size that ``fitting`` gives, above 0.
-    turn : float, radians
-        Counter-clockwise, about the picture's middle.
-    shift : (x, y)
-        Of the picture's middle from the box's, in widths and heights of the box.
-
     Raises
     ------
     ExportError
@@ -102,10 +80,11 @@ class Laid:
     """
 
     picture: ArtPicture
-    state: SheetState = SheetState.TARGET
-    fitting: PictureFit = PictureFit.FILL
-    scale: float = 1.0
-    turn: float = 0.0
+    state: SheetState = SheetState.TARGET  #: on the target, or on the flat sheet
+    fitting: PictureFit = PictureFit.FILL  #: into the box around the target, or around the flat sheet
+    scale: float = 1.0  #: times the size that ``fitting`` gives, above 0
+    turn: float = 0.0  #: radians; counter-clockwise, about the picture's middle
+    #: (x, y); of the picture's middle from the box's, in widths and heights of the box.
     shift: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
@@ -132,14 +111,6 @@ class Laid:
 class Artwork:
     """The pictures on a sheet.
 
-    Attributes
-    ----------
-    first : Laid
-    second : ArtPicture or None
-        Seen whole in the other state, in stripes between those of the first one.
-    stripes : int
-        Stripes of both across the width of the flat sheet.
-
     Raises
     ------
     ExportError
@@ -147,8 +118,8 @@ class Artwork:
     """
 
     first: Laid
-    second: ArtPicture | None = None
-    stripes: int = USUAL_STRIPES
+    second: ArtPicture | None = None  #: seen whole in the other state, in stripes between those of the first one
+    stripes: int = USUAL_STRIPES  #: stripes of both across the width of the flat sheet
 
     def __post_init__(self) -> None:
         if not FEWEST_STRIPES <= self.stripes <= MOST_STRIPES:

@@ -59,18 +59,6 @@ OPENED_OVERLAP = 4e-4
 class ArtworkJob:
     """The contents of the files of a printed sheet.
 
-    Attributes
-    ----------
-    artwork : Artwork
-    job : ExportJob
-        With its plan.
-    dpi : float
-        Of the PNG.
-    bleed_mm : float
-        How far panels at the sheet's edge are printed beyond it.
-    margin_mm : float
-        Around the frame of the cut file; 0 for pages that are exactly that frame.
-
     Raises
     ------
     ExportError
@@ -78,10 +66,10 @@ class ArtworkJob:
     """
 
     artwork: Artwork
-    job: ExportJob
-    dpi: float = USUAL_DPI
-    bleed_mm: float = USUAL_BLEED_MM
-    margin_mm: float = USUAL_MARGIN_MM
+    job: ExportJob  #: with its plan
+    dpi: float = USUAL_DPI  #: of the PNG
+    bleed_mm: float = USUAL_BLEED_MM  #: how far panels at the sheet's edge are printed beyond it
+    margin_mm: float = USUAL_MARGIN_MM  #: around the frame of the cut file; 0 for pages that are exactly that frame
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.margin_mm <= MOST_MARGIN_MM:
@@ -182,13 +170,13 @@ class ArtworkJob:
         return facts_of(self.job.required_plan, find_profile(self.job.profile))
 
 
-def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -> tuple[Path, ...]:
+def write_artwork(work: ArtworkJob, folder: str | Path) -> tuple[Path, ...]:
     """Write SVG, PDF and PNG of the printed sheet, and a PNG of the sheet opened to its target.
 
     Returns
     -------
     files : tuple of Path
-        ``NAME.svg``, ``NAME.pdf``, ``NAME.png`` and ``NAME_opened.png``.
+        ``artwork.svg``, ``artwork.pdf``, ``artwork.png`` and ``artwork_opened.png``.
 
     Raises
     ------
@@ -197,7 +185,7 @@ def write_artwork(work: ArtworkJob, folder: str | Path, name: str = "artwork") -
     """
     home = Path(folder)
     page, _ = work.page, work.tiling  # too many pixels or pages are refused before anything is written
-    svg, pdf, png, opened = (home / f"{name}{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
+    svg, pdf, png, opened = (home / f"artwork{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
     write_atomically(svg, _svg_bytes(work), lambda written: _verify_svg(written, work))
     write_atomically(pdf, _pdf_bytes(work), lambda written: _verify_pdf(written, work))
     write_image(printed_image(work, page), png, work.facts, work.dpi)

@@ -37,22 +37,13 @@ MOST_BLEED_MM = 20.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PrintedSheet:
-    """A sheet as it is printed and as it opens.
+    """A sheet as it is printed and as it opens."""
 
-    Attributes
-    ----------
-    design : PosedDesign
-        The sheet that is cut, over its target.
-    target : (L, 2) float or None, world
-    corners : (K, 4, 2) float, mm
-        Whole panels of the flat sheet, row by row, in the frame of the cuts.
-    cells : tuple of (P, 2) float, mm
-        What there is of them, between the centre lines of the cuts; no points where nothing is.
-    """
-
-    design: PosedDesign
-    target: FloatArray | None
-    corners: FloatArray
+    design: PosedDesign  #: the sheet that is cut, over its target
+    target: FloatArray | None  #: (L, 2), world
+    corners: FloatArray  #: (K, 4, 2), mm; whole panels of the flat sheet, row by row, in the frame of the cuts
+    #: tuple of (P, 2) float, mm; what there is of them, between the centre lines of the cuts; no points where nothing
+    #: is.
     cells: tuple[FloatArray, ...]
 
     @classmethod
@@ -102,35 +93,20 @@ class PrintedSheet:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelSimilarities:
-    """One similarity for each panel: flat mm -> world, ``factor * z + shift``.
+    """One similarity for each panel: flat mm -> world, ``factor * z + shift``."""
 
-    Attributes
-    ----------
-    factor, shift : (K,) complex
-    """
-
-    factor: ComplexArray
-    shift: ComplexArray
+    factor: ComplexArray  #: (K,)
+    shift: ComplexArray  #: (K,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patch:
-    """A region that shows a part of a picture.
+    """A region that shows a part of a picture."""
 
-    Attributes
-    ----------
-    panel : int
-        Number of the panel that it moves with.
-    region : Polygon or MultiPolygon, mm
-        Of the flat sheet, or of the opened one.
-    picture : ArtPicture
-    factor, shift : complex
-        The picture's map into the region's frame.
-    """
-
-    panel: int
-    region: BaseGeometry
+    panel: int  #: number of the panel that it moves with
+    region: BaseGeometry  #: mm; of the flat sheet, or of the opened one
     picture: ArtPicture
+    #: factor, shift: the picture's map into the region's frame.
     factor: complex
     shift: complex
 
@@ -150,8 +126,6 @@ def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf
 
     Parameters
     ----------
-    artwork : Artwork
-    sheet : PrintedSheet
     bleed_mm : float
         How far panels at the edge are printed beyond it, and into gaps that trimming has left.
     kerf_mm : float

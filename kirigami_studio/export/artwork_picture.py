@@ -62,8 +62,6 @@ def picture_of(name: str, content: bytes) -> ArtPicture:
 
     Parameters
     ----------
-    name : str
-        Of the file.
     content : bytes
         PNG, JPEG, BMP, TIFF or WebP.
 

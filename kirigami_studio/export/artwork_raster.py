@@ -38,18 +38,13 @@ def most_dpi(width_mm: float, height_mm: float) -> int:
 class BitmapFrame:
     """A rectangle of the plane as a bitmap; its upper left corner is that of pixel (0, 0).
 
-    Attributes
-    ----------
-    low, high : (x, y), mm
-        Its corners; y up.
-    dpi : float
-
     Raises
     ------
     ExportError
         More pixels than a bitmap may have, or a resolution that is not above 0.
     """
 
+    #: low, high: (x, y), mm; its corners; y up.
     low: tuple[float, float]
     high: tuple[float, float]
     dpi: float

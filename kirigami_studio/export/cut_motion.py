@@ -17,61 +17,31 @@ from kirigami_studio.mechanics.closing import Closing, carried_on, ideal_motion,
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutPose:
-    """A sheet as cut at one angle, in the target's frame.
+    """A sheet as cut at one angle, in the target's frame."""
 
-    Attributes
-    ----------
-    phi : float, radians
-    panels : list of (Q, 2) float
-        As the cuts leave them, row by row; those that are not there are left out.
-    numbers : (K,) int
-        Their numbers in the sheet.
-    cuts : list of (L, 2) float
-        Their edges that were cut; across connectors there are none.
-    nodes : (N, 2) float
-        Nodes of the lattice: halfway between the corners of the panels there, of the ideal motion where trimming left
-        no panel.
-    connectors : (H, 2, 2) float
-        Where either panel of a connector has it; both places are the same where it is not stretched.
-    stretch : (H,) float
-        Distance of the two in widths of the connector.
-    """
-
-    phi: float
+    phi: float  #: radians
+    #: list of (Q, 2) float; as the cuts leave them, row by row; those that are not there are left out.
     panels: list[FloatArray]
-    numbers: IntArray
-    cuts: list[FloatArray]
+    numbers: IntArray  #: (K,); their numbers in the sheet
+    cuts: list[FloatArray]  #: list of (L, 2) float; their edges that were cut; across connectors there are none
+    #: (N, 2); nodes of the lattice: halfway between the corners of the panels there, of the ideal motion where trimming
+    #: left no panel.
     nodes: FloatArray
+    #: (H, 2, 2); where either panel of a connector has it; both places are the same where it is not stretched.
     connectors: FloatArray
-    stretch: FloatArray
+    stretch: FloatArray  #: (H,); distance of the two in widths of the connector
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutMotion:
-    """How a sheet moves as cut.
+    """How a sheet moves as cut."""
 
-    Attributes
-    ----------
-    closing : Closing
-        Of the design's planned cuts.
-    width_mm : float
-        Width of the flat sheet.
-    jam_phi : float, radians
-        Angle at which it jams; 0 for a sheet that closes.
-    reached : float, radians
-        The angle nearest to its target angle that it comes to.
-    panels : CutPanels
-        In the frame of the closing's network.
-    made : Deployment or None
-        The sheet that is cut where that is not quite the design.
-    """
-
-    closing: Closing
-    width_mm: float
-    jam_phi: float
-    reached: float
-    panels: CutPanels
-    made: Deployment | None = None
+    closing: Closing  #: of the design's planned cuts
+    width_mm: float  #: width of the flat sheet
+    jam_phi: float  #: radians; angle at which it jams; 0 for a sheet that closes
+    reached: float  #: radians; the angle nearest to its target angle that it comes to
+    panels: CutPanels  #: in the frame of the closing's network
+    made: Deployment | None = None  #: the sheet that is cut where that is not quite the design
 
     @property
     def jams(self) -> bool:

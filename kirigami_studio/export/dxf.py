@@ -53,8 +53,6 @@ def write_dxf(
 
     Parameters
     ----------
-    plan : CutPlan
-    path : str or Path
     version : str
         "R2010", or "R12" for old programs; an R12 file cannot say its unit: import it as mm.
     profile : str or Profile
@@ -98,12 +96,8 @@ def strokes_dxf(
 
     Parameters
     ----------
-    strokes : sequence of Stroke
     size : (width, height), mm
         What the header says; the lower left corner is the origin.
-    version : str
-    facts : dict
-        About the making of the file.
     mark : function, optional
         Draws more; never for a cut file.
     record : bytes

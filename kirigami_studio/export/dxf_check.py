@@ -66,43 +66,21 @@ NEARLY_CLOSED_MM = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FileReport:
-    """The contents of a cut file.
-
-    Attributes
-    ----------
-    path : Path
-    problems : tuple of Problem
-    unit : str
-        "mm", another unit's name, or "none".
-    layers : tuple of str
-        Layers that hold entities.
-    path_count : int
-        Curves that can be cut.
-    cut_length_mm, overlap_mm : float
-        Length of all curves, and how much of it lies on another curve.
-    bounds_mm : (width, height)
-        Extent of all curves.
-    kerf_mm : float
-        The kerf that pieces and ligaments were computed with.
-    pieces : int or None
-        Pieces of the sheet after cutting; None without a closed outline.
-    min_ligament_mm : float or None
-        Finished width of the narrowest place between two cuts.
-    record : FileRecord or None
-        How the file says it was made; None for files of others, of earlier versions, and for damaged records.
-    """
+    """The contents of a cut file."""
 
     path: Path
     problems: tuple[Problem, ...]
-    unit: str
-    layers: tuple[str, ...]
-    path_count: int
+    unit: str  #: "mm", another unit's name, or "none"
+    layers: tuple[str, ...]  #: layers that hold entities
+    path_count: int  #: curves that can be cut
+    #: cut_length_mm, overlap_mm: length of all curves, and how much of it lies on another curve.
     cut_length_mm: float
     overlap_mm: float
-    bounds_mm: tuple[float, float]
-    kerf_mm: float
-    pieces: int | None
-    min_ligament_mm: float | None
+    bounds_mm: tuple[float, float]  #: (width, height); extent of all curves
+    kerf_mm: float  #: the kerf that pieces and ligaments were computed with
+    pieces: int | None  #: Pieces of the sheet after cutting; None without a closed outline.
+    min_ligament_mm: float | None  #: finished width of the narrowest place between two cuts
+    #: How the file says it was made; None for files of others, of earlier versions, and for damaged records.
     record: FileRecord | None = None
 
     @property
@@ -220,13 +198,7 @@ def _read(path: Path) -> DxfContent:
 
 
 def _svg_content(path: Path) -> DxfContent:
-    """A cut SVG of this program, as if it were a DXF.
-
-    Raises
-    ------
-    ExportError
-        It is damaged, or another program wrote it.
-    """
+    """A cut SVG of this program, as if it were a DXF."""
     facts = facts_of_svg(path)
     if PROGRAM not in facts:
         raise ExportError("cut_file.foreign_svg", path=path)
@@ -252,13 +224,7 @@ def _svg_content(path: Path) -> DxfContent:
 
 
 def _lightburn_content(path: Path) -> DxfContent:
-    """A LightBurn project, as if it were a DXF.
-
-    Raises
-    ------
-    ExportError
-        It is missing or damaged, or holds other things than paths.
-    """
+    """A LightBurn project, as if it were a DXF."""
     try:
         found = read_lightburn(read_at_most(path, LARGEST_FILE), path)
     except OSError as error:
@@ -392,8 +358,6 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
     ----------
     content : DxfContent
         Its facts hold ``TABS``, ``TAB_MM`` and ``KERF_MM``.
-    problems : list of Problem
-        Findings are added to it.
     """
     parts = [path for path in content.paths if path.layer == Layer.OUTLINE.value]
     if not parts and content.facts["TABS"].isdecimal():

@@ -141,22 +141,12 @@ def _content(document: Drawing) -> FileContent:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FilePath:
-    """One curve of the file.
+    """One curve of the file."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        The first point of a closed path is repeated at the end.
-    layer : str
-    closed : bool
-        Closed by its own flag or kind, not merely by ends that meet.
-    arcs_mm : float
-        By how much the arcs of a polyline, an arc or a circle are longer than their chords in ``points``.
-    """
-
-    points: FloatArray
+    points: FloatArray  #: (P, 2), mm; the first point of a closed path is repeated at the end
     layer: str
-    closed: bool
+    closed: bool  #: closed by its own flag or kind, not merely by ends that meet
+    #: By how much the arcs of a polyline, an arc or a circle are longer than their chords in ``points``.
     arcs_mm: float = 0.0
 
     @property
@@ -167,24 +157,12 @@ class FilePath:
 
 @dataclass(slots=True)
 class DxfContent:
-    """The contents of a DXF, with the problems seen while reading.
-
-    Attributes
-    ----------
-    paths : list of FilePath
-    unit : str
-        Name of the file's unit, "none" when it has none.
-    layers : tuple of str
-        Layers that hold entities.
-    facts : dict of str to str
-        The file's own custom records, such as ``KERF_MM``.
-    problems : list of Problem
-    """
+    """The contents of a DXF, with the problems seen while reading."""
 
     paths: list[FilePath] = field(default_factory=list)
-    unit: str = "none"
-    layers: tuple[str, ...] = ()
-    facts: dict[str, str] = field(default_factory=dict)
+    unit: str = "none"  #: name of the file's unit, "none" when it has none
+    layers: tuple[str, ...] = ()  #: layers that hold entities
+    facts: dict[str, str] = field(default_factory=dict)  #: the file's own custom records, such as ``KERF_MM``
     problems: list[Problem] = field(default_factory=list)
 
 

@@ -29,23 +29,12 @@ Judged = Callable[[Sequence[Verification]], Mapping[str, object]]
 
 @dataclass(frozen=True, slots=True)
 class ExportSet:
-    """The written files.
+    """The written files."""
 
-    Attributes
-    ----------
-    files : tuple of Path
-        In the order of writing; a folder stands for its files.
-    verifications : tuple of Verification
-        One for each cut file that two readers can read.
-    older : tuple of Path
-        Cut files of the same name that an earlier export left and this one does not have.
-    removed : tuple of Path
-        Those of an earlier export, by its record, that nobody had changed since; they are gone.
-    """
-
-    files: tuple[Path, ...]
-    verifications: tuple[Verification, ...]
-    older: tuple[Path, ...] = ()
+    files: tuple[Path, ...]  #: in the order of writing; a folder stands for its files
+    verifications: tuple[Verification, ...]  #: one for each cut file that two readers can read
+    older: tuple[Path, ...] = ()  #: cut files of the same name that an earlier export left and this one does not have
+    #: Those of an earlier export, by its record, that nobody had changed since; they are gone.
     removed: tuple[Path, ...] = ()
 
     @property
@@ -56,23 +45,12 @@ class ExportSet:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Draft:
-    """A cut file that was written aside and read back by two readers.
-
-    Attributes
-    ----------
-    job : ExportJob
-    path : Path
-        Where it is to appear.
-    written : Path
-        Where it is: a file, or the folder of a profile with a file for each layer.
-    verification : Verification
-        What was found in it, under the name that it is to have.
-    """
+    """A cut file that was written aside and read back by two readers."""
 
     job: ExportJob
-    path: Path
-    written: Path
-    verification: Verification
+    path: Path  #: where it is to appear
+    written: Path  #: where it is: a file, or the folder of a profile with a file for each layer
+    verification: Verification  #: what was found in it, under the name that it is to have
 
     def place(self) -> Path:
         """Put it in its place, whole or not at all; returns the path.
@@ -115,7 +93,6 @@ def placed(
 
     Parameters
     ----------
-    job : ExportJob
     goals : sequence of (Path, DxfVersion)
         Where they are to appear.
     judged : function or None
@@ -165,14 +142,8 @@ def export_all(
 
     Parameters
     ----------
-    job : ExportJob
-        With its plan.
-    folder : str or Path
-        Made if it is missing.
     name : str
         Of the cut files, without extension.
-    sidecar : bool
-        Also write the record.
     on_written : function, optional
         Is called with each path once it is written; may raise to stop.
     judged : function, optional

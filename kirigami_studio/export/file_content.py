@@ -15,30 +15,14 @@ MILLIMETRES = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FileContent:
-    """A cut file as one reader sees it.
+    """A cut file as one reader sees it."""
 
-    Attributes
-    ----------
-    reader : str
-        What read it, for the report.
-    strokes : tuple of Stroke
-        In file order.
-    unit : int or None
-        Code of the file's unit as in ``$INSUNITS``; None when the file has none.
-    extent : (width, height) or None, mm
-        What the header says.
-    layers : mapping of str to int
-        Colour of each layer.
-    others : tuple of str
-        Kinds of entities that are no polylines.
-    """
-
-    reader: str
-    strokes: tuple[Stroke, ...]
-    unit: int | None
-    extent: tuple[float, float] | None
-    layers: Mapping[str, int] = field(default_factory=dict)
-    others: tuple[str, ...] = ()
+    reader: str  #: what read it, for the report
+    strokes: tuple[Stroke, ...]  #: in file order
+    unit: int | None  #: Code of the file's unit as in ``$INSUNITS``; None when the file has none.
+    extent: tuple[float, float] | None  #: (width, height), mm; what the header says
+    layers: Mapping[str, int] = field(default_factory=dict)  #: colour of each layer
+    others: tuple[str, ...] = ()  #: kinds of entities that are no polylines
 
     @property
     def length(self) -> float:

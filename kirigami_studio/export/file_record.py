@@ -26,49 +26,27 @@ SINGLE = re.compile(r"(\d{1,6})=(\d{1,6}(?:\.\d{1,20})?(?:e-?\d{1,2})?)")
 
 @dataclass(frozen=True, slots=True)
 class FileRecord:
-    """How a cut file says it was made.
+    """How a cut file says it was made."""
 
-    Attributes
-    ----------
-    version : str
-        Of the program.
-    design : str
-        Identifies the sheet, see ``CutPlan.design_hash``.
-    construction : str
-        "one-sheet".
-    material, machine : str
-        Keys of the preset, and of the machine that was asked for, "" for the one that the material is for.
-    profile : Profile
-    options : CutOptions
-    width_mm, connector_mm, kerf_mm : float
-        Of the flat sheet, of connectors as asked for, and of the cut that the plan allowed for.
-    least_connector_mm : float
-        Width of the narrowest connector.
-    lines : int
-        Lines that are cut.
-    trimmed : int
-        Panels of which something was trimmed off.
-    name : str
-        That was to be engraved, "" for none.
-    verdict : str
-        Level of the verdict of the export, "" where there was none.
-    """
-
-    version: str
-    design: str
-    construction: str
+    version: str  #: of the program
+    design: str  #: identifies the sheet, see ``CutPlan.design_hash``
+    construction: str  #: "one-sheet"
+    #: material, machine: keys of the preset, and of the machine that was asked for, "" for the one that the material is
+    #: for.
     material: str
     machine: str
     profile: Profile
     options: CutOptions
+    #: width_mm, connector_mm, kerf_mm: of the flat sheet, of connectors as asked for, and of the cut that the plan
+    #: allowed for.
     width_mm: float
     connector_mm: float
     kerf_mm: float
-    least_connector_mm: float
-    lines: int
-    trimmed: int
-    name: str
-    verdict: str
+    least_connector_mm: float  #: width of the narrowest connector
+    lines: int  #: lines that are cut
+    trimmed: int  #: panels of which something was trimmed off
+    name: str  #: that was to be engraved, "" for none
+    verdict: str  #: level of the verdict of the export, "" where there was none
 
     def to_json(self) -> dict[str, object]:
         """For the command line."""

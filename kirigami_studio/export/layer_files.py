@@ -47,11 +47,8 @@ def write_layer_files(plan: CutPlan, path: str | Path, version: str, profile: Pr
 
     Parameters
     ----------
-    plan : CutPlan
     path : str or Path
         The folder, or a ``.dxf`` name whose stem names it.
-    version : str
-    profile : Profile
     record : bytes
         The design that the plan cuts, see ``design_record``; the first file has it.
 

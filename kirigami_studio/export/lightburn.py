@@ -61,8 +61,6 @@ def write_lightburn(plan: CutPlan, path: str | Path, markers: bool = False) -> N
 
     Parameters
     ----------
-    plan : CutPlan
-    path : str or Path
     markers : bool
         Also draw a circle around every connector, on the tool layer.
 
@@ -229,18 +227,10 @@ def layer_lengths(path: Path) -> dict[str, float]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProjectPath:
-    """One path of a LightBurn project.
+    """One path of a LightBurn project."""
 
-    Attributes
-    ----------
-    layer : str
-        Name of its cut setting.
-    curves : (C, 4, 2) float, mm
-        Cubic Bezier curves, one after the other.
-    """
-
-    layer: str
-    curves: FloatArray
+    layer: str  #: name of its cut setting
+    curves: FloatArray  #: (C, 4, 2), mm; cubic Bezier curves, one after the other
 
     @property
     def closed(self) -> bool:
@@ -260,14 +250,7 @@ class ProjectPath:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProjectContent:
-    """A LightBurn project as it is read: what it cuts, and what it says of itself.
-
-    Attributes
-    ----------
-    paths : tuple of ProjectPath
-    facts : mapping of str to str
-    layers : tuple of str
-    """
+    """A LightBurn project as it is read: what it cuts, and what it says of itself."""
 
     paths: tuple[ProjectPath, ...]
     facts: Mapping[str, str]

@@ -47,41 +47,25 @@ MANY_PAGES = 20
 
 @dataclass(frozen=True, slots=True)
 class Tile:
-    """One page of the drawing.
+    """One page of the drawing."""
 
-    Attributes
-    ----------
-    row, column : int
-        From the top left.
-    window : (x low, y low, x high, y high), mm
-        What the page shows, in the plan's frame.
-    cell : (x low, y low, x high, y high), mm
-        What is left when the page is cut along its joining lines; cells fill the sheet without overlap.
-    """
-
+    #: row, column: from the top left.
     row: int
     column: int
-    window: Box
+    window: Box  #: (x low, y low, x high, y high), mm; what the page shows, in the plan's frame
+    #: (x low, y low, x high, y high), mm; what is left when the page is cut along its joining lines; cells fill the
+    #: sheet without overlap.
     cell: Box
 
 
 @dataclass(frozen=True, slots=True)
 class Tiling:
-    """All pages of a drawing.
+    """All pages of a drawing."""
 
-    Attributes
-    ----------
-    page : (width, height), mm
-        As printed, upright or on its side.
-    rows, columns : int
-    tiles : tuple of Tile
-        Row by row from the top left.
-    """
-
-    page: Size
+    page: Size  #: (width, height), mm; as printed, upright or on its side
     rows: int
     columns: int
-    tiles: tuple[Tile, ...]
+    tiles: tuple[Tile, ...]  #: row by row from the top left
 
 
 def tile(size: Size, paper: str) -> Tiling:

@@ -56,8 +56,6 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
 
     Parameters
     ----------
-    plan : CutPlan
-    path : str or Path
     paper : str
         "none" for one page as large as the sheet, or a paper size; several pages where one is too small.
 
@@ -159,30 +157,17 @@ def _length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PageLine:
-    """One line of a page.
+    """One line of a page."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        From the page's lower left corner; a closed line comes back to its first point.
-    colour : (red, green, blue), 0 to 255
-    """
-
-    points: FloatArray
-    colour: tuple[int, int, int]
+    points: FloatArray  #: (P, 2), mm; from the page's lower left corner; a closed line comes back to its first point
+    colour: tuple[int, int, int]  #: (red, green, blue), 0 to 255
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Page:
-    """One page.
+    """One page."""
 
-    Attributes
-    ----------
-    size_mm : (width, height)
-    lines : tuple of PageLine
-    """
-
-    size_mm: tuple[float, float]
+    size_mm: tuple[float, float]  #: (width, height)
     lines: tuple[PageLine, ...]
 
 

@@ -34,8 +34,6 @@ def draw_pages(canvas: Any, tiling: Tiling, size: Size, about: str, draw_part: C
 
     Parameters
     ----------
-    canvas : reportlab Canvas
-    tiling : Tiling
     size : (width, height), mm
         Of the drawing.
     about : str

@@ -41,6 +41,8 @@ NAME_COLOUR: Colour = (150, 0, 140)
 #: Pictures are drawn this many times larger and then reduced.
 SUPERSAMPLING = 3
 LONGEST_SIDE = 900
+#: Room around what a picture shows, share of its longer side.
+MARGIN = 0.05
 #: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
 SAME_DPI = 0.02
 
@@ -63,8 +65,6 @@ def write_image(
 
     Parameters
     ----------
-    image : Image
-    path : Path
     facts : mapping of str to str
         Written as text chunks.
     dpi : float, optional
@@ -179,27 +179,18 @@ def draw_polygons(
 
 @dataclass(frozen=True, slots=True)
 class PictureFrame:
-    """Which part of the plane a picture shows.
+    """Which part of the plane a picture shows."""
 
-    Attributes
-    ----------
-    low : (x, y)
-        Lower left corner, in the frame of the drawing.
-    scale : float
-        Pixels per unit.
-    pixels : (width, height)
-    """
-
-    low: tuple[float, float]
-    scale: float
-    pixels: tuple[int, int]
+    low: tuple[float, float]  #: (x, y); lower left corner, in the frame of the drawing
+    scale: float  #: pixels per unit
+    pixels: tuple[int, int]  #: (width, height)
 
     @classmethod
-    def around(cls, clouds: Sequence[FloatArray], longest: int, margin: float = 0.05) -> PictureFrame:
+    def around(cls, clouds: Sequence[FloatArray], longest: int) -> PictureFrame:
         """Fit all points (each (P, 2)) into a picture whose longer side has ``longest`` pixels."""
         points = np.concatenate([cloud.reshape(-1, 2) for cloud in clouds])
         extent = np.ptp(points, axis=0)
-        room = margin * float(extent.max())
+        room = MARGIN * float(extent.max())
         low = points.min(axis=0) - room
         size = extent + 2.0 * room
         scale = longest / float(size.max())

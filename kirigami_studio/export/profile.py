@@ -17,6 +17,7 @@ from types import MappingProxyType
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.words import mark
 
 RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
 
@@ -40,40 +41,21 @@ NAME_LAYER = "NAME"
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What one kind of program or service wants.
+    """What one kind of program or service wants."""
 
-    Attributes
-    ----------
-    key, name : str
-        For the command line, and for the user.
-    colour : mapping of Layer to int
-        AutoCAD colour index.
-    one_layer : bool
-        Everything on the layer ``ONE_LAYER``, in file order.
-    flatten : bool
-        Arcs as chords.
-    file_per_layer : bool
-        A folder of files instead of one file.
-    slots : bool
-        Closed contours only: every slit becomes the outline of the slot that it burns.
-    note : Note or None
-        What to know before importing.
-    svg_dpi : float
-        Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width
-        and height say mm in any case.
-    name_colour : int or None
-        AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
-    """
-
+    #: key, name: for the command line, and for the user.
     key: str
     name: str
-    colour: Mapping[Layer, int]
-    one_layer: bool = False
-    flatten: bool = False
-    file_per_layer: bool = False
-    slots: bool = False
-    note: Note | None = None
+    colour: Mapping[Layer, int]  #: AutoCAD colour index
+    one_layer: bool = False  #: everything on the layer ``ONE_LAYER``, in file order
+    flatten: bool = False  #: arcs as chords
+    file_per_layer: bool = False  #: a folder of files instead of one file
+    slots: bool = False  #: closed contours only: every slit becomes the outline of the slot that it burns
+    note: Note | None = None  #: what to know before importing
+    #: AutoCAD colour index of an engraved name; None where everything in a file is cut, so that it has no name.
     name_colour: int | None = BLUE
+    #: Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width and
+    #: height say mm in any case.
     svg_dpi: float = MM_DPI
 
     def layer_name(self, layer: Layer) -> str:
@@ -86,32 +68,32 @@ class Profile:
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
 _BY_LAYER = MappingProxyType({Layer.RELIEF: MAGENTA, Layer.SLITS: RED, Layer.EDGE_SLITS: GREEN, Layer.OUTLINE: BLUE})
 _TABLE = (
-    Profile("any", "Any machine: everything red, cut in file order", _ALL_RED),
+    Profile("any", mark("Any machine: everything red, cut in file order"), _ALL_RED),
     Profile(
         "lightburn",
-        "LightBurn: one colour for each layer",
+        mark("LightBurn: one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.only_red_is_cut"),
         name_colour=WHITE,
     ),
-    Profile("k40", "MeerK40t, K40 Whisperer: everything red, arcs as chords", _ALL_RED, flatten=True),
+    Profile("k40", mark("MeerK40t, K40 Whisperer: everything red, arcs as chords"), _ALL_RED, flatten=True),
     Profile(
         "single",
-        "One colour, one layer: for programs that sort by colour or layer",
+        mark("One colour, one layer: for programs that sort by colour or layer"),
         _ALL_RED,
         one_layer=True,
         name_colour=None,
     ),
     Profile(
         "layers",
-        "One file for each layer, in a folder (CircuitPro)",
+        mark("One file for each layer, in a folder (CircuitPro)"),
         _ALL_RED,
         file_per_layer=True,
         note=Note.of("profile.one_origin"),
     ),
     Profile(
         "slots",
-        "Cutting service: closed contours only, every slit as a slot",
+        mark("Cutting service: closed contours only, every slit as a slot"),
         _BY_LAYER,
         slots=True,
         note=Note.of("profile.kerf_is_theirs"),
@@ -120,7 +102,7 @@ _TABLE = (
     # One colour: Design Space lays every colour on a mat of its own.
     Profile(
         "cricut",
-        "Cricut Design Space: SVG in one colour, counted at 72 dpi",
+        mark("Cricut Design Space: SVG in one colour, counted at 72 dpi"),
         _ALL_RED,
         one_layer=True,
         note=Note.of("profile.attach_and_measure"),
@@ -129,7 +111,7 @@ _TABLE = (
     ),
     Profile(
         "silhouette",
-        "Silhouette Studio: everything red, arcs as chords",
+        mark("Silhouette Studio: everything red, arcs as chords"),
         _ALL_RED,
         flatten=True,
         note=Note.of("profile.measure"),
@@ -138,7 +120,7 @@ _TABLE = (
     ),
     Profile(
         "glowforge",
-        "Glowforge: SVG with one colour for each layer",
+        mark("Glowforge: SVG with one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.order_of_steps"),
         name_colour=WHITE,
@@ -146,7 +128,7 @@ _TABLE = (
     ),
     Profile(
         "xtool",
-        "xTool Studio: SVG with one colour for each layer",
+        mark("xTool Studio: SVG with one colour for each layer"),
         _BY_LAYER,
         note=Note.of("profile.order_of_steps"),
         name_colour=WHITE,

@@ -146,9 +146,6 @@ def write_sidecar(
 
     Parameters
     ----------
-    job : ExportJob
-        With its plan.
-    path : str or Path
     cut_files : sequence of Path
         Written files that the record names with their SHA-256.
     verdict : mapping, optional
@@ -262,13 +259,7 @@ def _entry(value: Any) -> Any:
 
 
 def _digests(path: Path) -> list[tuple[str, str]]:
-    """Name and SHA-256 of a file, or of the files of a folder with the folder's name in front.
-
-    Raises
-    ------
-    ExportError
-        The file cannot be read.
-    """
+    """Name and SHA-256 of a file, or of the files of a folder with the folder's name in front."""
     try:
         parts = sorted(path.iterdir()) if path.is_dir() else [path]
         return [

@@ -30,22 +30,8 @@ def _dxf(job: ExportJob, path: Path) -> None:
         write_dxf(job.required_plan, path, job.dxf_version, profile, job.record)
 
 
-def _svg(job: ExportJob, path: Path) -> None:
-    write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record)
-
-
-def _pdf(job: ExportJob, path: Path) -> None:
-    write_pdf(job.required_plan, path, job.paper)
-
-
 def _lightburn(job: ExportJob, path: Path) -> None:
-    """Write the job's cut plan in LightBurn's own layers, whatever the profile.
-
-    Raises
-    ------
-    ExportError
-        The profile asks for closed slots, which such a project does not hold.
-    """
+    """Write the job's cut plan in LightBurn's own layers, whatever the profile."""
     if find_profile(job.profile).slots:
         raise ExportError("lightburn.open_cuts_only")
     write_lightburn(job.required_plan, path, job.markers)
@@ -55,8 +41,8 @@ def _lightburn(job: ExportJob, path: Path) -> None:
 WRITERS: Mapping[str, Writer] = MappingProxyType(
     {
         ".dxf": _dxf,
-        ".svg": _svg,
-        ".pdf": _pdf,
+        ".svg": lambda job, path: write_cut_svg(job.required_plan, path, find_profile(job.profile), job.record),
+        ".pdf": lambda job, path: write_pdf(job.required_plan, path, job.paper),
         ".png": write_png,
         ".gif": write_animation,
         ".lbrn2": _lightburn,

@@ -139,19 +139,10 @@ def _chord_line(path: CutPath, plan: CutPlan) -> LineString:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What the machine does for a file, which need not be what it would do for the plan: slots are twice as long.
+    """What the machine does for a file, which need not be what it would do for the plan: slots are twice as long."""
 
-    Attributes
-    ----------
-    cut_length_mm : float
-        Of one pass.
-    travel_mm : float
-        Way with the beam off, from the origin to the first cut and between cuts.
-    times : CutTimes
-    """
-
-    cut_length_mm: float
-    travel_mm: float
+    cut_length_mm: float  #: of one pass
+    travel_mm: float  #: way with the beam off, from the origin to the first cut and between cuts
     times: CutTimes
 
 

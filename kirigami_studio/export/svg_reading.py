@@ -72,13 +72,7 @@ def read_with_svgelements(path: Path) -> FileContent:
 
 
 def _parsed(path: Path) -> Any:
-    """The document as svgelements has it, which carries no types; without elements that stand for others.
-
-    Raises
-    ------
-    ExportError
-        No readable SVG.
-    """
+    """The document as svgelements has it, which carries no types; without elements that stand for others."""
     try:
         content = read_at_most(path, LARGEST_FILE)
         refuse_long_numbers(content)
@@ -189,13 +183,7 @@ def _grouped(svg: Any) -> list[tuple[Any, Any]]:
 
 
 def _scale_of_groups(grouped: list[tuple[Any, Any]], scale: float) -> float:
-    """How many of a drawing's own units its groups take for one of theirs.
-
-    Raises
-    ------
-    ValueError
-        Groups differ.
-    """
+    """How many of a drawing's own units its groups take for one of theirs."""
     found = {round(float(path.transform.a) * MM_PER_PX / scale, SCALE_DIGITS) for _, path in grouped}
     if len(found) > 1:
         raise ValueError("its groups are scaled differently")

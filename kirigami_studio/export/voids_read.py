@@ -47,43 +47,24 @@ ROUND_TURN, ROUND_MORE = 0.9 * math.pi, 1.1
 
 @dataclass(frozen=True, slots=True)
 class FoundConnector:
-    """One connector of a file.
+    """One connector of a file."""
 
-    Attributes
-    ----------
-    slit, through : int
-        Groups of cuts that touch: the one that ends at the connector, and the one on its far side (or ``OUTLINE``).
-    width_mm : float
-        Finished width.
-    centre : (x, y), mm
-        Middle of the neck.
-    """
-
+    #: slit, through: groups of cuts that touch: the one that ends at the connector, and the one on its far side (or
+    #: ``OUTLINE``).
     slit: int
     through: int
-    width_mm: float
-    centre: tuple[float, float]
+    width_mm: float  #: finished width
+    centre: tuple[float, float]  #: (x, y), mm; middle of the neck
 
 
 @dataclass(frozen=True, slots=True)
 class FoundVoids:
-    """What the connectors of a file amount to.
-
-    Attributes
-    ----------
-    connectors : tuple of FoundConnector
-    voids : int
-        Cuts with two connectors of their own and two that rest on them.
-    miss_um : float
-        Largest |p0 - p1 + p2 - p3| of a void's four centres; 0 without voids.
-    where : (x, y) or None, mm
-        The middle of that void.
-    """
+    """What the connectors of a file amount to."""
 
     connectors: tuple[FoundConnector, ...]
-    voids: int
-    miss_um: float
-    where: tuple[float, float] | None
+    voids: int  #: cuts with two connectors of their own and two that rest on them
+    miss_um: float  #: largest |p0 - p1 + p2 - p3| of a void's four centres; 0 without voids
+    where: tuple[float, float] | None  #: (x, y), mm; the middle of that void
 
     @property
     def narrowest_mm(self) -> float:
@@ -107,17 +88,10 @@ class FoundVoids:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tip:
-    """The free end of a cut.
-
-    Attributes
-    ----------
-    group : int
-    shape : geometry, mm
-        The tip's centre, or the shape that the cut ends in.
-    """
+    """The free end of a cut."""
 
     group: int
-    shape: BaseGeometry
+    shape: BaseGeometry  #: mm; the tip's centre, or the shape that the cut ends in
 
 
 def read_voids(strokes: Sequence[Stroke], outlines: int, kerf_mm: float, slots: bool = False) -> FoundVoids:

@@ -53,28 +53,15 @@ SLIGHTLY_NARROWER, SLIGHT_DOWN_TO, NARROWER = 0.95, 0.75, 0.8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arranged:
-    """Cuts with centred connectors.
-
-    Attributes
-    ----------
-    cuts : HingedCuts
-    ring : (P, 2) float, mm
-        Centre line of the outline, counter-clockwise.
-    ring_bulges : (P,) float or None
-        Arcs around the connectors on it.
-    centres : (H, 2) float or None, mm
-        Where the connectors turn; None for styles that do not place them.
-    off_centre : int
-        How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
-    widths : (H,) float or None, mm
-        Finished widths, narrower than asked where there was no room; None for those that were asked for.
-    """
+    """Cuts with centred connectors."""
 
     cuts: HingedCuts
-    ring: FloatArray
-    ring_bulges: FloatArray | None
-    centres: FloatArray | None
+    ring: FloatArray  #: (P, 2), mm; centre line of the outline, counter-clockwise
+    ring_bulges: FloatArray | None  #: (P,); arcs around the connectors on it
+    centres: FloatArray | None  #: (H, 2), mm; where the connectors turn; None for styles that do not place them.
+    #: How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
     off_centre: int = 0
+    #: (H,), mm; finished widths, narrower than asked where there was no room; None for those that were asked for.
     widths: FloatArray | None = None
 
     @classmethod
@@ -123,40 +110,23 @@ def least_widths(asked: FloatArray, least_mm: float, chosen: Mapping[int, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StraightSheet:
-    """A sheet whose cuts run straight from node to node, and the connectors that it is to get.
+    """A sheet whose cuts run straight from node to node, and the connectors that it is to get."""
 
-    Attributes
-    ----------
-    lines : (C, 2, 2) float, mm
-        Cuts from node to node.
-    table : CutTable
-    sides : (H, 2, 2) float, mm
-        Sides of the sheet beside the hinges on its edge.
-    widths, least : (H,) float, mm
-        Finished width of each hinge, 0 for removed ones, and how narrow it may become where there is no room for that.
-    kerf_mm, overcut_mm : float
-    removed : tuple of int
-    trimmed : function
-        Makes outline and cuts of the straight cuts.
-    """
-
-    lines: FloatArray
+    lines: FloatArray  #: (C, 2, 2), mm; cuts from node to node
     table: CutTable
-    sides: FloatArray
+    sides: FloatArray  #: (H, 2, 2), mm; sides of the sheet beside the hinges on its edge
+    #: widths, least: (H,), mm; finished width of each hinge, 0 for removed ones, and how narrow it may become where
+    #: there is no room for that.
     widths: FloatArray
     least: FloatArray
     kerf_mm: float
     overcut_mm: float
     removed: tuple[int, ...]
-    trimmed: Trimming
+    trimmed: Trimming  #: makes outline and cuts of the straight cuts
 
 
 def centred_cuts(sheet: StraightSheet) -> Arranged | None:
     """Arrange all cuts so that as many connectors as possible turn on their nodes.
-
-    Parameters
-    ----------
-    sheet : StraightSheet
 
     Returns
     -------

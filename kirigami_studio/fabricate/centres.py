@@ -42,33 +42,16 @@ ON_NODE_MM = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Centres:
-    """Where all connectors of a sheet turn.
+    """Where all connectors of a sheet turn."""
 
-    Attributes
-    ----------
-    position : (H, 2) float, mm
-        In the frame of the lines.
-    bodies : (C, 2, 2) float, mm
-        The cuts from centre to centre.
-    normal : (H, 2) float
-        Unit vectors away from the through cut on the slit's side.
-    height_mm : (H,) float
-        How far the centre is from the centre line of the through cut, or of the outline, on the slit's side.
-    slant : (H,) float, radians
-        Angle of the slit from the normal towards a quarter turn to the left of it.
-    span_mm : (H,) float
-        Finished width and kerf together.
-    facing : (S,) bool
-        Slits whose two connectors, one on each side, had to move apart.
-    """
-
-    position: FloatArray
-    bodies: FloatArray
-    normal: FloatArray
+    position: FloatArray  #: (H, 2), mm; in the frame of the lines
+    bodies: FloatArray  #: (C, 2, 2), mm; the cuts from centre to centre
+    normal: FloatArray  #: (H, 2); unit vectors away from the through cut on the slit's side
+    #: (H,); how far the centre is from the centre line of the through cut, or of the outline, on the slit's side.
     height_mm: FloatArray
-    slant: FloatArray
-    span_mm: FloatArray
-    facing: BoolArray
+    slant: FloatArray  #: (H,), radians; angle of the slit from the normal towards a quarter turn to the left of it
+    span_mm: FloatArray  #: (H,); finished width and kerf together
+    facing: BoolArray  #: (S,); slits whose two connectors, one on each side, had to move apart
 
     @property
     def circle(self) -> tuple[FloatArray, FloatArray]:
@@ -90,7 +73,6 @@ def bending_lengths(span_mm: FloatArray, kerf_mm: float, height_mm: FloatArray) 
     ----------
     span_mm : (H,) float, mm
         Finished widths and kerf.
-    kerf_mm : float
     height_mm : (H,) float, mm
         Of the centres above the through cut, see :class:`Centres`.
     """
@@ -129,8 +111,6 @@ def settled_centres(
     kerf_mm: float,
     flat: BoolArray,
     removed: tuple[int, ...] = (),
-    start: Centres | None = None,
-    rounds: int = ROUNDS,
 ) -> Centres:
     """Find the centres by one constrained least-squares problem, made linear a few times.
 
@@ -138,12 +118,10 @@ def settled_centres(
     ----------
     lines : (C, 2, 2) float, mm
         Cuts from node to node.
-    table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge.
     spans : (H,) float, mm
         Finished widths and kerf.
-    kerf_mm : float
     flat : (H,) bool
         Hinges whose through cut has no room for a bulge: their centres are half a span above it.
     removed : tuple of int
@@ -153,9 +131,7 @@ def settled_centres(
     held = flat.copy()
     facing = np.zeros(table.slit_count, dtype=np.bool_)
     shift = np.zeros((table.hinge_count, 2))
-    if start is not None:
-        facing, shift = start.facing.copy(), start.position - lines[table.hinge_cut, table.hinge_end]
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         now = problem.centres(shift)
         held |= now.height_mm > 0.5 * spans + ON_NODE_MM
         facing |= problem.overlap(now) > 0.0

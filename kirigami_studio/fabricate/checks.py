@@ -41,26 +41,13 @@ LEAST_MM = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class PlanReport:
-    """What the check found.
-
-    Attributes
-    ----------
-    problems : tuple of Problem
-    pieces : int
-        Pieces that the sheet is in after cutting; must be 1.
-    min_connector_mm : float
-        Smallest finished connector.
-    min_ligament_mm : float
-        Smallest finished distance between any two cuts.
-    overlap_mm : float
-        Length cut more than once.
-    """
+    """What the check found."""
 
     problems: tuple[Problem, ...]
-    pieces: int
-    min_connector_mm: float
-    min_ligament_mm: float
-    overlap_mm: float
+    pieces: int  #: pieces that the sheet is in after cutting; must be 1
+    min_connector_mm: float  #: smallest finished connector
+    min_ligament_mm: float  #: smallest finished distance between any two cuts
+    overlap_mm: float  #: length cut more than once
 
     @property
     def ok(self) -> bool:
@@ -73,7 +60,6 @@ def check_plan(plan: CutPlan, kerf_mm: float | None = None, phi: float | None = 
 
     Parameters
     ----------
-    plan : CutPlan
     kerf_mm : float, optional
         The kerf the machine really has; the plan's own unless given.
     phi : float, radians, optional
@@ -299,25 +285,12 @@ def machine_problems(plan: CutPlan) -> list[Problem]:
 
 @dataclass(frozen=True, slots=True)
 class Flexing:
-    """What the connectors go through.
+    """What the connectors go through."""
 
-    Attributes
-    ----------
-    turn : float, radians
-        By which every connector turns.
-    strain : float
-        Estimate for the connector that is nearest to breaking.
-    where : (x, y), mm
-        That connector.
-    flexure_mm : float
-        Length over which it bends.
-    survival : Survival
-    """
-
-    turn: float
-    strain: float
-    where: tuple[float, float]
-    flexure_mm: float
+    turn: float  #: radians; by which every connector turns
+    strain: float  #: estimate for the connector that is nearest to breaking
+    where: tuple[float, float]  #: (x, y), mm; that connector
+    flexure_mm: float  #: length over which it bends
     survival: Survival
 
 

@@ -28,17 +28,10 @@ NEAR_SPANS = 1.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SparseJacobian:
-    """By how much lengths fall, or angles, as nodes move: each is a sum of shares of what a few nodes move.
+    """By how much lengths fall, or angles, as nodes move: each is a sum of shares of what a few nodes move."""
 
-    Attributes
-    ----------
-    nodes : (K, M) int
-    shares : (K, M, 2) float
-        Of the moves of those nodes in x and y.
-    """
-
-    nodes: IntArray
-    shares: FloatArray
+    nodes: IntArray  #: (K, M)
+    shares: FloatArray  #: (K, M, 2); of the moves of those nodes in x and y
 
     def along(self, slopes: FloatArray) -> FloatArray:
         """The falls (K, V) where the nodes move by ``slopes`` (2, N, V)."""
@@ -75,18 +68,10 @@ class SparseJacobian:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clearances:
-    """The distances of one design that are short or nearly so.
+    """The distances of one design that are short or nearly so."""
 
-    Attributes
-    ----------
-    missing : (K,) float, mm
-        By how much each is too short; negative where there is room.
-    falls : SparseJacobian
-        By how much that falls (K,) as nodes move.
-    """
-
-    missing: FloatArray
-    falls: SparseJacobian
+    missing: FloatArray  #: (K,), mm; by how much each is too short; negative where there is room
+    falls: SparseJacobian  #: by how much that falls (K,) as nodes move
 
 
 class _Features:
@@ -136,7 +121,6 @@ def clearances(
     ----------
     nodes : (N, 2) float, mm
         Of the flat sheet.
-    table : CutTable
     spans : (H,) float, mm
         Finished widths and kerf, 0 for hinges without a connector.
     rim : (H, 2) float

@@ -114,12 +114,10 @@ def shorten(lines: FloatArray, table: CutTable, sides: FloatArray, widths: Float
     ----------
     lines : (C, 2, 2) float, mm
         Cuts from junction to junction, as :func:`sheet_lines` returns them.
-    table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge, as :func:`edge_sides` returns them.
     widths : (H,) float, mm
         Finished width of each hinge.
-    kerf_mm : float
 
     Returns
     -------

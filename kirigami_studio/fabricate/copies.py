@@ -24,24 +24,12 @@ SAME_MM = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Copies:
-    """Where the copies lie.
+    """Where the copies lie."""
 
-    Attributes
-    ----------
-    places : (C, 2) float, mm
-        Lower left corners, row by row from the bottom; the first is (0, 0).
-    size_mm : (width, height)
-        All that is cut of one copy.
-    gap_mm : float
-        Between the cuts of neighbours.
-    notes : tuple of Note
-        Where there are fewer than asked for.
-    """
-
-    places: FloatArray
-    size_mm: tuple[float, float]
-    gap_mm: float
-    notes: tuple[Note, ...] = ()
+    places: FloatArray  #: (C, 2), mm; lower left corners, row by row from the bottom; the first is (0, 0)
+    size_mm: tuple[float, float]  #: (width, height); all that is cut of one copy
+    gap_mm: float  #: between the cuts of neighbours
+    notes: tuple[Note, ...] = ()  #: where there are fewer than asked for
 
     def __len__(self) -> int:
         return len(self.places)
@@ -81,7 +69,6 @@ def lay_out(size: tuple[float, float], bed: tuple[float, float], options: CutOpt
         0 and 0 for one of any size: there the rows make the sheets as square as they can.
     options : CutOptions
         Their number and the gap between them.
-    kerf_mm : float
 
     Raises
     ------
@@ -151,7 +138,6 @@ def alike(clouds: Sequence[FloatArray], gap_mm: float, tolerance_mm: float) -> b
         All points of each copy, in the order of the file.
     gap_mm : float
         Least distance between the boxes around any two.
-    tolerance_mm : float
     """
     lows, highs = (np.array([edge(cloud, axis=0) for cloud in clouds]) for edge in (np.min, np.max))
     first = clouds[0] - lows[0]

@@ -30,21 +30,11 @@ OWN_SHARE = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelLines:
-    """Lines that each move with one panel.
+    """Lines that each move with one panel."""
 
-    Attributes
-    ----------
-    points : (N, 2) float, mm
-        Of all lines, one after the other.
-    ends : (L,) int
-        Where each line ends in ``points``.
-    panel : (L,) int
-        Number of the panel, row by row.
-    """
-
-    points: FloatArray
-    ends: IntArray
-    panel: IntArray
+    points: FloatArray  #: (N, 2), mm; of all lines, one after the other
+    ends: IntArray  #: (L,); where each line ends in ``points``
+    panel: IntArray  #: (L,); number of the panel, row by row
 
     @classmethod
     def of(cls, lines: Sequence[tuple[int, FloatArray]]) -> PanelLines:
@@ -66,18 +56,10 @@ class PanelLines:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutPanels:
-    """All panels of a plan that are there, in its frame, arcs as chords.
+    """All panels of a plan that are there, in its frame, arcs as chords."""
 
-    Attributes
-    ----------
-    outlines : PanelLines
-        One closed ring for each panel, along the centre lines of cuts and across necks.
-    cuts : PanelLines
-        Its parts that are cut, necks left out, and the cuts that end inside a panel.
-    """
-
-    outlines: PanelLines
-    cuts: PanelLines
+    outlines: PanelLines  #: one closed ring for each panel, along the centre lines of cuts and across necks
+    cuts: PanelLines  #: its parts that are cut, necks left out, and the cuts that end inside a panel
 
     def numbered(self, count: int) -> list[FloatArray]:
         """Outlines (Q, 2) of ``count`` panels, row by row, without points for those that are not there."""
@@ -94,12 +76,7 @@ class CutPanels:
 
 @lru_cache(maxsize=16)
 def cut_panels(plan: CutPlan) -> CutPanels:
-    """Divide a sheet into the panels that its cuts leave.
-
-    Parameters
-    ----------
-    plan : CutPlan
-    """
+    """Divide a sheet into the panels that its cuts leave."""
     lines, owner = _lines(plan)
     necks = _necks(plan, lines, owner)
     noded = shapely.union_all([*lines, *necks])

@@ -35,24 +35,13 @@ class Layer(Enum):
 
 @dataclass(frozen=True, eq=False)
 class CutPath:
-    """One cut without lifting.
+    """One cut without lifting."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        In the direction of cutting; the first point of a closed path is not repeated.
-    layer : Layer
-    closed : bool
-    cut : int
-        Number of the cut in :class:`CutTable`, -1 for the outline.
-    bulges : (P,) float or None
-        Arcs, as described at the top of this module; None where all edges are straight.
-    """
-
-    points: FloatArray
+    points: FloatArray  #: (P, 2), mm; in the direction of cutting; the first point of a closed path is not repeated
     layer: Layer
     closed: bool
-    cut: int = -1
+    cut: int = -1  #: number of the cut in :class:`CutTable`, -1 for the outline
+    #: (P,); arcs, as described at the top of this module; None where all edges are straight.
     bulges: FloatArray | None = None
 
     def __post_init__(self) -> None:
@@ -121,8 +110,6 @@ def flattened(points: FloatArray, bulges: FloatArray, closed: bool, chord_mm: fl
     bulges : (P,) float
         Of the edge from each point to the next, 0 for a straight one, positive for an arc to the left (counter-
         clockwise); the last one counts only where the path is closed.
-    closed : bool
-    chord_mm : float
 
     Returns
     -------

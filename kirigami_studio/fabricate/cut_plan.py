@@ -45,6 +45,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.ratio_field import frozen
 
 SMALLEST_SHEET_MM = 5.0
 LARGEST_SHEET_MM = 3000.0
@@ -62,66 +63,38 @@ WHY_STRAIGHT = {
 
 @dataclass(frozen=True, eq=False)
 class CutPlan:
-    """A job for the cutter.
+    """A job for the cutter."""
 
-    Attributes
-    ----------
-    paths : tuple of CutPath
-        In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
-        are tabs).  Smallest coordinates are 0, y up.
-    size_mm : (width, height)
-        The finished sheet; of a trimmed one, what it was before.
-    connector_mm, kerf_mm, overcut_mm : float
-        Finished connector width asked for, full cut width, reach of edge cuts beyond the outline.
-    hinges : Hinges
-    material : Material
-    design_hash : str
-        Identifies the sheet that the plan was made from, and what was trimmed off it.
-    options : CutOptions
-    notes : tuple of Note
-        Notes to read before cutting.
-    panels : tuple of (P, 2) float, mm
-        Panels between the centre lines of the cuts, row by row; four corners each unless trimmed.
-    centres : (H, 2) float or None, mm
-        Where the connectors turn; None for styles that do not place them.
-    void_miss_mm : float or None
-        By how much a void misses being a parallelogram of its centres, at most; None without centres.
-    made : Deployment or None
-        The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
-    origin : mapping of str to str
-        Where the design comes from, repeated in every file of the plan; decides nothing.
-    engraving : Engraving or None
-        A name on the sheet, which is engraved before anything is cut and counts as no cut.
-    name : str
-        That was to be engraved, "" for none; the sheet may have no room for it.
-    trimmed : int
-        Panels of which something was trimmed off.
-    verdict : str
-        Level of the verdict on the sheet, repeated in every file of the plan; decides nothing.
-    chosen_machine : Machine or None
-        That was asked for; None for the one that the material is for.
-    """
-
+    #: In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
+    #: are tabs).  Smallest coordinates are 0, y up.
     paths: tuple[CutPath, ...]
-    size_mm: tuple[float, float]
+    size_mm: tuple[float, float]  #: (width, height); the finished sheet; of a trimmed one, what it was before
+    #: connector_mm, kerf_mm, overcut_mm: finished connector width asked for, full cut width, reach of edge cuts beyond
+    #: the outline.
     connector_mm: float
     kerf_mm: float
     overcut_mm: float
     hinges: Hinges
     material: Material
-    design_hash: str
+    design_hash: str  #: identifies the sheet that the plan was made from, and what was trimmed off it
     options: CutOptions = STRAIGHT
-    notes: tuple[Note, ...] = ()
+    notes: tuple[Note, ...] = ()  #: notes to read before cutting
+    #: tuple of (P, 2) float, mm; panels between the centre lines of the cuts, row by row; four corners each unless
+    #: trimmed.
     panels: tuple[FloatArray, ...] = ()
-    centres: FloatArray | None = None
+    centres: FloatArray | None = None  #: (H, 2), mm; where the connectors turn; None for styles that do not place them.
+    #: By how much a void misses being a parallelogram of its centres, at most; None without centres.
     void_miss_mm: float | None = None
+    #: The sheet that is cut where that is not quite the design: with room for its connectors, the silhouette kept.
     made: Deployment | None = None
+    #: Where the design comes from, repeated in every file of the plan; decides nothing.
     origin: Mapping[str, str] = field(default_factory=FrozenMapping)
+    #: A name on the sheet, which is engraved before anything is cut and counts as no cut.
     engraving: Engraving | None = None
-    name: str = ""
-    trimmed: int = 0
-    verdict: str = ""
-    chosen_machine: Machine | None = None
+    name: str = ""  #: that was to be engraved, "" for none; the sheet may have no room for it
+    trimmed: int = 0  #: panels of which something was trimmed off
+    verdict: str = ""  #: level of the verdict on the sheet, repeated in every file of the plan; decides nothing
+    chosen_machine: Machine | None = None  #: That was asked for; None for the one that the material is for.
 
     @cached_property
     def machine(self) -> Machine:
@@ -201,7 +174,6 @@ def plan_cuts(
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Width of the finished sheet, 5 to 3000 mm; the height follows from its shape.
     connector_mm, kerf_mm : float, optional
@@ -243,7 +215,7 @@ def plan_cuts(
     parts = () if kept is None or all(part is None for part in kept) else tuple(kept)
     identity = design_hash(deployment, parts)
     lost = lost_hinges(deployment, parts, table) if parts else ()
-    left = _without(options, lost)
+    left = options.cut_through(lost)
     widths = hinge_widths(table.hinge_count, connector, dict(left.hinge_mm), left.removed)
     _check_size(sheet_lines(deployment, width)[1])
     relief_radius(options.style, material)
@@ -314,7 +286,7 @@ def plan_cuts(
             *_narrowing_notes(hinges),
         ),
         panels=panels_in_mm(deployment, parts, width, origin),
-        centres=None if arranged.centres is None else _frozen(arranged.centres - origin),
+        centres=None if arranged.centres is None else frozen(arranged.centres - origin),
         void_miss_mm=_void_miss(arranged, left, table),
         made=made,
         chosen_machine=machine,
@@ -354,14 +326,6 @@ def _trimming(
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
     return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost)
-
-
-def _without(options: CutOptions, lost: Sequence[int]) -> CutOptions:
-    """The options with the hinges that trimming took removed, whatever width was asked for them."""
-    if not lost:
-        return options
-    widths = tuple((hinge, width) for hinge, width in options.hinge_mm if hinge not in lost)
-    return replace(options, hinge_mm=widths, removed=tuple(sorted({*options.removed, *lost})))
 
 
 def _plain_cuts(
@@ -420,11 +384,6 @@ def _paths(
     busy = np.concatenate([shapely.get_coordinates(over), on_edge])
     parts = tabbed(line, options.tabs, options.tab_mm + kerf, busy)
     return [*paths, *(CutPath(_on_grid(part), Layer.OUTLINE, False) for part in parts)]
-
-
-def _frozen(values: FloatArray) -> FloatArray:
-    values.setflags(write=False)
-    return values
 
 
 def _on_grid(points: FloatArray) -> FloatArray:
@@ -502,11 +461,8 @@ def plan_notes(
 
     Parameters
     ----------
-    hinges : Hinges
-    material : Material
     connector_mm, kerf_mm : float
         Finished width asked for, and full cut width.
-    style : ConnectorStyle
     straight : Counter of Obstacle
         How many hinges stayed straight although a style was asked for, by what was in the way.
     """

@@ -31,40 +31,21 @@ ON_LINE_MM = 1e-5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Turn:
-    """The last part of a slit, from its tip on.
+    """The last part of a slit, from its tip on."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        From the tip to where the slit's own line begins.
-    bulges : (P - 1,) float
-        Of the edges between them.
-    attempt : int
-        Which of the ways to turn it is.
-    """
-
-    points: FloatArray
-    bulges: FloatArray
-    attempt: int
+    points: FloatArray  #: (P, 2), mm; from the tip to where the slit's own line begins
+    bulges: FloatArray  #: (P - 1,); of the edges between them
+    attempt: int  #: which of the ways to turn it is
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bow:
-    """A circle that a cut goes around.
+    """A circle that a cut goes around."""
 
-    Attributes
-    ----------
-    middle : (2,) float, mm
-    radius : float, mm
-    left : bool
-        Whether the middle is to the left of the cut as it is travelled.
-    start, stop : (2,) float, mm
-        Where the straight cut would enter and leave the circle.
-    """
-
-    middle: FloatArray
-    radius: float
-    left: bool
+    middle: FloatArray  #: (2,), mm
+    radius: float  #: mm
+    left: bool  #: whether the middle is to the left of the cut as it is travelled
+    #: start, stop: (2,), mm; where the straight cut would enter and leave the circle.
     start: FloatArray
     stop: FloatArray
 

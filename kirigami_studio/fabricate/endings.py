@@ -41,31 +41,18 @@ APEX_RADII = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Seat:
-    """The frame in which the end of one slit is drawn.
+    """The frame in which the end of one slit is drawn."""
 
-    Attributes
-    ----------
-    junction : (2,) float, mm
-        The T-junction, on the centre line of the through cut (or on the nominal edge of the sheet).
-    normal, side : (2,) float
-        Unit vectors away from the through cut on the slit's side, and along it, a quarter turn to the left of it.
-    slant : float, radians
-        Angle of the slit from the normal towards ``side``.
-    gap_mm : float
-        Perpendicular distance from the through cut (or the nominal edge) that leaves the finished width.
-    span_mm : float
-        Finished width and kerf together: the measure of all lengths at this hinge.
-    reach_mm : (2,) float
-        How far the through cut goes on from the junction, against ``side`` and along it.
-    """
-
+    #: (2,), mm; the T-junction, on the centre line of the through cut (or on the nominal edge of the sheet).
     junction: FloatArray
+    #: normal, side: (2,); unit vectors away from the through cut on the slit's side, and along it, a quarter turn to
+    #: the left of it.
     normal: FloatArray
     side: FloatArray
-    slant: float
-    gap_mm: float
-    span_mm: float
-    reach_mm: FloatArray
+    slant: float  #: radians; angle of the slit from the normal towards ``side``
+    gap_mm: float  #: perpendicular distance from the through cut (or the nominal edge) that leaves the finished width
+    span_mm: float  #: finished width and kerf together: the measure of all lengths at this hinge
+    reach_mm: FloatArray  #: (2,); how far the through cut goes on from the junction, against ``side`` and along it
 
     def at(self, angle: float, radius: float) -> FloatArray:
         """The point (2,) in a direction (radians from the normal towards ``side``) from the junction."""
@@ -97,12 +84,10 @@ def seats(
     ----------
     lines, shortened : (C, 2, 2) float, mm
         Cuts from junction to junction, and pulled back.
-    table : CutTable
     sides : (H, 2, 2) float, mm
         Sides of the sheet beside the hinges on its edge.
     widths : (H,) float, mm
         Finished widths.
-    kerf_mm : float
     """
     junction = lines[table.hinge_cut, table.hinge_end]
     own = lines[table.hinge_cut, 1 - table.hinge_end] - junction
@@ -158,7 +143,6 @@ def ending(style: ConnectorStyle, seat: Seat, radius_mm: float, attempt: int = 0
     ----------
     style : ConnectorStyle
         Any but ``STRAIGHT``.
-    seat : Seat
     radius_mm : float
         Of relief holes.
     attempt : int

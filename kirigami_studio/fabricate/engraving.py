@@ -59,7 +59,6 @@ def engraved(plan: CutPlan, text: str) -> CutPlan:
 
     Parameters
     ----------
-    plan : CutPlan
     text : str
         Letters without strokes are left out, and a note says so.
     """
@@ -87,18 +86,10 @@ def clearance_mm(kerf_mm: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """How far a name is from what is cut.
+    """How far a name is from what is cut."""
 
-    Attributes
-    ----------
-    distance_mm : float
-        Between centre lines.
-    where : (x, y), mm
-        On the name.
-    """
-
-    distance_mm: float
-    where: tuple[float, float]
+    distance_mm: float  #: between centre lines
+    where: tuple[float, float]  #: (x, y), mm; on the name
 
 
 def nearest_cut(names: Sequence[FloatArray], cuts: Sequence[FloatArray]) -> Clearance:

@@ -18,18 +18,10 @@ class Severity(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something worth knowing.
+    """Something worth knowing."""
 
-    Attributes
-    ----------
-    code : str
-        Names the kind of note, ``topic.what``; stable, so that programs and tests can tell notes apart.
-    fields : mapping of str to object
-        The values that its sentence names.
-    """
-
-    code: str
-    fields: Mapping[str, object] = field(default_factory=dict, hash=False)
+    code: str  #: names the kind of note, ``topic.what``; stable, so that programs and tests can tell notes apart
+    fields: Mapping[str, object] = field(default_factory=dict, hash=False)  #: the values that its sentence names
 
     @classmethod
     def of(cls, code: str, /, **fields: object) -> Note:
@@ -44,16 +36,10 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Problem(Note):
-    """A note with a weight and a place.
-
-    Attributes
-    ----------
-    severity : Severity
-    where : (x, y) or None, mm
-        A place to look at, in the frame of the plan or file; its sentence may name it as ``x`` and ``y``.
-    """
+    """A note with a weight and a place."""
 
     severity: Severity = Severity.ERROR
+    #: (x, y), mm; a place to look at, in the frame of the plan or file; its sentence may name it as ``x`` and ``y``.
     where: tuple[float, float] | None = None
 
     @classmethod

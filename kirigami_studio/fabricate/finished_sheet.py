@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -30,34 +32,18 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Ligament:
-    """The narrowest place between two cuts.
+    """The narrowest place between two cuts."""
 
-    Attributes
-    ----------
-    width_mm : float
-        Finished width; negative where the cuts run into each other.
-    where : (x, y), mm
-        Middle of the shortest connection.
-    """
-
-    width_mm: float
-    where: tuple[float, float]
+    width_mm: float  #: finished width; negative where the cuts run into each other
+    where: tuple[float, float]  #: (x, y), mm; middle of the shortest connection
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatedCut:
-    """Places that are cut more than once.
+    """Places that are cut more than once."""
 
-    Attributes
-    ----------
-    length_mm : float
-        Altogether.
-    where : (x, y) or None, mm
-        Middle of the longest stretch.
-    """
-
-    length_mm: float
-    where: tuple[float, float] | None
+    length_mm: float  #: altogether
+    where: tuple[float, float] | None  #: (x, y), mm; middle of the longest stretch
 
 
 def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[BaseGeometry], kerf_mm: float) -> list[Polygon]:
@@ -94,7 +80,6 @@ def smallest_ligament(
     cuts : sequence of LineString (or MultiLineString where none are joined), mm
     outline : geometry, mm, optional
         Centre line of the outline cut; cuts that cross it on purpose (edge cuts) are not measured against it.
-    kerf_mm : float
     joined : collection of (int, int)
         Cuts that meet on purpose, by number, the lower one first; there is no ligament between these two.
 
@@ -182,19 +167,9 @@ def _upper_bound(lines: npt.NDArray[np.object_], group: IntArray) -> float:
 
 def _groups(count: int, joined: Collection[tuple[int, int]]) -> IntArray:
     """Number of the group of each of ``count`` cuts (count,), where joined cuts are in one group."""
-    leader = list(range(count))
-
-    def find(index: int) -> int:
-        while leader[index] != index:
-            leader[index] = leader[leader[index]]
-            index = leader[index]
-        return index
-
-    for first, second in joined:
-        one, other = find(first), find(second)
-        leader[max(one, other)] = min(one, other)
-    found: IntArray = np.unique([find(index) for index in range(count)], return_inverse=True)[1]
-    return found
+    pairs = np.array(list(joined), dtype=np.intp).reshape(-1, 2).T
+    links = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), shape=(count, count))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def overlap_length(lines: Sequence[BaseGeometry]) -> float:

@@ -39,13 +39,7 @@ class Obstacle(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitted:
-    """A shape at a hinge, and the cut that it makes.
-
-    Attributes
-    ----------
-    ending : Ending
-    piece : CutPiece
-    """
+    """A shape at a hinge, and the cut that it makes."""
 
     ending: Ending
     piece: CutPiece

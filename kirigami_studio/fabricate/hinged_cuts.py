@@ -129,8 +129,6 @@ def hinged_cuts(
         Slits and edge cuts, pulled back from their junctions.
     tips : (H, 2) float, mm
         Where they end at each hinge.
-    hinge_seats : sequence of Seat
-    table : CutTable
     outline : Polygon, mm
         Inside the centre line of the outline cut.
     options, material, kerf_mm, overcut_mm
@@ -268,18 +266,10 @@ def _outwards(foot: FloatArray, outline: Polygon) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SlitEnd:
-    """What is cut at one hinge.
+    """What is cut at one hinge."""
 
-    Attributes
-    ----------
-    line : LineString, mm
-        The shape that the slit ends in, or the half of its last straight piece.
-    places : (P, 2) float, mm
-        The points of the shape, or the slit's tip.
-    """
-
-    line: LineString
-    places: FloatArray
+    line: LineString  #: mm; the shape that the slit ends in, or the half of its last straight piece
+    places: FloatArray  #: (P, 2), mm; the points of the shape, or the slit's tip
 
 
 def straight_end(piece: CutPiece, last: bool) -> SlitEnd:
@@ -302,13 +292,10 @@ def measured_widths(
     ----------
     ends : sequence of SlitEnd
         Of every hinge.
-    hinge_seats : sequence of Seat
-    table : CutTable
     pieces : sequence of CutPiece
         All cuts but the outline.
     outline : Polygon, mm
         Inside the centre line of the outline cut.
-    kerf_mm : float
 
     Returns
     -------

@@ -25,41 +25,22 @@ DOTTED_CIRCLE = "\N{DOTTED CIRCLE}"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lettering:
-    """A line of text.
+    """A line of text."""
 
-    Attributes
-    ----------
-    text : str
-        Without the letters and marks that have no strokes.
-    missing : str
-        Those letters and marks, each once, in their order; a mark stands on a dotted circle.
-    lines : tuple of (P, 2) float, heights of a capital
-        Open strokes in the order of writing, y up from the base line.
-    """
-
-    text: str
-    missing: str
+    text: str  #: without the letters and marks that have no strokes
+    missing: str  #: those letters and marks, each once, in their order; a mark stands on a dotted circle
+    #: tuple of (P, 2) float, heights of a capital; open strokes in the order of writing, y up from the base line.
     lines: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Engraving:
-    """A name where it is engraved.
-
-    Attributes
-    ----------
-    text : str
-    height_mm : float
-        Of its capitals.
-    panel : int
-        Row by row.
-    lines : tuple of (P, 2) float, mm
-        Open strokes in the frame of the plan, in the order of writing.
-    """
+    """A name where it is engraved."""
 
     text: str
-    height_mm: float
-    panel: int
+    height_mm: float  #: of its capitals
+    panel: int  #: row by row
+    #: tuple of (P, 2) float, mm; open strokes in the frame of the plan, in the order of writing.
     lines: tuple[FloatArray, ...]
 
 

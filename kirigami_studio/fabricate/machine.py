@@ -51,12 +51,12 @@ class MachineKind(StrEnum):
 
 
 _WORDS = {
-    MachineKind.UV: "UV or green pulsed laser",
-    MachineKind.CO2: "CO2 laser",
-    MachineKind.DIODE: "diode laser",
-    MachineKind.KNIFE: "cutting plotter",
+    MachineKind.UV: mark("UV or green pulsed laser"),
+    MachineKind.CO2: mark("CO2 laser"),
+    MachineKind.DIODE: mark("diode laser"),
+    MachineKind.KNIFE: mark("cutting plotter"),
     MachineKind.HAND: BY_HAND,
-    MachineKind.OTHER: "another machine",
+    MachineKind.OTHER: mark("another machine"),
 }
 #: What the names of machines of a kind have in them; the first that fits decides.
 _SIGNS = {

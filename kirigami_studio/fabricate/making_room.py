@@ -81,12 +81,10 @@ def with_room(
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Width of the flat sheet.
     spans : (H,) float, mm
         Finished widths and kerf.
-    table : CutTable
     removed : tuple of int
         Hinges without a connector.
     go_on : function

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import pairwise
 
@@ -220,6 +220,15 @@ class CutOptions:
             check_length("hinge.width_not_positive", width, hinge=hinge)
         if both := set(hinges) & set(self.removed):
             raise FabricationError("hinge.width_and_removed", hinge=min(both))
+
+    def without(self, hinges: Collection[int]) -> CutOptions:
+        """The same without choices for these connectors."""
+        widths = tuple(pair for pair in self.hinge_mm if pair[0] not in hinges)
+        return replace(self, hinge_mm=widths, removed=tuple(one for one in self.removed if one not in hinges))
+
+    def cut_through(self, hinges: Collection[int]) -> CutOptions:
+        """The same with these connectors removed, whatever width was asked for them."""
+        return replace(self.without(hinges), removed=tuple(sorted({*self.removed, *hinges})))
 
 
 def _ascending(numbers: Sequence[int]) -> bool:

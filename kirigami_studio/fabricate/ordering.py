@@ -29,25 +29,13 @@ RING_WIDTH = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Group:
-    """The paths of one layer.
-
-    Attributes
-    ----------
-    paths : list of CutPath
-    ways : list of Ways
-    start : complex, mm
-        Where the head waits.
-    centre : complex, mm
-        Of the sheet.
-    table : CutTable or None
-        The grid, if there is one.
-    """
+    """The paths of one layer."""
 
     paths: list[CutPath]
     ways: list[Ways]
-    start: complex
-    centre: complex
-    table: CutTable | None
+    start: complex  #: mm; where the head waits
+    centre: complex  #: mm; of the sheet
+    table: CutTable | None  #: the grid, if there is one
 
     @property
     def layer(self) -> Layer:
@@ -84,7 +72,6 @@ def in_cutting_order(
     ----------
     paths : sequence of CutPath
         In any order and direction; edge cuts from the mouth inwards.
-    order : CutOrder
     table : CutTable, optional
         The grid that ``cut`` of the paths refers to; without it rows are bands of the sheet.
 

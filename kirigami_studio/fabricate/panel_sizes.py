@@ -24,16 +24,10 @@ PART_SHARE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class SmallPlace:
-    """A size of a panel, and where.
-
-    Attributes
-    ----------
-    size_mm : float
-    where : (x, y), mm
-    """
+    """A size of a panel, and where."""
 
     size_mm: float
-    where: tuple[float, float]
+    where: tuple[float, float]  #: (x, y), mm
 
 
 def panels_in_mm(
@@ -43,7 +37,6 @@ def panels_in_mm(
 
     Parameters
     ----------
-    deployment : Deployment
     kept : sequence of (P, 2) float or None, unit cells
         What stays of every panel, no points where nothing does; empty for an untrimmed sheet.
     width_mm : float

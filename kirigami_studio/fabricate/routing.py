@@ -28,36 +28,22 @@ MOST_KICKED = 600
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ways:
-    """The ways in which one path may be cut.
+    """The ways in which one path may be cut."""
 
-    Attributes
-    ----------
-    entries, exits : (M,) complex, mm
-        Where each way begins and ends.
-    turnable : bool
-        Whether every way has its reverse among them.
-    """
-
+    #: entries, exits: (M,), mm; where each way begins and ends.
     entries: ComplexArray
     exits: ComplexArray
-    turnable: bool
+    turnable: bool  #: whether every way has its reverse among them
 
 
 @dataclass(frozen=True, slots=True)
 class CuttingOrder:
-    """Paths in the order of cutting, and the way in which each one is cut.
+    """Paths in the order of cutting, and the way in which each one is cut."""
 
-    Attributes
-    ----------
-    order, way : tuple of int
-        ``way[k]`` is that of path ``order[k]``.
-    length : float, mm
-        From the start through all of them, cuts left out.
-    """
-
+    #: order, way: ``way[k]`` is that of path ``order[k]``.
     order: tuple[int, ...]
     way: tuple[int, ...]
-    length: float
+    length: float  #: mm; from the start through all of them, cuts left out
 
 
 def shortest_tour(paths: Sequence[Ways], start: complex, kicked: bool = True) -> CuttingOrder:

@@ -26,29 +26,17 @@ class CutTable:
 
     Cuts are numbered with the slits first, in row order of their voids, then the edge cuts: left and right side from
     the top, top and bottom side from the left.  Every cut end on a T-junction is one hinge.
-
-    Attributes
-    ----------
-    ends : (C, 2) int
-        Node numbers of both ends; an edge cut starts at the sheet's edge.
-    slit_count : int
-        m n; cut c < slit_count is the slit of void ``divmod(c, n)``.
-    hinge_cut, hinge_end : (H,) int
-        The cut and the end (0 or 1) that a hinge shortens.
-    hinge_through : (H,) int
-        The cut that this end rests on, or ``SHEET_EDGE``.
-    hinge_node : (H,) int
-        The node at the T-junction; no two hinges share one.
     """
 
     rows: int
     columns: int
-    ends: IntArray
-    slit_count: int
+    ends: IntArray  #: (C, 2); node numbers of both ends; an edge cut starts at the sheet's edge
+    slit_count: int  #: m n; cut c < slit_count is the slit of void ``divmod(c, n)``
+    #: hinge_cut, hinge_end: (H,); the cut and the end (0 or 1) that a hinge shortens.
     hinge_cut: IntArray
     hinge_end: IntArray
-    hinge_through: IntArray
-    hinge_node: IntArray
+    hinge_through: IntArray  #: (H,); the cut that this end rests on, or ``SHEET_EDGE``
+    hinge_node: IntArray  #: (H,); the node at the T-junction; no two hinges share one
 
     @property
     def cut_count(self) -> int:
@@ -119,7 +107,6 @@ def edge_sides(deployment: Deployment, width_mm: float) -> FloatArray:
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         As for :func:`sheet_lines`.
 
@@ -158,7 +145,6 @@ def sheet_lines(deployment: Deployment, width_mm: float) -> tuple[FloatArray, tu
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Finished width of the sheet; the height follows from its shape.
 

@@ -35,26 +35,13 @@ class StrainFigure(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Survival:
-    """Strain and limit of the connector that is nearest to breaking, by the figure believed.
+    """Strain and limit of the connector that is nearest to breaking, by the figure believed."""
 
-    Attributes
-    ----------
-    strain : float
-        Of the figure that is believed.
-    figure : StrainFigure
-    thinness : float
-        Thickness of the sheet over the connector's width.
-    limit : float
-        Strain at which it breaks: elongation at break in the plane, in bending out of it.
-    yields_at : float
-        Strain above which it stays bent; 0 where the material has no such strain.
-    """
-
-    strain: float
+    strain: float  #: of the figure that is believed
     figure: StrainFigure
-    thinness: float
-    limit: float
-    yields_at: float
+    thinness: float  #: thickness of the sheet over the connector's width
+    limit: float  #: strain at which it breaks: elongation at break in the plane, in bending out of it
+    yields_at: float  #: strain above which it stays bent; 0 where the material has no such strain
 
     @property
     def breaks(self) -> bool:
@@ -97,7 +84,6 @@ def used_up(material: Material, width_mm: FloatArray, in_plane: FloatArray, out_
 
     Parameters
     ----------
-    material : Material
     width_mm : (H,) float
     in_plane, out_of_plane : (..., H) float
         Both figures of their strain.

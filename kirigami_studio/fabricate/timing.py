@@ -29,19 +29,13 @@ DOUBT = 2.0
 
 @dataclass(frozen=True, slots=True)
 class CutTimes:
-    """Seconds for a job, all passes together.
+    """Seconds for a job, all passes together."""
 
-    Attributes
-    ----------
-    cut, travel, extra : float
-        With the beam on, between cuts, and for switching it on and off.
-    low, high : float
-        What the whole job may take, see the assumptions of this module.
-    """
-
+    #: cut, travel, extra: with the beam on, between cuts, and for switching it on and off.
     cut: float
     travel: float
     extra: float
+    #: low, high: what the whole job may take, see the assumptions of this module.
     low: float
     high: float
 
@@ -73,20 +67,11 @@ def travel_lengths(paths: Sequence[CutPath]) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edges:
-    """The edges of all paths of a job in the order of cutting.
+    """The edges of all paths of a job in the order of cutting."""
 
-    Attributes
-    ----------
-    path : (E,) int
-        Place of the path that an edge belongs to.
-    length : (E,) float, mm
-        Arcs as arcs.
-    turn : (E,) float, radians
-        How far the head turns before an edge, without sign; infinite at the start of a path.
-    """
-
-    path: IntArray
-    length: FloatArray
+    path: IntArray  #: (E,); place of the path that an edge belongs to
+    length: FloatArray  #: (E,), mm; arcs as arcs
+    #: (E,), radians; how far the head turns before an edge, without sign; infinite at the start of a path.
     turn: FloatArray
 
     @classmethod

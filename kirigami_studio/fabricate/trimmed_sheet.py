@@ -59,26 +59,13 @@ LONGEST_NOTCH = 15.0
 
 @dataclass(frozen=True, eq=False)
 class CutPiece:
-    """What remains of one cut.
+    """What remains of one cut."""
 
-    Attributes
-    ----------
-    cut : int
-        Number in :class:`CutTable`.
-    points : (P, 2) float, mm
-    opens : bool
-        Whether it crosses the outline; it then begins outside.
-    bulges : (P,) float or None
-        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`.
-    closed : bool
-        Whether it is a relief hole; its first point is not repeated.
-    """
-
-    cut: int
-    points: FloatArray
-    opens: bool
-    bulges: FloatArray | None = None
-    closed: bool = False
+    cut: int  #: number in :class:`CutTable`
+    points: FloatArray  #: (P, 2), mm
+    opens: bool  #: whether it crosses the outline; it then begins outside
+    bulges: FloatArray | None = None  #: (P,); arcs, see :mod:`~kirigami_studio.fabricate.cut_path`
+    closed: bool = False  #: whether it is a relief hole; its first point is not repeated
 
     @cached_property
     def line(self) -> LineString:
@@ -91,7 +78,6 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
 
     Parameters
     ----------
-    deployment : Deployment
     kept : sequence of (P, 2) float or None, unit cells
         What stays of every panel, row by row, in the compact sheet's frame; None for a whole one.
     width_mm : float
@@ -125,7 +111,6 @@ def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table
     ----------
     deployment, kept
         As for :func:`kept_area`.
-    table : CutTable
     """
     nodes = deployment.topology.panel_nodes.reshape(-1, 4)
     reached = np.ones(nodes.shape, dtype=np.bool_)
@@ -206,10 +191,8 @@ def remaining_cuts(
     ----------
     lines : (C, 2, 2) float, mm
         Shortened cuts; edge cuts begin at the untrimmed sheet's edge.
-    table : CutTable
     outline : Polygon, mm
         As returned by :func:`outline_around`.
-    kerf_mm, overcut_mm : float
     lost : sequence of int
         Hinges that were given up.
 

@@ -110,7 +110,6 @@ def write_atomically(path: Path, content: bytes, verify: Callable[[Path], None] 
     ----------
     path : Path
         Where the file shall appear; missing folders are made.
-    content : bytes
     verify : callable, optional
         Reads the temporary file, which has the same extension, before it is renamed; raises ExportError when the file
         is not what was meant.

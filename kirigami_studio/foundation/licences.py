@@ -31,25 +31,14 @@ LONGEST_NAME = 60
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """Something that is shipped under a licence.
+    """Something that is shipped under a licence."""
 
-    Attributes
-    ----------
-    name, version : str
-        Version is empty for what has none.
-    licence : str
-        An SPDX expression, or what the component's makers call it.
-    homepage : str
-        Empty where it is not known.
-    text : str
-        The whole licence, or all of them.
-    """
-
+    #: name, version: version is empty for what has none.
     name: str
     version: str
-    licence: str
-    homepage: str
-    text: str
+    licence: str  #: an SPDX expression, or what the component's makers call it
+    homepage: str  #: empty where it is not known
+    text: str  #: the whole licence, or all of them
 
 
 def components() -> tuple[Component, ...]:

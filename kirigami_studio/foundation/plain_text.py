@@ -30,8 +30,8 @@ def plain_line(text: str, longest: int = LONGEST_NAME) -> str:
     return line[: longest - len(ELLIPSIS)].rstrip() + ELLIPSIS
 
 
-def plain_lines(text: str, longest: int = LONGEST_NOTE) -> str:
-    """A note from outside in lines, of at most ``longest`` printable characters in all."""
-    if len(text) > longest:
-        text = text[: longest - len(ELLIPSIS)].rstrip() + ELLIPSIS
+def plain_lines(text: str) -> str:
+    """A note from outside in lines, of at most ``LONGEST_NOTE`` printable characters in all."""
+    if len(text) > LONGEST_NOTE:
+        text = text[: LONGEST_NOTE - len(ELLIPSIS)].rstrip() + ELLIPSIS
     return "\n".join(printable(line) for line in text.splitlines())

@@ -32,17 +32,10 @@ MOST_LOST = 3
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """Who does pieces of work.
+    """Who does pieces of work."""
 
-    Attributes
-    ----------
-    processes : int
-        Pieces at a time; with 1 everything is done in this process, in order.
-    scheduler : str
-        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``: its workers then do everything.  Empty for none.
-    """
-
-    processes: int = 1
+    processes: int = 1  #: pieces at a time; with 1 everything is done in this process, in order
+    #: Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``: its workers then do everything.  Empty for none.
     scheduler: str = ""
 
 
@@ -61,7 +54,6 @@ def results_of(
         A function of a module, or a partial of one: other processes have to find it.
     items : iterator
         May be endless: it is read no further than there is somebody to do it.
-    workers : Workers
 
     Yields
     ------

@@ -43,84 +43,49 @@ class SpecialValue:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """One setting; sentences are English, and marked for translation if the window shows them.
+    """One setting; sentences are English, and marked for translation if the window shows them."""
 
-    Attributes
-    ----------
-    about : str
-        One or two sentences: the tooltip and, unless there is ``help``, the help on the command line.  ``{least}``,
-        ``{most}`` (of the range), ``{low}`` and ``{high}`` (of the window's field) are filled in.
-    least, most : float or None
-        Range of a number; without one it has no end.
-    above_least, below_most : bool
-        Whether that end is excluded.
-    may_be_empty : bool
-        Whether a text may have no letters.
-    code : str
-        Code of the problem with a value that does not fit; its sentence may name the setting's ``name``, ``value``,
-        ``kind``, ``least``, ``most`` and ``choices``, and the value by the setting's own name.
-    error : type of KirigamiError
-    always_written : bool
-        Whether files hold it even where it is the default, and have to; others are left out then.
-    undo : str
-        What the Undo menu calls a change to it.
-    label : str
-        Caption in the window, with its mnemonic; a setting without one has no field that is made by itself.
-    spoken : str
-        Name for screen readers; the label without one.
-    widget : str
-        Object name of its field; the name of the setting without one.
-    choices : tuple of Choice
-        Offered in the window, in this order.
-    scale : float
-        Its field in the window shows this many times the value.
-    low, high : float or None
-        Range of that field, in what it shows; ``least`` and ``most`` without one.
-    step, decimals, unit
-        Of that field, in what it shows.
-    special : SpecialValue or None
-    option : str
-        Name on the command line, such as ``--k``; without one it has none.  An angle whose option ends with ``-deg`` is
-        read in degrees there, and in radians everywhere else.
-    keyword : str
-        Name in Python and among the arguments, where the field's own one is another setting's, too.
-    metavar, help : str
-        Of that option, where they are not its name and ``about``.
-    alone : object
-        Value of the option without a value; None where it needs one.
-    switched : bool
-        Whether the option, of a number, only chooses between its default and 0.
-    open_unless_given : bool
-        Whether command line and Python API leave it open, as None, where it is not given: another setting decides it.
-    """
-
+    #: One or two sentences: the tooltip and, unless there is ``help``, the help on the command line.  ``{least}``,
+    #: ``{most}`` (of the range), ``{low}`` and ``{high}`` (of the window's field) are filled in.
     about: str = ""
+    #: least, most: range of a number; without one it has no end.
     least: float | None = None
     most: float | None = None
+    #: above_least, below_most: whether that end is excluded.
     above_least: bool = False
     below_most: bool = False
-    may_be_empty: bool = False
+    may_be_empty: bool = False  #: whether a text may have no letters
+    #: Code of the problem with a value that does not fit; its sentence may name the setting's ``name``, ``value``,
+    #: ``kind``, ``least``, ``most`` and ``choices``, and the value by the setting's own name.
     code: str = "settings.does_not_fit"
     error: type[KirigamiError] = UsageError
+    #: Whether files hold it even where it is the default, and have to; others are left out then.
     always_written: bool = False
-    undo: str = ""
+    undo: str = ""  #: what the Undo menu calls a change to it
+    #: Caption in the window, with its mnemonic; a setting without one has no field that is made by itself.
     label: str = ""
-    spoken: str = ""
-    widget: str = ""
-    choices: tuple[Choice, ...] = ()
+    spoken: str = ""  #: name for screen readers; the label without one
+    widget: str = ""  #: object name of its field; the name of the setting without one
+    choices: tuple[Choice, ...] = ()  #: offered in the window, in this order
+    #: low, high: range of that field, in what it shows; ``least`` and ``most`` without one.
     low: float | None = None
     high: float | None = None
+    #: step, decimals, unit: of that field, in what it shows.
     step: float = 1.0
     decimals: int = 2
     unit: str = ""
-    scale: float = 1.0
+    scale: float = 1.0  #: its field in the window shows this many times the value
     special: SpecialValue | None = None
+    #: Name on the command line, such as ``--k``; without one it has none.  An angle whose option ends with ``-deg`` is
+    #: read in degrees there, and in radians everywhere else.
     option: str = ""
-    keyword: str = ""
+    keyword: str = ""  #: name in Python and among the arguments, where the field's own one is another setting's, too
+    #: metavar, help: of that option, where they are not its name and ``about``.
     metavar: str = ""
     help: str = ""
-    alone: object = None
-    switched: bool = False
+    alone: object = None  #: Value of the option without a value; None where it needs one.
+    switched: bool = False  #: whether the option, of a number, only chooses between its default and 0
+    #: Whether command line and Python API leave it open, as None, where it is not given: another setting decides it.
     open_unless_given: bool = False
 
     @property
@@ -140,24 +105,12 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class NamedSetting:
-    """A setting with what its field says.
-
-    Attributes
-    ----------
-    name : str
-    kind : type
-        ``bool``, ``int``, ``float``, ``str`` or an enumeration; anything else checks itself.
-    optional : bool
-        Whether None is a value of it.
-    default : object
-        ``dataclasses.MISSING`` without one.
-    setting : Setting
-    """
+    """A setting with what its field says."""
 
     name: str
-    kind: type
-    optional: bool
-    default: Any
+    kind: type  #: ``bool``, ``int``, ``float``, ``str`` or an enumeration; anything else checks itself
+    optional: bool  #: whether None is a value of it
+    default: Any  #: ``dataclasses.MISSING`` without one
     setting: Setting
 
     @property

@@ -32,22 +32,12 @@ HALVINGS = 30
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Conditions:
-    """Conditions rows u >= asked on a step u (V,).
+    """Conditions rows u >= asked on a step u (V,)."""
 
-    Attributes
-    ----------
-    number : (C,) int
-        Which conditions they are.
-    rows : (C, V) float
-    asked : (C,) float
-    give : (C,) float
-        By how much each gives way for a multiplier of 1.
-    """
-
-    number: IntArray
-    rows: FloatArray
-    asked: FloatArray
-    give: FloatArray
+    number: IntArray  #: (C,); which conditions they are
+    rows: FloatArray  #: (C, V)
+    asked: FloatArray  #: (C,)
+    give: FloatArray  #: (C,); by how much each gives way for a multiplier of 1
 
     @classmethod
     def none(cls, variables: int) -> Conditions:
@@ -128,7 +118,6 @@ def shortest_step(
 
     Parameters
     ----------
-    variables : int
     violated : callable
         The conditions that a step (V,) violates.
 

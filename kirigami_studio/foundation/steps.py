@@ -30,18 +30,7 @@ def single(work: Callable[[Cancel], T]) -> Steps[T]:
 
 
 def result_of(steps: Generator[object, None, Result]) -> Result:
-    """Take all steps in one go.
-
-    Parameters
-    ----------
-    steps : generator
-        Its reports are dropped.
-
-    Returns
-    -------
-    result
-        What it returns in the end.
-    """
+    """Take all steps in one go, drop their reports, and return the result."""
     while True:
         try:
             next(steps)

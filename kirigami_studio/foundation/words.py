@@ -127,11 +127,6 @@ def choose(*wanted: str, decimal: str = "") -> str:
         Codes such as ``de`` or ``de_AT``.
     decimal : str
         The sign before decimals; the language's own if there is none.
-
-    Returns
-    -------
-    language : str
-        The code of the chosen language.
     """
     language, path = next((found for code in wanted if (found := _find(code)) is not None), (ENGLISH, None))
     if path is None:

@@ -19,18 +19,11 @@ SUBSAMPLES = 6
 
 @dataclass(frozen=True, slots=True)
 class ConditionLayout:
-    """How many numbers describe a target.
+    """How many numbers describe a target."""
 
-    Attributes
-    ----------
-    contour_points : int
-        Points at equal arc length, two coordinates each, counter-clockwise from the positive x axis.
-    rays : int
-        Outer radii at equal angles, counter-clockwise from the positive x axis.
-    """
-
+    #: Points at equal arc length, two coordinates each, counter-clockwise from the positive x axis.
     contour_points: int = 96
-    rays: int = 128
+    rays: int = 128  #: outer radii at equal angles, counter-clockwise from the positive x axis
 
     @property
     def width(self) -> int:

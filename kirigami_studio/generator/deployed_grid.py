@@ -32,23 +32,13 @@ from kirigami_studio.lattice.symmetry import GridSymmetry, Symmetry
 
 @dataclass(frozen=True, slots=True)
 class DeployedGrid:
-    """The grid of a sheet and the angle at which it shows the target.
-
-    Attributes
-    ----------
-    rows, columns : int
-    phi : float, radians, in [0, pi)
-    symmetry : Symmetry, optional
-        What all fields keep.
-    free_rim : bool
-        Corrections move the mouths of the rim as well.
-    """
+    """The grid of a sheet and the angle at which it shows the target."""
 
     rows: int
     columns: int
-    phi: float = 0.0
-    symmetry: Symmetry | None = None
-    free_rim: bool = False
+    phi: float = 0.0  #: radians, in [0, pi)
+    symmetry: Symmetry | None = None  #: what all fields keep
+    free_rim: bool = False  #: corrections move the mouths of the rim as well
 
     @property
     def cells(self) -> int:
@@ -81,7 +71,6 @@ class GridTransfer:
         The network's grid.
     deployed : DeployedGrid
         Of the sheet.
-    device : torch.device
     """
 
     def __init__(self, own: tuple[int, int], deployed: DeployedGrid, device: torch.device) -> None:

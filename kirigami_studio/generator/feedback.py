@@ -36,18 +36,12 @@ CHUNK = 32
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What a network sees of fields.
+    """What a network sees of fields."""
 
-    Attributes
-    ----------
-    features : (B, F) tensor
-        Outline stations, displacements both ways and the direction on the network's grid, each near unit variance.
-    direction : (B, m * n + R) tensor
-        Gauss-Newton change of the designs; empty without it.
-    """
-
+    #: (B, F); outline stations, displacements both ways and the direction on the network's grid, each near unit
+    #: variance.
     features: Tensor
-    direction: Tensor
+    direction: Tensor  #: (B, m * n + R); Gauss-Newton change of the designs; empty without it
 
 
 class Feedback:
@@ -59,7 +53,6 @@ class Feedback:
         The network's grid.
     grid : DeployedGrid
         Where the fields lie.
-    device : torch.device
     """
 
     def __init__(self, own: tuple[int, int], grid: DeployedGrid, device: torch.device) -> None:

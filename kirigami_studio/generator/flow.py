@@ -15,18 +15,11 @@ from kirigami_studio.generator.velocity import Code, Velocity
 
 @dataclass(frozen=True, slots=True)
 class LateStart:
-    """A flow that starts near a design and not from noise alone (as SDEdit does, Meng et al. 2021, 2108.01073).
+    """A flow that starts near a design and not from noise alone (as SDEdit does, Meng et al. 2021, 2108.01073)."""
 
-    Attributes
-    ----------
-    time : float, in [0, 1)
-        When it starts: the state is then the straight path's, (1 - time) noise + time design.
-    remainder : (1, m * n) tensor
-        What the sheet's design has and the network's own grid cannot hold, taken ``time`` times: it is added to the
-        result unchanged.
-    """
-
-    time: float
+    time: float  #: in [0, 1); when it starts: the state is then the straight path's, (1 - time) noise + time design
+    #: (1, m * n); what the sheet's design has and the network's own grid cannot hold, taken ``time`` times: it is added
+    #: to the result unchanged.
     remainder: Tensor
 
 
@@ -35,7 +28,6 @@ def integrate(network: Velocity, start: Tensor, code: Code, steps: int, late: La
 
     Parameters
     ----------
-    network : Velocity
     start : (B, cells) tensor
         Fields of the network's own grid at t = 0, or at the time of ``late``.
     code : Code of B targets, the network's own

@@ -23,30 +23,14 @@ DAMPING = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Residuals:
-    """Distances between outlines of L vertices and their targets, R of them each.
+    """Distances between outlines of L vertices and their targets, R of them each."""
 
-    Attributes
-    ----------
-    count : int
-        L.
-    edge : (B, R) int tensor
-        Each residual moves a place between vertex ``edge`` and the next one,
-    share : (B, R) tensor
-        this far along,
-    direction : (B, R, 2) tensor
-        in this direction,
-    distance : (B, R) tensor, unit-area lengths
-        by this much.
-    weight : (B, R) tensor
-        Boundary length that each stands for, down-weighted beyond the trusted distance.
-    """
-
-    count: int
-    edge: Tensor
-    share: Tensor
-    direction: Tensor
-    distance: Tensor
-    weight: Tensor
+    count: int  #: L
+    edge: Tensor  #: (B, R) int tensor; each residual moves a place between vertex ``edge`` and the next one,
+    share: Tensor  #: (B, R); this far along,
+    direction: Tensor  #: (B, R, 2); in this direction,
+    distance: Tensor  #: (B, R), unit-area lengths; by this much
+    weight: Tensor  #: (B, R); boundary length that each stands for, down-weighted beyond the trusted distance
 
     @classmethod
     def of(cls, outline: Tensor, loop: Tensor, out: Tensor, back: Tensor, place: Tensor) -> Residuals:

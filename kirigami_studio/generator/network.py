@@ -22,50 +22,27 @@ GRID_FEATURES = 5
 
 @dataclass(frozen=True, slots=True)
 class NetworkShape:
-    """Everything needed to rebuild a network for its weights.
+    """Everything needed to rebuild a network for its weights."""
 
-    Attributes
-    ----------
-    rows, columns : int
-        Grid of the ratio fields it draws.
-    width : int
-        Channels of the residual stream.
-    hidden : int
-        Channels inside a block.
-    blocks : int
-    time_features : int
-        Fourier features of t (even).
-    contour_points, rays : int
-        See :class:`ConditionLayout`.
-    loop_points : int
-        Points of the target boundary that feedback measures against, see ``feedback``; 0 leaves feedback out.
-    z_scale : float
-        Standard deviation of the source noise; z is divided by it at the input.
-    direction : bool
-        Feedback, where there is any, gives the Gauss-Newton direction too, and the network says how far corrections
-        follow it; without, they follow it all the way.
-    preference : bool
-        The network takes a preference between match (0) and regularity (1).
-    sheets : bool
-        The network is given the sheet's grid and angle, which it may have met in training.
-    rims : bool
-        It is also given whether the rim is free, and has met free rims in training.
-    """
-
+    #: rows, columns: grid of the ratio fields it draws.
     rows: int = 10
     columns: int = 10
-    width: int = 384
-    hidden: int = 768
+    width: int = 384  #: channels of the residual stream
+    hidden: int = 768  #: channels inside a block
     blocks: int = 6
-    time_features: int = 64
+    time_features: int = 64  #: Fourier features of t (even)
+    #: contour_points, rays: see :class:`ConditionLayout`.
     contour_points: int = 96
     rays: int = 128
+    #: Points of the target boundary that feedback measures against, see ``feedback``; 0 leaves feedback out.
     loop_points: int = 192
-    z_scale: float = 0.5
+    z_scale: float = 0.5  #: standard deviation of the source noise; z is divided by it at the input
+    #: Feedback, where there is any, gives the Gauss-Newton direction too, and the network says how far corrections
+    #: follow it; without, they follow it all the way.
     direction: bool = False
-    preference: bool = False
-    sheets: bool = False
-    rims: bool = False
+    preference: bool = False  #: the network takes a preference between match (0) and regularity (1)
+    sheets: bool = False  #: the network is given the sheet's grid and angle, which it may have met in training
+    rims: bool = False  #: it is also given whether the rim is free, and has met free rims in training
 
     @property
     def feedback_width(self) -> int:
@@ -82,26 +59,13 @@ class NetworkShape:
 
 @dataclass(frozen=True, slots=True)
 class TargetCode:
-    """A batch of targets as the network uses them, computed once for all samples and steps.
+    """A batch of targets as the network uses them, computed once for all samples and steps."""
 
-    Attributes
-    ----------
-    encoded : (B, blocks * hidden) tensor
-    loop : (B, loop_points, 2) tensor
-        Target boundary for feedback.
-    transfer : GridTransfer
-        Between the network's grid and the grid that all of them are for.
-    feedback : Feedback, optional
-        The exact geometry of that grid; missing where the network does not look at it.
-    variation_cost : (B,) tensor
-        What corrections take TV(x) / (m n) to cost, see ``gauss_newton``.
-    """
-
-    encoded: Tensor
-    loop: Tensor
-    transfer: GridTransfer
-    feedback: Feedback | None
-    variation_cost: Tensor
+    encoded: Tensor  #: (B, blocks * hidden)
+    loop: Tensor  #: (B, loop_points, 2); target boundary for feedback
+    transfer: GridTransfer  #: between the network's grid and the grid that all of them are for
+    feedback: Feedback | None  #: the exact geometry of that grid; missing where the network does not look at it
+    variation_cost: Tensor  #: (B,); what corrections take TV(x) / (m n) to cost, see ``gauss_newton``
 
     def picked(self, rows: slice) -> TargetCode:
         """Some of the targets."""

@@ -58,20 +58,12 @@ def one_pose(index: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Near:
-    """A design that samples are to be like.
-
-    Attributes
-    ----------
-    field : RatioField
-    angle : float, radians
-        Rotation that brings the target into the pose in which the design shows it; all samples see it so.
-    nearness : float, in [0, 1)
-        Time of the flow at which samples start from the design.
-    """
+    """A design that samples are to be like."""
 
     field: RatioField
+    #: radians; rotation that brings the target into the pose in which the design shows it; all samples see it so.
     angle: float
-    nearness: float
+    nearness: float  #: in [0, 1); time of the flow at which samples start from the design
 
 
 def sample_fields(
@@ -95,12 +87,9 @@ def sample_fields(
 
     Parameters
     ----------
-    model : Model
-    target : Outline
     grid : (rows, columns)
         Other grids than the network's are reached by interpolation, see ``deployed_grid``; the network sees their
         exact geometry.
-    k, seed, steps : int
     phi : float, radians, in [0, pi)
     poses : callable
         Candidate's number -> rotation of the target, radians; ``one_pose`` shows it to all of them in one pose.

@@ -183,37 +183,21 @@ HEADS = 2
 class UNetShape:
     """Everything needed to rebuild a U-Net for its weights; the paper's by default.
 
-    Attributes
-    ----------
-    rows, columns : int
-        Grid of the ratio fields it draws.
-    channels : tuple of int
-        Of each level, finest first; even numbers of at least 4.
-    residuals : int
-        Residual blocks a level.
-    latent : int
-        Pixels each way of the finest level; every further level halves them.
-    mask : int
-        Pixels each way of the target's mask; a multiple of ``latent``.
-    dropout : float
-        Of attention weights, in training.
-    z_scale : float
-        Standard deviation of the source noise; z is divided by it at the input.
-
     Raises
     ------
     UsageError
         Numbers that make no network.
     """
 
+    #: rows, columns: grid of the ratio fields it draws.
     rows: int = 10
     columns: int = 10
-    channels: tuple[int, ...] = (64, 128, 256, 384)
-    residuals: int = 2
-    latent: int = 32
-    mask: int = MASK_SIZE
-    dropout: float = 0.1
-    z_scale: float = 0.5
+    channels: tuple[int, ...] = (64, 128, 256, 384)  #: of each level, finest first; even numbers of at least 4
+    residuals: int = 2  #: residual blocks a level
+    latent: int = 32  #: pixels each way of the finest level; every further level halves them
+    mask: int = MASK_SIZE  #: pixels each way of the target's mask; a multiple of ``latent``
+    dropout: float = 0.1  #: of attention weights, in training
+    z_scale: float = 0.5  #: standard deviation of the source noise; z is divided by it at the input
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "channels", tuple(self.channels))
@@ -244,18 +228,10 @@ class UNetShape:
 
 @dataclass(frozen=True, slots=True)
 class MaskCode:
-    """A batch of targets as the U-Net uses them, computed once for all samples and steps.
+    """A batch of targets as the U-Net uses them, computed once for all samples and steps."""
 
-    Attributes
-    ----------
-    hint : (B, channels[0], latent, latent) tensor
-        The encoded mask, which the ControlNet branch adds to the field.
-    transfer : GridTransfer
-        Between the network's grid and the grid that the targets are for.
-    """
-
-    hint: Tensor
-    transfer: GridTransfer
+    hint: Tensor  #: (B, channels[0], latent, latent); the encoded mask, which the ControlNet branch adds to the field
+    transfer: GridTransfer  #: between the network's grid and the grid that the targets are for
 
     def repeated(self, count: int) -> MaskCode:
         """Every target ``count`` times in a row."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path, PurePath
@@ -18,15 +17,14 @@ from typing import Any
 import torch
 from safetensors import SafetensorError
 from safetensors.torch import load as load_tensors
-from safetensors.torch import save as save_tensors
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
-from kirigami_studio.foundation.files import read_at_most, write_atomically
+from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.network import NetworkShape
-from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, backbone_of, network_of, shape_from_json
+from kirigami_studio.generator.velocity import PERCEPTRON, Code, Network, network_of, shape_from_json
 
 MANIFEST = "manifest.json"
 FORMAT = 1
@@ -39,22 +37,12 @@ UNFIT = (SafetensorError, ArithmeticError, LookupError, RuntimeError, TypeError,
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A network ready to sample.
-
-    Attributes
-    ----------
-    variant : str
-    network : Network
-        In evaluation mode, float32.
-    digest : str
-        SHA-256 of the weight file, recorded in every project and export.
-    preference : float
-        What the variant prefers, from match (0) to regularity (1), where its network has the choice.
-    """
+    """A network ready to sample."""
 
     variant: str
-    network: Network
-    digest: str
+    network: Network  #: in evaluation mode, float32
+    digest: str  #: SHA-256 of the weight file, recorded in every project and export
+    #: What the variant prefers, from match (0) to regularity (1), where its network has the choice.
     preference: float = 0.0
 
     @property
@@ -86,20 +74,7 @@ def variants(folder: Path | None = None) -> tuple[str, ...]:
     ModelError
         The manifest is missing or damaged.
     """
-    return tuple(_manifest(folder or model_folder())["variants"])
-
-
-def variants_about(folder: Path) -> dict[str, dict[str, Any]]:
-    """What is recorded of the variants in a folder, by name: how each was trained; nothing where no manifest is.
-
-    Raises
-    ------
-    ModelError
-        The manifest is damaged.
-    """
-    if not (folder / MANIFEST).exists():
-        return {}
-    return {variant: entry["about"] for variant, entry in _manifest(folder)["variants"].items()}
+    return tuple(manifest_of(folder or model_folder())["variants"])
 
 
 def digest_of(variant: str, folder: Path | None = None) -> str:
@@ -140,73 +115,14 @@ def load_model(variant: str, folder: Path | None = None) -> Model:
     return Model(variant, network.eval().requires_grad_(False), digest, float(entry.get("preference", 0.0)))
 
 
-def load_weights(path: Path) -> Model:
-    """Load a weights file that lies beside its manifest, as the first variant that it serves.
+def manifest_of(folder: Path) -> dict[str, Any]:
+    """The manifest of a folder.
 
     Raises
     ------
     ModelError
-        The manifest does not know the file; else as :func:`load_model`.
+        It is missing, damaged or of another format.
     """
-    for variant, entry in _manifest(path.parent)["variants"].items():
-        if entry["file"] == path.name:
-            return load_model(variant, path.parent)
-    raise ModelError("model.weights_not_listed", folder=path.parent, file=path.name)
-
-
-def store_model(variant: str, network: Network, folder: Path, about: dict[str, object]) -> Path:
-    """Write weights in half precision and enter them in the folder's manifest as one variant.
-
-    Parameters
-    ----------
-    variant : str
-    network : Network
-    folder : Path
-    about : dict
-        What the model card's table needs: how it was trained, what it scored.
-
-    Returns
-    -------
-    path : Path
-        The safetensors file.
-    """
-    return store_variants(variant, {variant: 0.0}, network, folder, about)
-
-
-def store_variants(
-    name: str, preferences: Mapping[str, float], network: Network, folder: Path, about: dict[str, object]
-) -> Path:
-    """Like :func:`store_model`, for one network that serves several variants by the preference it is given.
-
-    Parameters
-    ----------
-    name : str
-        Of the file, without its ending.
-    preferences : mapping of str to float
-        Variants and what they prefer, from match (0) to regularity (1).
-    network, folder, about
-        As in :func:`store_model`.
-    """
-    tensors = {key: value.detach().cpu().half().contiguous() for key, value in network.state_dict().items()}
-    content = save_tensors(tensors, metadata={"format": str(FORMAT)})
-    path = folder / f"{name}.safetensors"
-    write_atomically(path, content)
-    empty: dict[str, Any] = {"format": FORMAT, "variants": {}}
-    manifest = _manifest(folder) if (folder / MANIFEST).exists() else empty
-    for variant, preference in preferences.items():
-        manifest["variants"][variant] = {
-            "file": path.name,
-            "sha256": hashlib.sha256(content).hexdigest(),
-            "backbone": backbone_of(network.shape),
-            "preference": preference,
-            "shape": network.shape.to_json(),
-            "about": about,
-        }
-    write_atomically(folder / MANIFEST, (json.dumps(manifest, indent=2) + "\n").encode())
-    return path
-
-
-def _manifest(folder: Path) -> dict[str, Any]:
     try:
         manifest = json.loads(read_at_most(folder / MANIFEST, LARGEST_MANIFEST))
     except (OSError, ValueError, RecursionError) as error:
@@ -239,7 +155,7 @@ def _is_entry(entry: object) -> bool:
 
 
 def _entry(variant: str, folder: Path) -> dict[str, Any]:
-    offered: dict[str, dict[str, Any]] = _manifest(folder)["variants"]
+    offered: dict[str, dict[str, Any]] = manifest_of(folder)["variants"]
     if variant not in offered:
         raise UsageError("model.unknown_variant", variant=variant, choices=", ".join(offered))
     return offered[variant]

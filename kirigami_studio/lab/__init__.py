@@ -5,3 +5,8 @@ that the paper compares with; ``training`` makes weights; ``benchmark`` makes fi
 play the window for pictures; ``cli`` runs all of them.  The product finds their commands by name and never imports
 them; a frozen program has none of them.
 """
+
+from kirigami_studio.foundation.sentences import SENTENCES
+from kirigami_studio.lab import sentences
+
+SENTENCES.update(sentences.SENTENCES)

@@ -56,20 +56,14 @@ def rotate(points: FloatArray, angle: float) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Deployment:
-    """One design at every angle.
-
-    Attributes
-    ----------
-    sheet : Sheet
-    compact : (N, 2) float, unit cells
-        Node positions at phi = pi, numbered as in :class:`Topology`; a rectangle has its top left corner at (0, 0),
-        x right, y up.
-    even_part, odd_part : (N, 2) float, unit cells
-        U and V of the module's formula, relative to the root node (top left corner of the sheet).
-    """
+    """One design at every angle."""
 
     sheet: Sheet
+    #: (N, 2), unit cells; node positions at phi = pi, numbered as in :class:`Topology`; a rectangle has its top left
+    #: corner at (0, 0), x right, y up.
     compact: FloatArray
+    #: even_part, odd_part: (N, 2), unit cells; U and V of the module's formula, relative to the root node (top left
+    #: corner of the sheet).
     even_part: FloatArray
     odd_part: FloatArray
 

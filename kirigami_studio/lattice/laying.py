@@ -24,7 +24,6 @@ def laid_sheet(outline: FloatArray, rows: int, columns: int) -> Sheet:
     ----------
     outline : (P, 2) float
         A simple polygon of any size, y up, either way round.
-    rows, columns : int
 
     Returns
     -------

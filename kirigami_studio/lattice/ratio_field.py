@@ -40,15 +40,9 @@ def frozen(values: npt.ArrayLike) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RatioField:
-    """Side ratios of all voids (the paper's x).
+    """Side ratios of all voids (the paper's x)."""
 
-    Attributes
-    ----------
-    ratio : (m, n) float, dimensionless, 1e-6 to 1e6
-        Row 0 is the top row of the sheet.
-    """
-
-    ratio: FloatArray
+    ratio: FloatArray  #: (m, n), dimensionless, 1e-6 to 1e6; row 0 is the top row of the sheet
 
     def __post_init__(self) -> None:
         ratio = _table(self.ratio)

@@ -46,28 +46,17 @@ class RimTable:
 
     The *anchors* of a side are its two corners and its mouths.  They are numbered along the rim, clockwise from the
     top left corner.
-
-    Attributes
-    ----------
-    mouths : (R,) int
-        Anchor numbers of the mouths, side by side: top and bottom left to right, right and left top to bottom.
-    even : (R,) float, unit cells
-        Where the paper has these mouths, along their sides.
-    side : (R,) int
-        The side of each mouth: 0 top, 1 right, 2 bottom, 3 left.
-    anchor_place : (A,) float, unit cells
-        Where the paper has the anchors, along the rim clockwise from the top left corner.
-    node : (G,) int
-        The given nodes, numbered as in :class:`~kirigami_studio.lattice.topology.Topology`.
-    share : (G, A) float
-        Each given node as a combination of the anchors: 1 at its own, one half at both neighbours of an edge hinge.
     """
 
+    #: (R,); anchor numbers of the mouths, side by side: top and bottom left to right, right and left top to bottom.
     mouths: IntArray
-    even: FloatArray
-    side: IntArray
+    even: FloatArray  #: (R,), unit cells; where the paper has these mouths, along their sides
+    side: IntArray  #: (R,); the side of each mouth: 0 top, 1 right, 2 bottom, 3 left
+    #: (A,), unit cells; where the paper has the anchors, along the rim clockwise from the top left corner.
     anchor_place: FloatArray
-    node: IntArray
+    node: IntArray  #: (G,); the given nodes, numbered as in :class:`~kirigami_studio.lattice.topology.Topology`
+    #: (G, A); each given node as a combination of the anchors: 1 at its own, one half at both neighbours of an edge
+    #: hinge.
     share: FloatArray
 
 
@@ -116,17 +105,11 @@ def _edge_hinges(rows: int, columns: int) -> IntArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """Where the cuts meet the rim: positions of the mouths along each side.
+    """Where the cuts meet the rim: positions of the mouths along each side."""
 
-    Attributes
-    ----------
-    top, bottom : (k,) float, unit cells
-        From left to right, inside 0 .. n + 1.
-    right, left : (k,) float, unit cells
-        From top to bottom, inside 0 .. m + 1.
-    """
-
+    #: top, bottom: (k,), unit cells; from left to right, inside 0 .. n + 1.
     top: FloatArray
+    #: right, left: (k,), unit cells; from top to bottom, inside 0 .. m + 1.
     right: FloatArray
     bottom: FloatArray
     left: FloatArray
@@ -201,25 +184,16 @@ class Rim:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """One design before it moves: everything that decides where its cuts are.
-
-    Attributes
-    ----------
-    field : RatioField
-    rim : Rim
-        Evenly spaced unless given.
-    start : (P, 2) float or None, unit cells
-        Outline of the flat sheet, simple, clockwise (y up) from the place of the top left corner panel's corner; the
-        other three corners and the even places of the mouths follow at the shares of its length that they have on the
-        rectangle, moved so that its sharp corners are among them, see ``start_outline``.  None for the rectangle of
-        (n + 1) x (m + 1) cells.
-    cell : (width, height), unit cells
-        Scales the flat sheet; other than (1, 1) gives a rectangle of another aspect.
-    """
+    """One design before it moves: everything that decides where its cuts are."""
 
     field: RatioField
-    rim: Rim
+    rim: Rim  #: evenly spaced unless given
+    #: (P, 2), unit cells; outline of the flat sheet, simple, clockwise (y up) from the place of the top left corner
+    #: panel's corner; the other three corners and the even places of the mouths follow at the shares of its length that
+    #: they have on the rectangle, moved so that its sharp corners are among them, see ``start_outline``.  None for the
+    #: rectangle of (n + 1) x (m + 1) cells.
     start: FloatArray | None
+    #: (width, height), unit cells; scales the flat sheet; other than (1, 1) gives a rectangle of another aspect.
     cell: tuple[float, float]
     _hash: int = attribute(repr=False)  # sheets, and candidates that have them, are keys of many tables
 
@@ -316,19 +290,12 @@ def anchor_points(sheet: Sheet) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RimPath:
-    """The flat sheet's outline as a path that mouths move along.
-
-    Attributes
-    ----------
-    rows, columns : int
-    start : (P, 2) float or None
-    cell : (width, height), unit cells
-    """
+    """The flat sheet's outline as a path that mouths move along."""
 
     rows: int
     columns: int
-    start: FloatArray | None = None
-    cell: tuple[float, float] = (1.0, 1.0)
+    start: FloatArray | None = None  #: (P, 2)
+    cell: tuple[float, float] = (1.0, 1.0)  #: (width, height), unit cells
     #: Vertices of the outline, the first again at the end, without the cell, and their places.
     _corners: FloatArray = attribute(init=False, repr=False)
     _corner_place: FloatArray = attribute(init=False, repr=False)

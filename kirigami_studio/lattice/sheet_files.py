@@ -105,13 +105,7 @@ def read_sheet(path: Path) -> Sheet:
 
 
 def _array(content: bytes) -> npt.NDArray[np.generic]:
-    """The table of an .npy file; its header may not claim more numbers than follow.
-
-    Raises
-    ------
-    ValueError
-        It does, or it is damaged.
-    """
+    """The table of an .npy file; its header may not claim more numbers than follow."""
     stream = io.BytesIO(content)
     try:
         version = np.lib.format.read_magic(stream)

@@ -79,7 +79,6 @@ def vertex_places(start: FloatArray, rows: int, columns: int, anchors: FloatArra
     ----------
     start : (P, 2) float, unit cells
         As in a :class:`~kirigami_studio.lattice.sheet.Sheet`: clockwise, its first vertex at place 0.
-    rows, columns : int
     anchors : (A,) float, unit cells
         Places of corners and mouths in the even rim, ascending from 0.
 
@@ -115,22 +114,12 @@ def turns(points: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assigned:
-    """Where sharp corners go.
+    """Where sharp corners go."""
 
-    Attributes
-    ----------
-    places : (P + 1,) float, unit cells
-        Of all vertices, the first again at the end.
-    corners : (K,) float, unit cells
-        Where the corners that have an anchor are by arc length, the first vertex left out.
-    anchors : (K,) int
-        Their anchors.
-    cost : float
-    """
-
-    places: FloatArray
+    places: FloatArray  #: (P + 1,), unit cells; of all vertices, the first again at the end
+    #: (K,), unit cells; where the corners that have an anchor are by arc length, the first vertex left out.
     corners: FloatArray
-    anchors: IntArray
+    anchors: IntArray  #: (K,); their anchors
     cost: float
 
 

@@ -29,16 +29,9 @@ from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points, rim_tab
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A flip left to right, if any, then quarter turns, counter-clockwise.
+    """A flip left to right, if any, then quarter turns, counter-clockwise."""
 
-    Attributes
-    ----------
-    turns : int
-        Quarter turns.
-    flipped : bool
-    """
-
-    turns: int
+    turns: int  #: quarter turns
     flipped: bool
 
     @property
@@ -125,23 +118,13 @@ class Symmetry(Enum):
 
 @dataclass(frozen=True, eq=False)
 class GridSymmetry:
-    """Signed permutations of one grid's numbers: m n entries of z, then R offsets of mouths.
-
-    Attributes
-    ----------
-    symmetry : Symmetry
-    rows, columns : int
-    source : (G, m * n + R) int
-        For each move, where the image's entries come from.
-    sign : (G, m * n + R) float
-        What they are multiplied with.
-    """
+    """Signed permutations of one grid's numbers: m n entries of z, then R offsets of mouths."""
 
     symmetry: Symmetry
     rows: int
     columns: int
-    source: IntArray
-    sign: FloatArray
+    source: IntArray  #: (G, m * n + R); for each move, where the image's entries come from
+    sign: FloatArray  #: (G, m * n + R); what they are multiplied with
 
     def symmetric(self, z: FloatArray) -> FloatArray:
         """The nearest fields (..., m, n) that equal all their images."""

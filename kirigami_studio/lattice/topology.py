@@ -23,40 +23,22 @@ from kirigami_studio.lattice.ratio_field import check_grid
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Topology:
-    """Index tables of an m x n grid.
-
-    Attributes
-    ----------
-    h : (m + 2, n + 1) int
-        Node number of ``h[i, j]`` at position ``[i + 1, j]``.
-    v : (m + 1, n + 2) int
-        Node number of ``v[i, j]`` at position ``[i, j + 1]``.
-    void_nodes : (m, n, 4) int
-        p0, p1, p2, p3 of every void.
-    panel_nodes : (m + 1, n + 1, 4) int
-        Corners of every panel, counter-clockwise: top, left, bottom, right.
-    outline_nodes : (4 (m + n) + 4,) int
-        The sheet's boundary, counter-clockwise, at any angle.
-    outline_at_zero : (2 (m + n) + 4,) int
-        The same at phi = 0, where the two unit edges at each edge hinge have zipped shut: hinge and one twin left out.
-    uniform_nodes : (N, 2) float, unit cells
-        Compact node positions for all ratios 1; exact for the nodes in ``fixed``.
-    fixed : (N,) bool
-        Nodes that lie on the sheet's edge in the compact state (the boundary anchors B).
-    even_void : (m, n) bool
-        True where i + j is even (parity rule, Eq. 1 of the paper): the slit is vertical in the compact sheet.
-    """
+    """Index tables of an m x n grid."""
 
     rows: int
     columns: int
-    h: IntArray
-    v: IntArray
-    void_nodes: IntArray
-    panel_nodes: IntArray
-    outline_nodes: IntArray
+    h: IntArray  #: (m + 2, n + 1); node number of ``h[i, j]`` at position ``[i + 1, j]``
+    v: IntArray  #: (m + 1, n + 2); node number of ``v[i, j]`` at position ``[i, j + 1]``
+    void_nodes: IntArray  #: (m, n, 4); p0, p1, p2, p3 of every void
+    panel_nodes: IntArray  #: (m + 1, n + 1, 4); corners of every panel, counter-clockwise: top, left, bottom, right
+    outline_nodes: IntArray  #: (4 (m + n) + 4,) int; the sheet's boundary, counter-clockwise, at any angle
+    #: (2 (m + n) + 4,) int; the same at phi = 0, where the two unit edges at each edge hinge have zipped shut: hinge
+    #: and one twin left out.
     outline_at_zero: IntArray
+    #: (N, 2), unit cells; compact node positions for all ratios 1; exact for the nodes in ``fixed``.
     uniform_nodes: FloatArray
-    fixed: BoolArray
+    fixed: BoolArray  #: (N,); nodes that lie on the sheet's edge in the compact state (the boundary anchors B)
+    #: (m, n); True where i + j is even (parity rule, Eq. 1 of the paper): the slit is vertical in the compact sheet.
     even_void: BoolArray
 
     @property

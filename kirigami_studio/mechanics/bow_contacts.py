@@ -37,26 +37,16 @@ NONE = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Meetings:
-    """Corners of panels and the edges that they run into.
+    """Corners of panels and the edges that they run into."""
 
-    Attributes
-    ----------
-    panels : (T, 2) int
-        The panel with the edge, and the one with the corner.
-    point, foot, normal : (T, 2) float, mm
-        The corner, a place on the edge, and the unit vector out of the edge's panel, all in the flat sheet.
-    connector : (T,) int
-        By whose turn the panels come to each other.
-    angle : (T,) float, radians
-        The void angle at which they have met.
-    """
-
-    panels: IntArray
+    panels: IntArray  #: (T, 2); the panel with the edge, and the one with the corner
+    #: point, foot, normal: (T, 2), mm; the corner, a place on the edge, and the unit vector out of the edge's panel,
+    #: all in the flat sheet.
     point: FloatArray
     foot: FloatArray
     normal: FloatArray
-    connector: IntArray
-    angle: FloatArray
+    connector: IntArray  #: (T,); by whose turn the panels come to each other
+    angle: FloatArray  #: (T,), radians; the void angle at which they have met
 
     def __len__(self) -> int:
         return len(self.panels)
@@ -76,10 +66,8 @@ def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: I
     panels : sequence of (Q, 2) float, mm
         All panels of the flat sheet between the centre lines of its cuts, row by row, in the frame of the connectors;
         no points for those that are not there.
-    connectors : SheetConnectors
     voids : (V, 4) int
         Connectors at the corners of every void, in turn; ``NONE`` where there is none.
-    kerf_mm : float
     """
     deep = DEEP * float(connectors.width_mm.mean())
     rigid = shapely.buffer(_polygons(panels), -0.5 * kerf_mm, join_style="mitre")
@@ -94,30 +82,16 @@ def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: I
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pairs:
-    """Panels that may touch as a void closes.
+    """Panels that may touch as a void closes."""
 
-    Attributes
-    ----------
-    panels : (K, 2) int
-        The one that is seen as still, and the one that moves.
-    still, moving : (K,) object
-        Their shapes in the flat sheet.
-    connector : (K,) int
-    centre : (K,) complex, mm
-        What the panel, or the arm that shifts it, turns about.
-    arm : (K,) complex, mm
-        From there to the connector of a panel that is shifted; 0 for panels that turn.
-    sign : (K,) float
-        Of the turn as the sheet opens.
-    """
-
-    panels: IntArray
+    panels: IntArray  #: (K, 2); the one that is seen as still, and the one that moves
+    #: still, moving: (K,) object; their shapes in the flat sheet.
     still: npt.NDArray[np.object_]
     moving: npt.NDArray[np.object_]
-    connector: IntArray
-    centre: ComplexArray
-    arm: ComplexArray
-    sign: FloatArray
+    connector: IntArray  #: (K,)
+    centre: ComplexArray  #: (K,), mm; what the panel, or the arm that shifts it, turns about
+    arm: ComplexArray  #: (K,), mm; from there to the connector of a panel that is shifted; 0 for panels that turn
+    sign: FloatArray  #: (K,); of the turn as the sheet opens
 
     def corners(self, deep_mm: float) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray, int, float]]:
         """Where they meet, as the columns of :class:`Meetings`."""

@@ -37,29 +37,18 @@ TOLERATED_STRETCH = 0.45
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Closing:
-    """A sheet on its way from flat towards phi = 0.
-
-    Attributes
-    ----------
-    sheet : SheetNetwork
-    path : EquilibriumPath
-    phi : (S,) float, radians
-        Mean angle of the sheet: pi less the mean turn of its connectors.
-    stretch_mm : (S, H) float
-        How far the two panels at every connector were pulled apart or pushed off each other.
-    in_plane, out_of_plane : (S, H) float
-        Upper and lower figure of the strain in every connector, see :meth:`SheetNetwork.strains`.
-    asked : int
-        Number of steps that were asked for; more than S where the sheet got stuck.
-    """
+    """A sheet on its way from flat towards phi = 0."""
 
     sheet: SheetNetwork
     path: EquilibriumPath
-    phi: FloatArray
+    phi: FloatArray  #: (S,), radians; mean angle of the sheet: pi less the mean turn of its connectors
+    #: (S, H); how far the two panels at every connector were pulled apart or pushed off each other.
     stretch_mm: FloatArray
+    #: in_plane, out_of_plane: (S, H); upper and lower figure of the strain in every connector, see
+    #: :meth:`SheetNetwork.strains`.
     in_plane: FloatArray
     out_of_plane: FloatArray
-    asked: int
+    asked: int  #: number of steps that were asked for; more than S where the sheet got stuck
 
     @property
     def stretch(self) -> FloatArray:
@@ -102,7 +91,6 @@ def jam_angle(phi: FloatArray, stretch: FloatArray, tolerated: float, reached_en
         Falling.
     stretch : (S,) float
         In connector widths.
-    tolerated : float
     reached_end : bool
         Whether the sheet came as far as it was driven.
 
@@ -133,7 +121,6 @@ def closing_steps(sheet: SheetNetwork, drive: Drive | None = None) -> Generator[
 
     Parameters
     ----------
-    sheet : SheetNetwork
     drive : Drive, optional
         The mean turn of the connectors, from the flat sheet to :data:`CLOSED`, unless given.
     """
@@ -169,10 +156,8 @@ def ideal_motion(deployment: Deployment, network: PanelNetwork, width_mm: float,
 
     Parameters
     ----------
-    deployment : Deployment
     network : PanelNetwork
         Its panels, row by row, at rest as the flat sheet of that width with its smallest coordinates at 0.
-    width_mm : float
     phi : float, radians
 
     The middle of the nodes stays where it is.

@@ -38,18 +38,13 @@ LEAST_RATIO = 2.0
 class ElasticSheet:
     """What the sheet is made of.
 
-    Attributes
-    ----------
-    young_mpa : float, N/mm^2
-    thickness_mm : float
-
     Raises
     ------
     MechanicsError
         A number that is not finite and positive.
     """
 
-    young_mpa: float
+    young_mpa: float  #: N/mm^2
     thickness_mm: float
 
     def __post_init__(self) -> None:
@@ -89,36 +84,20 @@ def plane_stiffness(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SheetConnectors:
-    """The connectors of one flat sheet, as plain arrays.
+    """The connectors of one flat sheet, as plain arrays."""
 
-    Attributes
-    ----------
-    panels : (H, 2) int
-        Panels A and B.
-    centres : (H, 2, 2) float, mm
-        The rotation centre as a point of A and as a point of B, in the flat sheet; both are the same place, unless a
-        reader of the cut file found otherwise.
-    along : (H, 2) float
-        Unit vector of the slit that ends there.
-    width_mm : (H,) float
-        Finished width.
-    flexure_mm : (H,) float
-        Length over which the connector bends.
-    longer_mm : (H,) float
-        By how much that is longer than at the end of a straight slit, because of an arc or a bar.
-    sign : (H,) float
-        +1 where theta_B - theta_A grows as the sheet opens, -1 where it falls.
-    touch : (H,) float, radians
-        Void angle at which the panels meet along the edges that fold onto each other; negative where a gap stays.
-    """
-
-    panels: IntArray
+    panels: IntArray  #: (H, 2); panels A and B
+    #: (H, 2, 2), mm; the rotation centre as a point of A and as a point of B, in the flat sheet; both are the same
+    #: place, unless a reader of the cut file found otherwise.
     centres: FloatArray
-    along: FloatArray
-    width_mm: FloatArray
-    flexure_mm: FloatArray
+    along: FloatArray  #: (H, 2); unit vector of the slit that ends there
+    width_mm: FloatArray  #: (H,); finished width
+    flexure_mm: FloatArray  #: (H,); length over which the connector bends
+    #: (H,); by how much that is longer than at the end of a straight slit, because of an arc or a bar.
     longer_mm: FloatArray
-    sign: FloatArray
+    sign: FloatArray  #: (H,); +1 where theta_B - theta_A grows as the sheet opens, -1 where it falls
+    #: (H,), radians; void angle at which the panels meet along the edges that fold onto each other; negative where a
+    #: gap stays.
     touch: FloatArray
 
     def __len__(self) -> int:
@@ -127,36 +106,19 @@ class SheetConnectors:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Junctions:
-    """The T-junctions of a design in the flat sheet, and the panels that hang together there.
+    """The T-junctions of a design in the flat sheet, and the panels that hang together there."""
 
-    Attributes
-    ----------
-    node : (H,) int
-        Node numbers of the lattice.
-    panels : (H, 2) int
-        Panels A < B, row by row.
-    place : (H, 2) float, mm
-    along, through : (H, 2) float
-        Unit vectors of the slit, away from the junction, and of the cut or edge that it ends on, towards A.
-    reach_mm : (H,) float
-        Length of the shorter of both panels' edges beside the through cut.
-    on_edge : (H,) bool
-        Whether the slit ends on the sheet's edge.
-    sign : (H,) float
-        As in :class:`SheetConnectors`.
-    corners : (P, 4, 2) float, mm
-        All panels.
-    """
-
-    node: IntArray
-    panels: IntArray
-    place: FloatArray
+    node: IntArray  #: (H,); node numbers of the lattice
+    panels: IntArray  #: (H, 2); panels A < B, row by row
+    place: FloatArray  #: (H, 2), mm
+    #: along, through: (H, 2); unit vectors of the slit, away from the junction, and of the cut or edge that it ends on,
+    #: towards A.
     along: FloatArray
     through: FloatArray
-    reach_mm: FloatArray
-    on_edge: BoolArray
-    sign: FloatArray
-    corners: FloatArray
+    reach_mm: FloatArray  #: (H,); length of the shorter of both panels' edges beside the through cut
+    on_edge: BoolArray  #: (H,); whether the slit ends on the sheet's edge
+    sign: FloatArray  #: (H,); as in :class:`SheetConnectors`
+    corners: FloatArray  #: (P, 4, 2), mm; all panels
 
     @property
     def sine(self) -> FloatArray:
@@ -170,7 +132,6 @@ def junctions(deployment: Deployment, width_mm: float, nodes: IntArray | None = 
 
     Parameters
     ----------
-    deployment : Deployment
     width_mm : float
         Width of the flat sheet; its smallest coordinates are 0, y up.
     nodes : (H,) int, optional
@@ -235,10 +196,8 @@ def cut_connectors(
 
     Parameters
     ----------
-    found : Junctions
     width_mm : (H,) float
         Finished widths; 0 for a removed connector.
-    kerf_mm : float
     centres : (H, 2) or (H, 2, 2) float, mm, optional
         Rotation centres in the flat sheet, one place or a place on A and one on B; where connectors at straight slits
         have theirs unless given: off the junction on the slit's side.

@@ -23,35 +23,21 @@ END_ROW = 0.5
 class Drive:
     """A path of prescribed values.
 
-    Attributes
-    ----------
-    freedoms : (D,) int
-        Prescribed degrees of freedom.
-    path : (S, D) float, mm and radians
-        Their values, step by step; a network at rest has zeros.
-    displacement : (S,) float
-        What the reaction force is measured against: mm of a grip, or radians of an angle.
-    rate : (S, D) float
-        Derivative of ``path`` by ``displacement``.
-    weights : (3 P,) float
-        A linear combination of all degrees of freedom that is prescribed as well; empty for none.
-    level : (S,) float
-        Its values, step by step; its derivative by ``displacement`` is ``level_rate``.
-    level_rate : (S,) float
-
     Raises
     ------
     MechanicsError
         Values of other shapes or that are not finite, or nothing that would keep the network in its place.
     """
 
-    freedoms: IntArray
-    path: FloatArray
-    displacement: FloatArray
-    rate: FloatArray
+    freedoms: IntArray  #: (D,); prescribed degrees of freedom
+    path: FloatArray  #: (S, D), mm and radians; their values, step by step; a network at rest has zeros
+    displacement: FloatArray  #: (S,); what the reaction force is measured against: mm of a grip, or radians of an angle
+    rate: FloatArray  #: (S, D); derivative of ``path`` by ``displacement``
+    #: (3 P,); a linear combination of all degrees of freedom that is prescribed as well; empty for none.
     weights: FloatArray = field(default_factory=lambda: np.zeros(0))
+    #: (S,); its values, step by step; its derivative by ``displacement`` is ``level_rate``.
     level: FloatArray = field(default_factory=lambda: np.zeros(0))
-    level_rate: FloatArray = field(default_factory=lambda: np.zeros(0))
+    level_rate: FloatArray = field(default_factory=lambda: np.zeros(0))  #: (S,)
 
     def __post_init__(self) -> None:
         steps = len(self.displacement)
@@ -131,14 +117,12 @@ def clamped_ends(network: PanelNetwork, ends: int, direction: int, distance_mm: 
 
     Parameters
     ----------
-    network : PanelNetwork
     ends : int
         0: the columns at the left and at the right; 1: the rows at the bottom and at the top.
     direction : int
         Along which axis, 0 for x and 1 for y, the right or upper end moves.
     distance_mm : float
         How far; negative in the other direction.
-    steps : int
     """
     place = network.centroids[:, ends]
     reach = END_ROW * network.panel_size
@@ -156,7 +140,6 @@ def mean_turn(network: PanelNetwork, signs: FloatArray, turns: FloatArray) -> Dr
 
     Parameters
     ----------
-    network : PanelNetwork
     signs : (L,) float
         +1 where a ligament's turn theta_B - theta_A grows as the network is driven, -1 where it falls.
     turns : (S,) float, radians

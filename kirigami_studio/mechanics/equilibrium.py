@@ -48,29 +48,17 @@ EIGENVALUE_PRECISION = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EquilibriumPath:
-    """Equilibria of a network, step by step.
-
-    Attributes
-    ----------
-    drive : Drive
-    motion : (S, P, 3) float, mm and radians
-    energy : (S,) float, mJ
-    reaction : (S, D) float, N and N mm
-        Gradient of the energy at the prescribed degrees of freedom.
-    force : (S,) float
-        Derivative of the energy by the drive's displacement: N, or N mm where that is an angle.
-    least : (S,) float, N/mm
-        Least eigenvalue of the free Hessian, turns counted in panel sizes: 0 where the network is about to snap.
-    snapped : (S,) bool
-        Whether the stable path ended on the way to this step, so that the network jumped to another one.
-    """
+    """Equilibria of a network, step by step."""
 
     drive: Drive
-    motion: FloatArray
-    energy: FloatArray
-    reaction: FloatArray
-    force: FloatArray
+    motion: FloatArray  #: (S, P, 3), mm and radians
+    energy: FloatArray  #: (S,), mJ
+    reaction: FloatArray  #: (S, D), N and N mm; gradient of the energy at the prescribed degrees of freedom
+    force: FloatArray  #: (S,); derivative of the energy by the drive's displacement: N, or N mm where that is an angle.
+    #: (S,), N/mm; least eigenvalue of the free Hessian, turns counted in panel sizes: 0 where the network is about to
+    #: snap.
     least: FloatArray
+    #: (S,); whether the stable path ended on the way to this step, so that the network jumped to another one.
     snapped: BoolArray
 
     @property
@@ -92,11 +80,9 @@ class EquilibriumPath:
         return np.asarray(found[apart], dtype=np.float64)
 
 
-def follow(
-    network: PanelNetwork, drive: Drive, start: FloatArray | None = None, until_stuck: bool = False
-) -> EquilibriumPath:
+def follow(network: PanelNetwork, drive: Drive) -> EquilibriumPath:
     """Find the equilibria along a drive, all in one go; see :func:`follow_steps`."""
-    return result_of(follow_steps(network, drive, start, until_stuck))
+    return result_of(follow_steps(network, drive))
 
 
 def follow_steps(
@@ -106,8 +92,6 @@ def follow_steps(
 
     Parameters
     ----------
-    network : PanelNetwork
-    drive : Drive
     start : (P, 3) float, optional
         Motion to begin with; at rest unless given.
     until_stuck : bool

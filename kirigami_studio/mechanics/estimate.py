@@ -25,26 +25,13 @@ ANGLES_DEG = (150.0, 115.0, 80.0, 45.0, 15.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StretchEstimate:
-    """Estimated stretch of every connector at some angles.
+    """Estimated stretch of every connector at some angles."""
 
-    Attributes
-    ----------
-    phi : (A,) float, radians
-        Falling.
-    motion : (A, P, 3) float, mm and radians
-    stretch : (A, H) float
-        In connector widths.
-    room : (A,) float, radians
-        The smallest void angle that is left before panels touch.
-    flat_room : float, radians
-        That of the flat sheet.
-    """
-
-    phi: FloatArray
-    motion: FloatArray
-    stretch: FloatArray
-    room: FloatArray
-    flat_room: float
+    phi: FloatArray  #: (A,), radians; falling
+    motion: FloatArray  #: (A, P, 3), mm and radians
+    stretch: FloatArray  #: (A, H); in connector widths
+    room: FloatArray  #: (A,), radians; the smallest void angle that is left before panels touch
+    flat_room: float  #: radians; that of the flat sheet
 
     def jam_phi(self, tolerated: float = TOLERATED_STRETCH) -> float:
         """Angle at which a connector is stretched too far or panels touch; 0 if neither."""
@@ -67,25 +54,19 @@ class StretchEstimate:
         return touching if touching > CLOSED else 0.0
 
 
-def estimate_stretch(
-    deployment: Deployment, sheet: SheetNetwork, width_mm: float, angles_deg: tuple[float, ...] = ANGLES_DEG
-) -> StretchEstimate:
+def estimate_stretch(deployment: Deployment, sheet: SheetNetwork, width_mm: float) -> StretchEstimate:
     """Estimate the stretch of all connectors.
 
     Parameters
     ----------
-    deployment : Deployment
     sheet : SheetNetwork
         Made of its panels, row by row, at that width.
-    width_mm : float
-    angles_deg : tuple of float
-        Falling.
     """
     network, energy = sheet.network, NetworkEnergy(sheet.network)
     tables = deployment.topology
     layout = _Bands.of(energy, tables.rows + 1, tables.columns + 1, network.numbers)
     springs = np.stack([network.ligaments.stretching, network.ligaments.shearing], axis=1)
-    phis, motions, stretch, room = np.radians(angles_deg), [], [], []
+    phis, motions, stretch, room = np.radians(ANGLES_DEG), [], [], []
     correction = np.zeros((network.panel_count, 3))
     for phi in phis.tolist():
         ideal = ideal_motion(deployment, network, width_mm, phi)
@@ -100,18 +81,10 @@ def estimate_stretch(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Bands:
-    """Where the blocks of the ligaments go in a banded matrix: panels line by line along the shorter side.
+    """Where the blocks of the ligaments go in a banded matrix: panels line by line along the shorter side."""
 
-    Attributes
-    ----------
-    order : (3 P,) int
-        Place of every degree of freedom.
-    place : (L, 36) int
-        Entries of the flattened lower bands; those above the diagonal go to a last place that is dropped.
-    depth, size : int
-    """
-
-    order: np.ndarray
+    order: np.ndarray  #: (3 P,); place of every degree of freedom
+    #: (L, 36); entries of the flattened lower bands; those above the diagonal go to a last place that is dropped.
     place: np.ndarray
     depth: int
     size: int

@@ -37,21 +37,13 @@ FOLLOWS = math.radians(15.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Gripping:
-    """Panels to hold and to lead, and what comes of it.
+    """Panels to hold and to lead, and what comes of it."""
 
-    Attributes
-    ----------
-    held, moved : tuple of int
-        Panels, row by row.
-    closing : Closing
-    follows : bool
-        Whether the sheet keeps to the ideal path as far as it was led.
-    """
-
+    #: held, moved: panels, row by row.
     held: tuple[int, ...]
     moved: tuple[int, ...]
     closing: Closing
-    follows: bool
+    follows: bool  #: whether the sheet keeps to the ideal path as far as it was led
 
 
 def find_grips(
@@ -70,11 +62,7 @@ def grip_steps(
 
     Parameters
     ----------
-    deployment : Deployment
-    sheet : SheetNetwork
-    width_mm : float
     end : float, radians
-    steps : int
     """
     angles = np.linspace(math.pi, end, steps)
     order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
@@ -130,13 +118,9 @@ def grips(
 
     Parameters
     ----------
-    deployment : Deployment
-    sheet : SheetNetwork
-    width_mm : float
     held, moved : sequence of int
         Panels, row by row.  The middle of those that are held stays where it is.
     end : float, radians
-    steps : int
 
     Returns
     -------

@@ -27,19 +27,12 @@ LEAST_STEPS = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Load:
-    """Energy and force of a closing, step by step.
+    """Energy and force of a closing, step by step."""
 
-    Attributes
-    ----------
-    energy_mj : (S,) float, mJ
-    torque_nmm : (S,) float, N mm, or None
-        Moment against the mean angle, where that is driven; None where grips are.
-    force_n : (S,) float, N
-        Of a lever as long as a panel where the mean angle is driven; along the way of the grips otherwise.
-    """
-
-    energy_mj: FloatArray
+    energy_mj: FloatArray  #: (S,), mJ
+    #: (S,), N mm, or None; moment against the mean angle, where that is driven; None where grips are.
     torque_nmm: FloatArray | None
+    #: (S,), N; of a lever as long as a panel where the mean angle is driven; along the way of the grips otherwise.
     force_n: FloatArray
 
     def to_json(self) -> dict[str, object]:
@@ -50,21 +43,11 @@ class Load:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Loads:
-    """One closing by three figures.
+    """One closing by three figures."""
 
-    Attributes
-    ----------
-    in_plane : Load
-        Elastic, bent in the plane and stretched: the upper figure, as simulated.
-    in_plane_yielding : Load
-        The same with plastic necks where the material yields.
-    out_of_plane : Load
-        Bent across the thickness, with plastic necks: the lower figure.
-    """
-
-    in_plane: Load
-    in_plane_yielding: Load
-    out_of_plane: Load
+    in_plane: Load  #: elastic, bent in the plane and stretched: the upper figure, as simulated
+    in_plane_yielding: Load  #: the same with plastic necks where the material yields
+    out_of_plane: Load  #: bent across the thickness, with plastic necks: the lower figure
 
 
 def loads(found: Closing, yield_strain: float = 0.0) -> Loads:

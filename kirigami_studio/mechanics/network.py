@@ -33,31 +33,19 @@ SHORTEST_SLENDER = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ligaments:
-    """The elastic joints.
+    """The elastic joints."""
 
-    Attributes
-    ----------
-    panels : (L, 2) int
-        Panels A and B.
-    points : (L, 2, 2) float, mm
-        Where a ligament begins on A and ends on B, at rest.
-    slender : (L,) bool
-        True for a strip from A to B, False for a T-junction, whose two points are one rotation centre.
-    axis : (L,) float, radians
-        Direction from A to B in which a T-junction is stretched, at rest; the ligament's own where it is slender.
-    stretching, shearing : (L,) float, N/mm
-        Stiffness along and across the axis.
-    turning : (L,) float, N mm
-        Stiffness against the turn of B relative to A.
-    """
-
-    panels: IntArray
-    points: FloatArray
+    panels: IntArray  #: (L, 2); panels A and B
+    points: FloatArray  #: (L, 2, 2), mm; where a ligament begins on A and ends on B, at rest
+    #: (L,); True for a strip from A to B, False for a T-junction, whose two points are one rotation centre.
     slender: BoolArray
+    #: (L,), radians; direction from A to B in which a T-junction is stretched, at rest; the ligament's own where it is
+    #: slender.
     axis: FloatArray
+    #: stretching, shearing: (L,), N/mm; stiffness along and across the axis.
     stretching: FloatArray
     shearing: FloatArray
-    turning: FloatArray
+    turning: FloatArray  #: (L,), N mm; stiffness against the turn of B relative to A
 
     def __len__(self) -> int:
         return len(self.panels)
@@ -65,23 +53,12 @@ class Ligaments:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contacts:
-    """Void angles that may not close.
+    """Void angles that may not close."""
 
-    Attributes
-    ----------
-    ligament : (C,) int
-        The ligament at the void's corner.
-    sign : (C,) float, +1 or -1
-        By how much the angle changes with theta_B - theta_A.
-    rest : (C,) float, radians
-        The angle at rest, counted from where the panels would touch.
-    stiffness : (C,) float, N mm
-    """
-
-    ligament: IntArray
-    sign: FloatArray
-    rest: FloatArray
-    stiffness: FloatArray
+    ligament: IntArray  #: (C,); the ligament at the void's corner
+    sign: FloatArray  #: (C,), +1 or -1; by how much the angle changes with theta_B - theta_A
+    rest: FloatArray  #: (C,), radians; the angle at rest, counted from where the panels would touch
+    stiffness: FloatArray  #: (C,), N mm
 
     def __len__(self) -> int:
         return len(self.ligament)
@@ -89,34 +66,18 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stops:
-    """Points of panels that edges of other panels stop.
+    """Points of panels that edges of other panels stop."""
 
-    Attributes
-    ----------
-    panels : (T, 2) int
-        The panel with the edge, and the one with the point.
-    point : (T, 2) float, mm
-        The point at rest.
-    foot, normal : (T, 2) float, mm and unit vectors
-        A place on the edge at rest, and the direction out of its panel there.
-    ligament : (T,) int
-        The ligament whose turn tells whether the panels are near each other.
-    turned : (T,) float, radians
-        They are where theta_B - theta_A of the ligament has this sign and is larger than this.
-    stiffness : (T,) float, N/mm
-        Slope of the force against the depth of the point behind the edge.
-    soft : (T,) float, mm
-        Depth to which that slope grows from nothing.
-    """
-
-    panels: IntArray
-    point: FloatArray
+    panels: IntArray  #: (T, 2); the panel with the edge, and the one with the point
+    point: FloatArray  #: (T, 2), mm; the point at rest
+    #: foot, normal: (T, 2), mm and unit vectors; a place on the edge at rest, and the direction out of its panel there.
     foot: FloatArray
     normal: FloatArray
-    ligament: IntArray
+    ligament: IntArray  #: (T,); the ligament whose turn tells whether the panels are near each other
+    #: (T,), radians; they are where theta_B - theta_A of the ligament has this sign and is larger than this.
     turned: FloatArray
-    stiffness: FloatArray
-    soft: FloatArray
+    stiffness: FloatArray  #: (T,), N/mm; slope of the force against the depth of the point behind the edge
+    soft: FloatArray  #: (T,), mm; depth to which that slope grows from nothing
 
     def __len__(self) -> int:
         return len(self.panels)
@@ -133,17 +94,6 @@ class Stops:
 class PanelNetwork:
     """Panels, ligaments and contacts, all in mm and N.
 
-    Attributes
-    ----------
-    centroids : (P, 2) float, mm
-    ligaments : Ligaments
-    contacts : Contacts
-    outlines : (P, Q, 2) float, mm
-        Corners of the panels at rest, for pictures and silhouettes; may be empty, (P, 0, 2).
-    numbers : (P,) int or None
-        Which panels of a sheet they are, row by row, where trimming took others; None for all.
-    stops : Stops
-
     Raises
     ------
     MechanicsError
@@ -151,10 +101,12 @@ class PanelNetwork:
         exist, or panels that do not hang together.
     """
 
-    centroids: FloatArray
+    centroids: FloatArray  #: (P, 2), mm
     ligaments: Ligaments
     contacts: Contacts
+    #: (P, Q, 2), mm; corners of the panels at rest, for pictures and silhouettes; may be empty, (P, 0, 2).
     outlines: FloatArray
+    #: (P,); which panels of a sheet they are, row by row, where trimming took others; None for all.
     numbers: IntArray | None = None
     stops: Stops = field(default_factory=Stops.none)
 

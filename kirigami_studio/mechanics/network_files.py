@@ -37,36 +37,21 @@ MM_PER_M = 1e3
 
 @dataclass(frozen=True, slots=True)
 class SpringConstants:
-    """One set of constants for all ligaments, in SI units as they are published.
+    """One set of constants for all ligaments, in SI units as they are published."""
 
-    Attributes
-    ----------
-    stretching, shearing : float, N/m
-        k_a and k_s.
-    turning : float, N m
-        k_t.
-    contact : float
-        Stiffness of contacts in turning stiffnesses.
-    """
-
+    #: stretching, shearing: N/m; k_a and k_s.
     stretching: float
     shearing: float
-    turning: float
-    contact: float = CONTACT_STIFFNESS
+    turning: float  #: N m; k_t
+    contact: float = CONTACT_STIFFNESS  #: stiffness of contacts in turning stiffnesses
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NetworkFile:
-    """What an archive holds.
-
-    Attributes
-    ----------
-    network : PanelNetwork
-    without_gap : (P, 4, 2) float, mm
-        The panels before ligaments were given room; the panels themselves where the archive does not say.
-    """
+    """What an archive holds."""
 
     network: PanelNetwork
+    #: (P, 4, 2), mm; the panels before ligaments were given room; the panels themselves where the archive does not say.
     without_gap: FloatArray
 
 

@@ -29,17 +29,9 @@ from kirigami_studio.mechanics.network import (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SheetNetwork:
-    """A sheet with its connectors as elastic joints.
+    """A sheet with its connectors as elastic joints."""
 
-    Attributes
-    ----------
-    network : PanelNetwork
-        At rest it is the flat sheet; ligament h is connector h.
-    connectors : SheetConnectors
-    sheet : ElasticSheet
-    """
-
-    network: PanelNetwork
+    network: PanelNetwork  #: at rest it is the flat sheet; ligament h is connector h
     connectors: SheetConnectors
     sheet: ElasticSheet
 
@@ -81,8 +73,6 @@ def sheet_network(
     panels : (P, Q, 2) float, mm
         Their corners; where they have different numbers of corners, the last one is repeated.  Those that trimming took
         are not numbers (NaN).
-    connectors : SheetConnectors
-    sheet : ElasticSheet
     meetings : Meetings, optional
         Where panels with bows run into each other.
 

@@ -38,26 +38,16 @@ INTO, OUT = 0, 1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Anchors:
-    """A closed line through anchors.
+    """A closed line through anchors."""
 
-    Attributes
-    ----------
-    places : (K, 2) float, mm
-        Anchors, counter-clockwise.
-    kinds : tuple of K Kind
-    handles : (K, 2, 2) float, mm
-        From each anchor to its handles, towards the one before and towards the next; zero where there is none.
-    spans : tuple of K (P, 2) float arrays, mm
-        Vertices between anchor k and the next, both left out.
-    kept : (K,) bool
-        Whether span k keeps its vertices instead of following the handles.
-    """
-
-    places: FloatArray
-    kinds: tuple[Kind, ...]
+    places: FloatArray  #: (K, 2), mm; anchors, counter-clockwise
+    kinds: tuple[Kind, ...]  #: K of them
+    #: (K, 2, 2), mm; from each anchor to its handles, towards the one before and towards the next; zero where there is
+    #: none.
     handles: FloatArray
+    #: tuple of K (P, 2) float arrays, mm; vertices between anchor k and the next, both left out.
     spans: tuple[FloatArray, ...]
-    kept: BoolArray
+    kept: BoolArray  #: (K,); whether span k keeps its vertices instead of following the handles
 
     @classmethod
     def of(cls, target: Placed) -> Anchors:
@@ -160,7 +150,6 @@ class Anchors:
 
         Parameters
         ----------
-        index : int
         side : int
             :data:`INTO` or :data:`OUT`.
         offset : (2,) float, mm

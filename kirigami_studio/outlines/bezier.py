@@ -75,7 +75,6 @@ def curve_pieces(controls: FloatArray, tolerance: float) -> FloatArray:
     Parameters
     ----------
     controls : (..., 3 or 4, 2) float
-    tolerance : float
 
     Returns
     -------

@@ -49,7 +49,6 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
     target : Placed or None
         Without one the ring becomes the target.
     ring : (L, 2) float, mm
-    how : Combine
     name : str
         Of the new target where the ring is one by itself.
     notes : iterable of str
@@ -68,7 +67,8 @@ def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str
         raise TargetError(BESIDE[how])
     region = JOINS[how](old, new, grid_size=SNAP * target.scale)
     if how is Combine.SUBTRACT:
-        _refuse_holes(old, new)
+        if old.contains_properly(new):
+            raise TargetError("combine.hole")
         if region.area < LEAST_LEFT * old.area:
             raise TargetError("combine.nothing_left")
     kept, left_out = largest_piece(region)
@@ -89,11 +89,6 @@ JOINS = {
     Combine.SUBTRACT: shapely.difference,
     Combine.INTERSECT: shapely.intersection,
 }
-
-
-def _refuse_holes(old: Polygon, new: Polygon) -> None:
-    if old.contains_properly(new):
-        raise TargetError("combine.hole")
 
 
 def symmetric(target: Placed, half: Half) -> Placed:

@@ -63,29 +63,15 @@ class AlignedSide(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class United:
-    """The target that objects make.
+    """The target that objects make."""
 
-    Attributes
-    ----------
-    target : Placed
-        The largest piece of them, holes filled.
-    loose : frozenset of int
-        Objects that hang apart from it.
-    """
-
-    target: Placed
-    loose: frozenset[int] = frozenset()
+    target: Placed  #: the largest piece of them, holes filled
+    loose: frozenset[int] = frozenset()  #: objects that hang apart from it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """Objects, the lowest first, and which of them are selected.
-
-    Attributes
-    ----------
-    objects : tuple of Placed
-    selected : frozenset of int
-    """
+    """Objects, the lowest first, and which of them are selected."""
 
     objects: tuple[Placed, ...] = ()
     selected: frozenset[int] = frozenset()

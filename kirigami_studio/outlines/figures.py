@@ -67,7 +67,6 @@ def figure(kind: Figure, box: BoundingBox, corners: int = 5, waist: float = USUA
 
     Parameters
     ----------
-    kind : Figure
     box : BoundingBox, mm
         Rectangles fill it; the others are inscribed in its ellipse, first corner on top, so that a square box makes
         them regular.

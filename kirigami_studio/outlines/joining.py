@@ -39,28 +39,15 @@ class Gap(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Joined:
-    """Lines after their ends were joined.
+    """Lines after their ends were joined."""
 
-    Attributes
-    ----------
-    lines : shapely geometry
-        All of them, bridges too, cut where they meet; source units.
-    faces : list of Polygon
-        What they enclose, each face of the net.
-    open_lines : list of LineString
-        What encloses nothing.
-    bridged, wide : list of Gap
-        Gaps that were closed, and those that were too wide.
-    size : float, source units
-        The longer side of all lines.
-    """
-
-    lines: BaseGeometry
-    faces: list[Polygon]
-    open_lines: list[LineString]
+    lines: BaseGeometry  #: all of them, bridges too, cut where they meet; source units
+    faces: list[Polygon]  #: what they enclose, each face of the net
+    open_lines: list[LineString]  #: what encloses nothing
+    #: bridged, wide: gaps that were closed, and those that were too wide.
     bridged: list[Gap]
     wide: list[Gap]
-    size: float
+    size: float  #: source units; the longer side of all lines
 
 
 def joined(chains: Sequence[FloatArray], widest_gap: float) -> Joined:

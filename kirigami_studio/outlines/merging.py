@@ -49,42 +49,23 @@ class Join(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Merging:
-    """How parts become one outline.
-
-    Attributes
-    ----------
-    join : Join
-    bridge : float or None, source units
-        Width of bridges; None for the usual share of the size.
-    as_painted : bool
-        Lines count with their width, as painted; otherwise by what they enclose.
-    stroke : float or None, source units
-        Width of lines that have none of their own; None for the usual share of the size.
-    tightness : float, 0..1
-    """
+    """How parts become one outline."""
 
     join: Join = Join.UNION
-    bridge: float | None = None
-    as_painted: bool = False
+    bridge: float | None = None  #: source units; width of bridges; None for the usual share of the size.
+    as_painted: bool = False  #: lines count with their width, as painted; otherwise by what they enclose
+    #: source units; width of lines that have none of their own; None for the usual share of the size.
     stroke: float | None = None
-    tightness: float = USUAL_TIGHTNESS
+    tightness: float = USUAL_TIGHTNESS  #: 0..1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Merged:
-    """What came of it.
-
-    Attributes
-    ----------
-    outline : Outline
-    shape : Polygon, source units, y up
-        The outline in its place among the parts.
-    bridges : tuple of Polygon, source units, y up
-    """
+    """What came of it."""
 
     outline: Outline
-    shape: Polygon
-    bridges: tuple[Polygon, ...] = ()
+    shape: Polygon  #: source units, y up; the outline in its place among the parts
+    bridges: tuple[Polygon, ...] = ()  #: source units, y up
 
 
 def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merged:
@@ -92,10 +73,8 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
 
     Parameters
     ----------
-    source : SourceParts
     parts : sequence of Part
         Of the source.
-    merging : Merging
 
     Raises
     ------

@@ -42,16 +42,10 @@ IMAGES: dict[Axis, tuple[tuple[int, int], ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class Mirror:
-    """Axes through one place.
-
-    Attributes
-    ----------
-    axis : Axis
-    at : (x, y) float, mm
-    """
+    """Axes through one place."""
 
     axis: Axis = Axis.NONE
-    at: tuple[float, float] = (0.0, 0.0)
+    at: tuple[float, float] = (0.0, 0.0)  #: (x, y), mm
 
     @property
     def images(self) -> tuple[tuple[int, int], ...]:

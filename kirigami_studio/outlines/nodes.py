@@ -31,26 +31,20 @@ class Kind(Enum):
 class Nodes:
     """The nodes of one outline, in its order and its coordinates.
 
-    Attributes
-    ----------
-    at : (K,) int
-        Index of each node's vertex, rising all the way round; at most one step goes past the last vertex.
-    kinds : tuple of K Kind
-    handles : (K, 2, 2) float, units of the outline
-        From each node to its handle towards the node before, and to that towards the next; zero where there is none.
-    kept : (K,) bool
-        Whether the line from a node to the next has vertices of its own, traced or read, instead of following
-        the handles.
-
     Raises
     ------
     TargetError
         Fewer than three nodes, indices that do not rise, tables of other sizes, or numbers that are not finite.
     """
 
+    #: (K,); index of each node's vertex, rising all the way round; at most one step goes past the last vertex.
     at: IntArray
-    kinds: tuple[Kind, ...]
+    kinds: tuple[Kind, ...]  #: K of them
+    #: (K, 2, 2), units of the outline; from each node to its handle towards the node before, and to that towards the
+    #: next; zero where there is none.
     handles: FloatArray
+    #: (K,); whether the line from a node to the next has vertices of its own, traced or read, instead of following the
+    #: handles.
     kept: BoolArray
 
     def __post_init__(self) -> None:

@@ -29,37 +29,23 @@ class Outline:
 
     Two outlines are equal when their vertices are: name, notes, place and nodes do not change what a generator sees.
 
-    Attributes
-    ----------
-    points : (L, 2) float
-        Vertices of a simple polygon, counter-clockwise, y up, first vertex not repeated, area
-        centroid at the origin, area 1 (dimensionless); read-only.
-    name : str
-        Name shown to the user, one plain line whatever the source has.
-    notes : tuple of str
-        What was changed on the way from the source, one sentence each; at most :data:`MOST_NOTES`.
-    size : (float, float) or None
-        Width and height in ``unit`` before normalising.
-    unit : str
-        Unit of ``size``: "mm", "px", or "" when the source has none.
-    place : (x, y) float or None, mm
-        Of its area centroid on the drawing board, y up; None for an outline that was not drawn there.
-    nodes : Nodes or None
-        Its points and handles, when it was drawn with them.
-
     Raises
     ------
     TargetError
         ``points`` is not such a polygon; ``from_points`` makes one from raw vertices.
     """
 
+    #: (L, 2); vertices of a simple polygon, counter-clockwise, y up, first vertex not repeated, area centroid at the
+    #: origin, area 1 (dimensionless); read-only.
     points: FloatArray
-    name: str = "target"
+    name: str = "target"  #: name shown to the user, one plain line whatever the source has
+    #: What was changed on the way from the source, one sentence each; at most :data:`MOST_NOTES`.
     notes: tuple[str, ...] = ()
-    size: tuple[float, float] | None = None
-    unit: str = ""
+    size: tuple[float, float] | None = None  #: (float, float); width and height in ``unit`` before normalising
+    unit: str = ""  #: unit of ``size``: "mm", "px", or "" when the source has none
+    #: (x, y), mm; of its area centroid on the drawing board, y up; None for an outline that was not drawn there.
     place: tuple[float, float] | None = None
-    nodes: Nodes | None = None
+    nodes: Nodes | None = None  #: its points and handles, when it was drawn with them
 
     def __post_init__(self) -> None:
         # Adding 0.0 turns -0.0 into 0.0, so equal outlines also have equal bytes, hence equal hashes.

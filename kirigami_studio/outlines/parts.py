@@ -55,59 +55,29 @@ class DrawnPartKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StrokeStyle:
-    """How lines are painted.
+    """How lines are painted."""
 
-    Attributes
-    ----------
-    width : float, source units
-        0 where the source does not say.
-    cap : str
-        "round", "flat" or "square".
-    join : str
-        "round", "mitre" or "bevel".
-    mitre_limit : float
-        Length of a corner over the width, above which it is cut off.
-    """
-
-    width: float = 0.0
-    cap: Cap = "round"
-    join: Corner = "round"
-    mitre_limit: float = 4.0
+    width: float = 0.0  #: source units; 0 where the source does not say
+    cap: Cap = "round"  #: "round", "flat" or "square"
+    join: Corner = "round"  #: "round", "mitre" or "bevel"
+    mitre_limit: float = 4.0  #: length of a corner over the width, above which it is cut off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """One part of a source.
+    """One part of a source."""
 
-    Attributes
-    ----------
-    number : int
-        From 1 on, in the order of the source; unique.
-    name : str
-        Its label or id in the source, or its kind and number; not always unique.
-    layer : str
-        "" where the source has none.
-    colour : str
-        "#rrggbb", or "" where the source has none.
-    kind : DrawnPartKind
-    region : shapely geometry, source units, y up
-        What is filled or enclosed, holes left open; empty for open lines.
-    lines : tuple of (P, 2) float, source units, y up
-        What is painted with the pen; a closed line repeats its first vertex at the end.
-    pen : StrokeStyle
-    is_named : bool
-        Whether the name is the source's own.
-    """
-
-    number: int
-    name: str
-    layer: str
-    colour: str
+    number: int  #: from 1 on, in the order of the source; unique
+    name: str  #: its label or id in the source, or its kind and number; not always unique
+    layer: str  #: "" where the source has none
+    colour: str  #: "#rrggbb", or "" where the source has none
     kind: DrawnPartKind
-    region: BaseGeometry
+    region: BaseGeometry  #: source units, y up; what is filled or enclosed, holes left open; empty for open lines
+    #: tuple of (P, 2) float, source units, y up; what is painted with the pen; a closed line repeats its first vertex
+    #: at the end.
     lines: tuple[FloatArray, ...] = ()
     pen: StrokeStyle = field(default_factory=StrokeStyle)
-    is_named: bool = True
+    is_named: bool = True  #: whether the name is the source's own
 
     def __post_init__(self) -> None:
         for name in ("name", "layer", "colour"):
@@ -158,25 +128,14 @@ class Part:
 class SourceParts:
     """All parts of a source.
 
-    Attributes
-    ----------
-    name : str
-    parts : tuple of Part
-        At least one.
-    left_out : tuple of str
-        What is not among them or was changed, one sentence each.
-    unit : str
-        "mm", "px", or "" when the source has none.
-    facts : mapping of str to str
-        What the file says about how it was made, if this program made it.
-
     Names of all kinds, facts and sentences are plain lines, whatever the source has.
     """
 
     name: str
-    parts: tuple[Part, ...]
-    left_out: tuple[str, ...] = ()
-    unit: str = ""
+    parts: tuple[Part, ...]  #: at least one
+    left_out: tuple[str, ...] = ()  #: what is not among them or was changed, one sentence each
+    unit: str = ""  #: "mm", "px", or "" when the source has none
+    #: What the file says about how it was made, if this program made it.
     facts: Mapping[str, str] = field(default_factory=FrozenMapping)
 
     def __post_init__(self) -> None:

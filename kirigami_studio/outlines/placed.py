@@ -26,14 +26,6 @@ LARGEST_MM = 10_000.0
 class Placed:
     """An outline, its size in mm and its place.
 
-    Attributes
-    ----------
-    outline : Outline
-    scale : float, mm
-        Length on the board of one unit of the outline.
-    centre : (x, y) float, mm
-        Of the outline's area centroid, y up.
-
     Raises
     ------
     TargetError
@@ -41,8 +33,8 @@ class Placed:
     """
 
     outline: Outline
-    scale: float
-    centre: tuple[float, float] = (0.0, 0.0)
+    scale: float  #: mm; length on the board of one unit of the outline
+    centre: tuple[float, float] = (0.0, 0.0)  #: (x, y), mm; of the outline's area centroid, y up
 
     def __post_init__(self) -> None:
         numbers = (self.scale, *self.centre)

@@ -13,14 +13,9 @@ from kirigami_studio.outlines.outline import Outline
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proportions:
-    """Second moments of area about the centroid.
+    """Second moments of area about the centroid."""
 
-    Attributes
-    ----------
-    moments : (2, 2) float, unit-area lengths to the fourth
-    """
-
-    moments: FloatArray
+    moments: FloatArray  #: (2, 2), unit-area lengths to the fourth
 
     @classmethod
     def of(cls, target: Outline) -> Proportions:

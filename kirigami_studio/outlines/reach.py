@@ -40,30 +40,19 @@ BEYOND = math.radians(10.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reach:
-    """Parts of a target that will probably be lost.
+    """Parts of a target that will probably be lost."""
 
-    Attributes
-    ----------
-    grid : (rows, columns) voids
-    arms, notches : tuple of (L, 2) float arrays, outline units
-        Parts of the target, and of the ground between its parts, that are too narrow; largest first.
-    narrowest : float, outline units
-        What the grid can show.
-    share : float
-        Area of the marked parts, with the target's as 1.
-    undercut : (L, 2) float, outline units
-        The notch around which the outline turns back most, if no sheet with a convex outline can show it closed.
-    turns_back : float, radians
-        By how much it turns back there; 0 where that is no hindrance.
-    """
-
-    grid: tuple[int, int]
+    grid: tuple[int, int]  #: (rows, columns) voids
+    #: arms, notches: tuple of (L, 2) float arrays, outline units; parts of the target, and of the ground between its
+    #: parts, that are too narrow; largest first.
     arms: tuple[FloatArray, ...]
     notches: tuple[FloatArray, ...]
-    narrowest: float
-    share: float
+    narrowest: float  #: outline units; what the grid can show
+    share: float  #: area of the marked parts, with the target's as 1
+    #: (L, 2), outline units; the notch around which the outline turns back most, if no sheet with a convex outline can
+    #: show it closed.
     undercut: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
-    turns_back: float = 0.0
+    turns_back: float = 0.0  #: radians; by how much it turns back there; 0 where that is no hindrance
 
     @property
     def clear(self) -> bool:
@@ -73,11 +62,6 @@ class Reach:
 
 def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     """Mark what a grid can hardly show of a target.
-
-    Parameters
-    ----------
-    outline : Outline
-    grid : (rows, columns) voids
 
     Raises
     ------
@@ -124,7 +108,6 @@ def reach_texts(reach: Reach, outline: Outline, scale_mm: float | None = None) -
 
     Parameters
     ----------
-    reach : Reach
     outline : Outline
         The one that was looked at.
     scale_mm : float, optional

@@ -151,13 +151,7 @@ def dxf_parts(path: str | Path) -> SourceParts:
 
 
 def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
-    """Everything visible in model space, flattened; texts only where they are wanted.
-
-    Raises
-    ------
-    TargetError
-        No DXF file, one that takes too much to read, or no lines.
-    """
+    """Everything visible in model space, flattened; texts only where they are wanted."""
     budget = TimeBudget()
     drawing, repaired = opened_dxf(path, content, budget)
     notes: tuple[str, ...] = ()

@@ -49,43 +49,24 @@ MOST_MEGABYTES = 200
 
 
 class Levels(NamedTuple):
-    """A picture reduced to one number a pixel.
+    """A picture reduced to one number a pixel."""
 
-    Attributes
-    ----------
-    grey : (H, W) float, 0 black or transparent .. 1 white or opaque
-    reduction : int
-        Source pixels along the side of one pixel of ``grey``.
-    is_alpha : bool
-        ``grey`` is the alpha channel: the shape is where it is high, whatever the border says.
-    size : (width, height) int
-        Of the source, turned upright; pixels at its lower and right edge may share a pixel of ``grey`` with nothing.
-    """
-
-    grey: FloatArray
-    reduction: int
-    is_alpha: bool
+    grey: FloatArray  #: (H, W), 0 black or transparent .. 1 white or opaque
+    reduction: int  #: source pixels along the side of one pixel of ``grey``
+    is_alpha: bool  #: ``grey`` is the alpha channel: the shape is where it is high, whatever the border says
+    #: (width, height); of the source, turned upright; pixels at its lower and right edge may share a pixel of ``grey``
+    #: with nothing.
     size: tuple[int, int]
 
 
 class Traced(NamedTuple):
-    """An outline and its place in its picture.
-
-    Attributes
-    ----------
-    outline : Outline
-    scale : float, source pixels
-        Length in the picture of one unit of the outline.
-    centre : (x, y) float, source pixels
-        The outline's centroid, from the picture's lower left corner, y up.
-    picture : (width, height) int, source pixels
-        As the picture is looked at, turned upright.
-    """
+    """An outline and its place in its picture."""
 
     outline: Outline
-    scale: float
+    scale: float  #: source pixels; length in the picture of one unit of the outline
+    #: (x, y), source pixels; the outline's centroid, from the picture's lower left corner, y up.
     centre: tuple[float, float]
-    picture: tuple[int, int]
+    picture: tuple[int, int]  #: (width, height), source pixels; as the picture is looked at, turned upright
 
 
 def read_image(path: str | Path, threshold: float | None = None) -> Outline:
@@ -252,11 +233,8 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
 
     Parameters
     ----------
-    content : bytes
     formats : tuple of str
         Those that are read, as Pillow calls them.
-    most_pixels : int, optional
-        Default ``MOST_PIXELS``.
 
     Raises
     ------
@@ -336,13 +314,7 @@ def _automatic(grey: FloatArray) -> float:
 
 
 def _ink(levels: Levels, threshold: float | None) -> FloatArray:
-    """How much each pixel belongs to the shape: above 0 inside, 0 at the threshold.
-
-    Raises
-    ------
-    TargetError
-        A threshold that is none, or that leaves the picture in one colour.
-    """
+    """How much each pixel belongs to the shape: above 0 inside, 0 at the threshold."""
     level = _automatic(levels.grey) if threshold is None else _checked(threshold)
     ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
     if not np.any(ink > 0) or np.all(ink > 0):

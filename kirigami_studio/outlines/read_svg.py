@@ -167,13 +167,7 @@ def _upright(part: Part) -> Part:
 
 
 def _read(content: bytes) -> SvgDrawing:
-    """Everything visible in a file, y down.
-
-    Raises
-    ------
-    TargetError
-        No SVG, or one that takes too much to read.
-    """
+    """Everything visible in a file, y down."""
     budget = TimeBudget()
     checked, width_mm, notes = checked_svg(content)
     svg = svgelements.SVG.parse(io.BytesIO(checked), reify=True, ppi=PIXELS_PER_INCH)

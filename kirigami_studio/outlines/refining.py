@@ -95,7 +95,6 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
 
     Parameters
     ----------
-    target : Placed
     factors : (x, y) float
         Negative ones reflect.
     fixed : (x, y) float, mm, optional

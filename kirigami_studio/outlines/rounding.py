@@ -28,12 +28,6 @@ ROUND, MOST_STEPS = 3.6, 120
 def rounded(outline: Outline, count: int) -> list[shapely.Polygon]:
     """Shapes between a circle and a target, the roundest first, without the target itself.
 
-    Parameters
-    ----------
-    outline : Outline
-    count : int
-        Number of shapes.
-
     Returns
     -------
     shapes : list of shapely.Polygon

@@ -14,21 +14,11 @@ from kirigami_studio.outlines.outline import Outline
 
 @dataclass(frozen=True, slots=True)
 class LibraryEntry:
-    """One line of the library list.
+    """One line of the library list."""
 
-    Attributes
-    ----------
-    name : str
-        What ``load`` and the command line take, e.g. "six-point-star".
-    title : str
-        For menus, e.g. "Six-point star".
-    about : str
-        One sentence: what makes the shape easy or hard.
-    """
-
-    name: str
-    title: str
-    about: str
+    name: str  #: what ``load`` and the command line take, e.g. "six-point-star"
+    title: str  #: for menus, e.g. "Six-point star"
+    about: str  #: one sentence: what makes the shape easy or hard
 
 
 @cache

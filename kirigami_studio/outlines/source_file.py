@@ -79,7 +79,6 @@ def decoding(path: Path, damaged: str) -> Iterator[None]:
 
     Parameters
     ----------
-    path : Path
     damaged : str
         Code of the problem when a decoder fails, such as "source.dxf_damaged".
 

@@ -87,13 +87,7 @@ def self_contained_svg(content: bytes) -> bytes:
 
 
 def _refuse_link(reference: str) -> None:
-    """Refuse to show anything but pixels that the document holds itself.
-
-    Raises
-    ------
-    TargetError
-        A link to another file, or another document inside this one, which could have such links itself.
-    """
+    """Refuse to show anything but pixels that the document holds itself."""
     head, _, packed = reference.partition(",")
     if not head.lower().startswith("data:"):
         raise TargetError("svg.linked_picture", link=reference)
@@ -128,13 +122,7 @@ def _reference(element: Element) -> str:
 
 
 def _refuse_bombs(root: Element) -> None:
-    """Count the elements after every ``use`` is replaced by what it refers to.
-
-    Raises
-    ------
-    TargetError
-        More than ``MOST_ELEMENTS`` or ``MOST_NUMBERS``, or an element that contains itself.
-    """
+    """Count the elements after every ``use`` is replaced by what it refers to."""
     named = {name: element for element in root.iter() if (name := element.get("id"))}
     counted: dict[Element, tuple[int, int]] = {}
     inside: set[Element] = set()

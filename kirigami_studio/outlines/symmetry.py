@@ -47,21 +47,13 @@ GridImage = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class MirrorAxis:
-    """A line that a target is, more or less, its own mirror image about.
+    """A line that a target is, more or less, its own mirror image about."""
 
-    Attributes
-    ----------
-    angle : float, radians
-        Direction of the line in the target's frame, in [0, pi).
-    offset : float, unit-area lengths
-        Distance of the line from the centroid, positive to the left of its direction; 0 for a symmetric shape.
-    overlap : float
-        IoU of the target and its mirror image.
-    """
-
-    angle: float
+    angle: float  #: radians; direction of the line in the target's frame, in [0, pi)
+    #: unit-area lengths; distance of the line from the centroid, positive to the left of its direction; 0 for a
+    #: symmetric shape.
     offset: float
-    overlap: float
+    overlap: float  #: IoU of the target and its mirror image
 
     def crosses(self, other: MirrorAxis) -> bool:
         """Whether the two are perpendicular."""
@@ -70,18 +62,12 @@ class MirrorAxis:
 
 @dataclass(frozen=True, slots=True)
 class TargetSymmetry:
-    """How symmetric a target is.
+    """How symmetric a target is."""
 
-    Attributes
-    ----------
-    axes : tuple of MirrorAxis
-        Best overlap first, then the nearest to upright; at least one, however bad.  Of a round shape, which has any
-        number, the upright and the level one.
-    half_turn, quarter_turn : float
-        IoU of the target and itself, turned about its centroid.
-    """
-
+    #: Best overlap first, then the nearest to upright; at least one, however bad.  Of a round shape, which has any
+    #: number, the upright and the level one.
     axes: tuple[MirrorAxis, ...]
+    #: half_turn, quarter_turn: IoU of the target and itself, turned about its centroid.
     half_turn: float
     quarter_turn: float
 
@@ -250,8 +236,6 @@ def mirrored_mean(target: Outline, axis: MirrorAxis, crossed: MirrorAxis | None 
 
     Parameters
     ----------
-    target : Outline
-    axis : MirrorAxis
     crossed : MirrorAxis, optional
         A second axis, at right angles to the first: the result has both.
 

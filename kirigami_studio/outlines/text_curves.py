@@ -45,31 +45,17 @@ FLATNESS = 1.0 / 500.0
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """One line of text.
-
-    Attributes
-    ----------
-    text : str
-    matrix : (2, 3) nested tuple of float
-        From ems (baseline at y = 0, y up, anchor at x = 0) to the drawing.
-    anchor : float
-        Share of the width that lies left of the anchor: 0, 0.5 or 1.
-    family : str
-        "" for any.
-    bold, italic : bool
-    layer : str
-    is_cap_height : bool
-        The unit is the height of a capital letter instead of an em.
-    """
+    """One line of text."""
 
     text: str
+    #: (2, 3) nested tuple of float; from ems (baseline at y = 0, y up, anchor at x = 0) to the drawing.
     matrix: tuple[tuple[float, float, float], tuple[float, float, float]]
-    anchor: float = 0.0
-    family: str = ""
+    anchor: float = 0.0  #: share of the width that lies left of the anchor: 0, 0.5 or 1
+    family: str = ""  #: "" for any
     bold: bool = False
     italic: bool = False
     layer: str = ""
-    is_cap_height: bool = False
+    is_cap_height: bool = False  #: the unit is the height of a capital letter instead of an em
 
 
 @dataclass(frozen=True, slots=True)

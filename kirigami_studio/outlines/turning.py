@@ -27,17 +27,11 @@ COARSENESS, SHORTEST = 0.01, 0.03
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TurnBack:
-    """The stretch of an outline over which it turns back most.
+    """The stretch of an outline over which it turns back most."""
 
-    Attributes
-    ----------
-    angle : float, radians
-        By how much; 0 for a convex outline.
-    stretch : (P, 2) float, outline units
-        Its points, from the start of its first edge to the end of its last one; none where the angle is 0.
-    """
-
-    angle: float
+    angle: float  #: radians; by how much; 0 for a convex outline
+    #: (P, 2), outline units; its points, from the start of its first edge to the end of its last one; none where the
+    #: angle is 0.
     stretch: FloatArray
 
 

@@ -101,24 +101,14 @@ COARSEST_CODES: dict[Symmetry | None, str] = {
 
 @dataclass(frozen=True, slots=True)
 class GridChoice:
-    """A grid and why it was taken.
+    """A grid and why it was taken."""
 
-    Attributes
-    ----------
-    grid : (rows, columns) voids
-    poses : tuple of SymmetricPose
-        Symmetric set-ups that are worth trying on it, the most promising first; empty for a shape without symmetry.
-    predicted_match : float
-        Expected exact IoU of the best design without a search.
-    code : str
-    fields : tuple of (str, object)
-        The reason, as a sentence's code and what it names.
-    """
-
-    grid: tuple[int, int]
+    grid: tuple[int, int]  #: (rows, columns) voids
+    #: Symmetric set-ups that are worth trying on it, the most promising first; empty for a shape without symmetry.
     poses: tuple[SymmetricPose, ...]
-    predicted_match: float
+    predicted_match: float  #: expected exact IoU of the best design without a search
     code: str
+    #: tuple of (str, object); the reason, as a sentence's code and what it names.
     fields: tuple[tuple[str, object], ...]
 
     @property
@@ -129,24 +119,12 @@ class GridChoice:
 
 @dataclass(frozen=True, slots=True)
 class ShapeFigures:
-    """What makes a target hard.
+    """What makes a target hard."""
 
-    Attributes
-    ----------
-    length : float
-        Logarithm of its perimeter over that of a square of the same area.
-    bends : float
-        Logarithm of 1 plus its turns to the right, in half turns: 0 for a convex shape.
-    limbs : float
-        Square root of the share of its area in limbs.
-    arms : tuple of float
-        The same for parts narrower than two panels, for each of ``MEASURED_PANELS``.
-    """
-
-    length: float
-    bends: float
-    limbs: float
-    arms: tuple[float, ...]
+    length: float  #: logarithm of its perimeter over that of a square of the same area
+    bends: float  #: logarithm of 1 plus its turns to the right, in half turns: 0 for a convex shape
+    limbs: float  #: square root of the share of its area in limbs
+    arms: tuple[float, ...]  #: the same for parts narrower than two panels, for each of ``MEASURED_PANELS``
 
     @classmethod
     def of(cls, target: Outline) -> ShapeFigures:
@@ -458,15 +436,7 @@ def _nearest(
 
 
 def _poses(target: Outline, symmetry: KeptSymmetry, start: StartShape) -> tuple[SymmetricPose, ...]:
-    """The symmetric set-ups of a target that sheets of a start can have on some grid.
-
-    Raises
-    ------
-    TargetError
-        A symmetry is asked for and the target is far from any.
-    UsageError
-        The start cannot have the symmetry that is asked for.
-    """
+    """The symmetric set-ups of a target that sheets of a start can have on some grid."""
     poses = symmetric_poses(target, symmetry)
     if start.is_plain:
         return poses

@@ -36,14 +36,9 @@ class AsCutAssessment(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Looking:
-    """A design is looked at.
+    """A design is looked at."""
 
-    Attributes
-    ----------
-    number, total : int
-        How many designs have been looked at with this one, and how many may be.
-    """
-
+    #: number, total: how many designs have been looked at with this one, and how many may be.
     number: int
     total: int
 

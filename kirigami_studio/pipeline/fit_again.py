@@ -21,18 +21,12 @@ from kirigami_studio.pipeline.tasks import PolishTask
 
 @dataclass(frozen=True, slots=True)
 class FitReport:
-    """How far it is.
+    """How far it is."""
 
-    Attributes
-    ----------
-    done, total : int
-        Designs.
-    before, after : Candidate or None
-        A design that became better, and what it became; None where there is nothing new.
-    """
-
+    #: done, total: designs.
     done: int
     total: int
+    #: before, after: A design that became better, and what it became; None where there is nothing new.
     before: Candidate | None = None
     after: Candidate | None = None
 

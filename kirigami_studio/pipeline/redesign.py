@@ -43,36 +43,19 @@ REFIT_STEPS = 20
 
 @dataclass(frozen=True, slots=True)
 class Trimmed:
-    """What trimming has made of a candidate.
+    """What trimming has made of a candidate."""
 
-    Attributes
-    ----------
-    candidate : Candidate
-        With its trim: another sheet in another pose, beside its own.
-    evaluations : int
-        Layouts decoded on the way.
-    """
-
-    candidate: Candidate
-    evaluations: int
+    candidate: Candidate  #: with its trim: another sheet in another pose, beside its own
+    evaluations: int  #: layouts decoded on the way
 
 
 @dataclass(frozen=True, slots=True)
 class Refit:
-    """What a fit from a design's present sheet has found.
+    """What a fit from a design's present sheet has found."""
 
-    Attributes
-    ----------
-    candidate : Candidate
-        The fitted design, trimmed if the one it began with was.
-    better : bool
-        Whether it ranks before the one it began with, both untrimmed.
-    trim_problem : KirigamiError or None
-        Why it could not be trimmed again, None if that was not to be done or was.
-    """
-
-    candidate: Candidate
-    better: bool
+    candidate: Candidate  #: the fitted design, trimmed if the one it began with was
+    better: bool  #: whether it ranks before the one it began with, both untrimmed
+    #: Why it could not be trimmed again, None if that was not to be done or was.
     trim_problem: KirigamiError | None = None
 
 

@@ -444,21 +444,11 @@ class _Work:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """The cancel flag and the clock of one run.
+    """The cancel flag and the clock of one run."""
 
-    Attributes
-    ----------
-    cancel : callable
-        True once the user asked to stop.
-    began : float, seconds
-        On ``time.perf_counter``.
-    budget : float or None, seconds
-        Wall time that the run may take.
-    """
-
-    cancel: Callable[[], bool]
-    began: float
-    budget: float | None = None
+    cancel: Callable[[], bool]  #: True once the user asked to stop
+    began: float  #: seconds; on ``time.perf_counter``
+    budget: float | None = None  #: seconds; wall time that the run may take
 
     @property
     def seconds(self) -> float:

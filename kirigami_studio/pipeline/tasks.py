@@ -31,18 +31,10 @@ from kirigami_studio.polish.symmetry import KeptSymmetry, shared_symmetries, sym
 
 @dataclass(frozen=True, slots=True)
 class TaskResult:
-    """What came of a task.
+    """What came of a task."""
 
-    Attributes
-    ----------
-    candidate : Candidate or None
-        The new state of the design; None where the task brought nothing.
-    evaluations : int
-        Layouts decoded on the way.
-    """
-
-    candidate: Candidate | None
-    evaluations: int
+    candidate: Candidate | None  #: The new state of the design; None where the task brought nothing.
+    evaluations: int  #: layouts decoded on the way
 
 
 class Task(Protocol):

@@ -12,21 +12,11 @@ from kirigami_studio.lattice.symmetry import GridSymmetry
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Basis:
-    """How V variables move a shape of S numbers: each number follows at most one variable, with a sign.
+    """How V variables move a shape of S numbers: each number follows at most one variable, with a sign."""
 
-    Attributes
-    ----------
-    size : int
-        V.
-    variable : (S,) int
-        The variable of each number; V for those that cannot move.
-    sign : (S,) float
-        1 or -1; 0 for those that cannot move.
-    """
-
-    size: int
-    variable: IntArray
-    sign: FloatArray
+    size: int  #: V
+    variable: IntArray  #: (S,); the variable of each number; V for those that cannot move.
+    sign: FloatArray  #: (S,); 1 or -1; 0 for those that cannot move
     _order: IntArray
     _starts: IntArray
     _orbit: FloatArray

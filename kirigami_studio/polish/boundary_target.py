@@ -21,21 +21,11 @@ NORMAL_LENGTH = 0.03
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundaryTarget:
-    """A target outline prepared for repeated queries.
+    """A target outline prepared for repeated queries."""
 
-    Attributes
-    ----------
-    samples : (S, 2) float, unit-area lengths
-        Points at equal arc length.
-    normals : (S, 2) float
-        Unit normals there, outwards for a counter-clockwise outline.
-    weight : float
-        Boundary length that one sample stands for.
-    """
-
-    samples: FloatArray
-    normals: FloatArray
-    weight: float
+    samples: FloatArray  #: (S, 2), unit-area lengths; points at equal arc length
+    normals: FloatArray  #: (S, 2); unit normals there, outwards for a counter-clockwise outline
+    weight: float  #: boundary length that one sample stands for
     _start: FloatArray
     _end: FloatArray
     _normal: FloatArray

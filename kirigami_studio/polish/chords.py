@@ -30,23 +30,12 @@ STRAIGHT = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chords:
-    """The term for one grid and start outline.
-
-    Attributes
-    ----------
-    path : RimPath
-    area : float, unit cells squared
-        Of the start outline.
-    allowed : float
-        Share of it that may be cut off, or added across hollows.
-    weight : float
-        Of the square of what is cut off beyond that.
-    """
+    """The term for one grid and start outline."""
 
     path: RimPath
-    area: float
-    allowed: float
-    weight: float
+    area: float  #: unit cells squared; of the start outline
+    allowed: float  #: share of it that may be cut off, or added across hollows
+    weight: float  #: of the square of what is cut off beyond that
 
     @classmethod
     def of(cls, path: RimPath, start_weight: float = 1.0) -> Chords | None:

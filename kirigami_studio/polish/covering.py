@@ -54,15 +54,9 @@ LOOKS = 80
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cover:
-    """A layout to be trimmed.
+    """A layout to be trimmed."""
 
-    Attributes
-    ----------
-    fit : Fit
-        ``sheet`` and ``pose`` are those of ``trim``; ``steps`` is 0 where no other sheet trims better than the first.
-    trim : Trim
-    """
-
+    #: ``sheet`` and ``pose`` are those of ``trim``; ``steps`` is 0 where no other sheet trims better than the first.
     fit: Fit
     trim: Trim
 

@@ -24,20 +24,13 @@ DENSE = 160
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Band:
-    """Where the entries of a banded matrix (H, H) with ones on its diagonal stand in LAPACK's form of it.
+    """Where the entries of a banded matrix (H, H) with ones on its diagonal stand in LAPACK's form of it."""
 
-    Attributes
-    ----------
-    size, lower, upper : int
-        H, and how far entries are below and above the diagonal.
-    place : (E,) int
-        Flat place of each entry.
-    """
-
+    #: size, lower, upper: H, and how far entries are below and above the diagonal.
     size: int
     lower: int
     upper: int
-    place: IntArray
+    place: IntArray  #: (E,); flat place of each entry
 
     @classmethod
     def of(cls, row: IntArray, column: IntArray, size: int) -> Band:
@@ -102,24 +95,12 @@ class _Dense:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _ByRows:
-    """Elimination row by row.
+    """Elimination row by row."""
 
-    Attributes
-    ----------
-    lower : (m, w, w) float
-        L_i.
-    slot : (H,) int
-        Places of the unknowns.
-    inverse : (m, w, w) float
-        E_i^-1.
-    transfer : (m, w, w) float
-        T_i.
-    """
-
-    lower: FloatArray
-    slot: IntArray
-    inverse: FloatArray
-    transfer: FloatArray
+    lower: FloatArray  #: (m, w, w); l_i
+    slot: IntArray  #: (H,); places of the unknowns
+    inverse: FloatArray  #: (m, w, w); e_i^-1
+    transfer: FloatArray  #: (m, w, w); t_i
 
     @classmethod
     def of(cls, coupling: FloatArray, slot: IntArray) -> _ByRows:

@@ -33,23 +33,15 @@ def junction_weight(even: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JunctionAngles:
-    """Angles between cuts and the cuts that they end on.
+    """Angles between cuts and the cuts that they end on."""
 
-    Attributes
-    ----------
-    node, before, after : (J,) int
-        Numbers of the node at the junction, and of the corners beside it of one panel that has a corner there.
-    sine : (J,) float
-        Negative where that panel is inverted.
-    slope : (J, 2, 2) float, per unit cell
-        Derivatives of the sines by x and y of ``before`` and of ``after``.
-    """
-
+    #: node, before, after: (J,); numbers of the node at the junction, and of the corners beside it of one panel that
+    #: has a corner there.
     node: IntArray
     before: IntArray
     after: IntArray
-    sine: FloatArray
-    slope: FloatArray
+    sine: FloatArray  #: (J,); negative where that panel is inverted
+    slope: FloatArray  #: (J, 2, 2), per unit cell; derivatives of the sines by x and y of ``before`` and of ``after``
 
     def __len__(self) -> int:
         return len(self.sine)

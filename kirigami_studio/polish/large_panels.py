@@ -33,21 +33,11 @@ def over_even(sheet: Sheet) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelAreas:
-    """Areas of panels in the flat sheet.
+    """Areas of panels in the flat sheet."""
 
-    Attributes
-    ----------
-    corners : (P, 4) int
-        Numbers of the nodes at the panels' corners.
-    area : (P,) float
-        As multiples of the mean; negative where a panel is inverted.
-    slope : (P, 4, 2) float, per unit cell
-        Derivatives of ``area`` by x and y of the corners.
-    """
-
-    corners: IntArray
-    area: FloatArray
-    slope: FloatArray
+    corners: IntArray  #: (P, 4); numbers of the nodes at the panels' corners
+    area: FloatArray  #: (P,); as multiples of the mean; negative where a panel is inverted
+    slope: FloatArray  #: (P, 4, 2), per unit cell; derivatives of ``area`` by x and y of the corners
 
     def __len__(self) -> int:
         return len(self.area)

@@ -24,24 +24,13 @@ class Matching:
     """Residuals of one outline (L, 2), the 3 L outward ones first, then one for each target sample.
 
     Each sits on a layout edge, between vertex ``edge`` and the next one, ``share`` of the way.
-
-    Attributes
-    ----------
-    edge : (R,) int
-    share : (R,) float
-    gap : (R, 2) float, unit-area lengths
-        From the place on the target to the place on the layout.
-    distance : (R,) float
-        Lengths of ``gap``.
-    weight : (R,) float
-        Boundary length that each residual stands for.
     """
 
-    edge: IntArray
-    share: FloatArray
-    gap: FloatArray
-    distance: FloatArray
-    weight: FloatArray
+    edge: IntArray  #: (R,)
+    share: FloatArray  #: (R,)
+    gap: FloatArray  #: (R, 2), unit-area lengths; from the place on the target to the place on the layout
+    distance: FloatArray  #: (R,); lengths of ``gap``
+    weight: FloatArray  #: (R,); boundary length that each residual stands for
 
     def cost(self, trust: float) -> float:
         """Sum of the residuals, each counted linearly beyond the distance ``trust`` (unit-area lengths)."""
@@ -138,18 +127,10 @@ def _nearest_on(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OneSided:
-    """How a layout that will be trimmed is weighed.
+    """How a layout that will be trimmed is weighed."""
 
-    Attributes
-    ----------
-    excess : float, 0..1
-        Weight of what sticks out of the target, relative to what is missed.
-    hinges : (L,) bool
-        Outline vertices where sticking out costs fully.
-    """
-
-    excess: float
-    hinges: BoolArray
+    excess: float  #: 0..1; weight of what sticks out of the target, relative to what is missed
+    hinges: BoolArray  #: (L,); outline vertices where sticking out costs fully
 
     def weighed(self, matching: Matching, outline: FloatArray, target: BoundaryTarget) -> Matching:
         """The same matches, those that stick out with less weight, and one more for every outer hinge."""

@@ -24,22 +24,12 @@ FLOOR = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Quadratic:
-    """The objective around one state, by V variables.
+    """The objective around one state, by V variables."""
 
-    Attributes
-    ----------
-    gradient : (V,) float
-    inner : (V, V) float
-        Second derivative of all that is not the match; symmetric.
-    outline : (2 L, V) float
-        Derivative of the outline.
-    spread : (2 L, 2 L) float
-        Gauss-Newton approximation of the second derivative of the match by the outline; symmetric.
-    """
-
-    gradient: FloatArray
-    inner: FloatArray
-    outline: FloatArray
+    gradient: FloatArray  #: (V,)
+    inner: FloatArray  #: (V, V); second derivative of all that is not the match; symmetric
+    outline: FloatArray  #: (2 L, V); derivative of the outline
+    #: (2 L, 2 L); Gauss-Newton approximation of the second derivative of the match by the outline; symmetric.
     spread: FloatArray
 
     @property
@@ -62,15 +52,9 @@ class Quadratic:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Damped:
-    """A quadratic with damping, factored for several steps.
+    """A quadratic with damping, factored for several steps."""
 
-    Attributes
-    ----------
-    held : (V,) bool
-        Variables that do not move.
-    """
-
-    held: BoolArray
+    held: BoolArray  #: (V,); variables that do not move
     _factor: FloatArray
     _reach: FloatArray
     _compliance: FloatArray

@@ -31,49 +31,30 @@ BLOCK = 128
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Plan:
-    """Index tables of one grid and state.
+    """Index tables of one grid and state."""
 
-    Attributes
-    ----------
-    free, ends, void : int arrays
-        The barycentric stencil, h nodes first.
-    pair : (2, m * n) int
-        The two free nodes that rest on each void's slit.
-    h_count : int
-        Free nodes of the h family; they alone are solved for.
-    h_on_v, v_on_h : _Rests
-        How free h nodes rest on free v nodes, and v on h.
-    v_under_h, h_under_v : _Rests
-        The same from below: which free h nodes rest on each free v node, and which v on each h.
-    slot : (H,) int
-        Where each free h node stands in the m rows of n + 1 places of ``factor``, ascending.
-    around : (first, second, place) int arrays
-        Paths from a free h node over a v node to an h node: the stencil weights of both legs, and where their product
-        stands in the flat coupling (2, m, n + 1, n + 1) of ``factor``.
-    band : Band
-        The same system with its entries, those of ``around``, near the diagonal.
-    given : (K, 2) bool
-        Stencil ends that are given nodes.
-    to_given : (entry, row, column) int arrays
-        Stencil weights that couple free rows to given columns, in the order of ``rim_table(...).node``.
-    even, whole : (L, N) float
-        Rows that read U, and U + V, off the compact nodes.
-    """
-
+    #: free, ends, void: the barycentric stencil, h nodes first.
     free: IntArray
     ends: IntArray
     void: IntArray
-    pair: IntArray
-    h_count: int
+    pair: IntArray  #: (2, m * n); the two free nodes that rest on each void's slit
+    h_count: int  #: free nodes of the h family; they alone are solved for
+    #: h_on_v, v_on_h: how free h nodes rest on free v nodes, and v on h.
     h_on_v: TwoEntryRows
     v_on_h: TwoEntryRows
+    #: v_under_h, h_under_v: the same from below: which free h nodes rest on each free v node, and which v on each h.
     v_under_h: TwoEntryRows
     h_under_v: TwoEntryRows
-    slot: IntArray
+    slot: IntArray  #: (H,); where each free h node stands in the m rows of n + 1 places of ``factor``, ascending
+    #: (first, second, place) int arrays; paths from a free h node over a v node to an h node: the stencil weights of
+    #: both legs, and where their product stands in the flat coupling (2, m, n + 1, n + 1) of ``factor``.
     around: tuple[IntArray, IntArray, IntArray]
-    band: Band
-    given: BoolArray
+    band: Band  #: the same system with its entries, those of ``around``, near the diagonal
+    given: BoolArray  #: (K, 2); stencil ends that are given nodes
+    #: (entry, row, column) int arrays; stencil weights that couple free rows to given columns, in the order of
+    #: ``rim_table(...).node``.
     to_given: tuple[IntArray, IntArray, IntArray]
+    #: even, whole: (L, N); rows that read U, and U + V, off the compact nodes.
     even: FloatArray
     whole: FloatArray
 
@@ -86,17 +67,10 @@ class _Plan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TwoEntryRows:
-    """A sparse matrix with at most two entries a row, as gathers: entries that are missing have weight 0.
+    """A sparse matrix with at most two entries a row, as gathers: entries that are missing have weight 0."""
 
-    Attributes
-    ----------
-    entry : (rows, 2) int
-        Stencil weights; one past the last where there is none.
-    column : (rows, 2) int
-    """
-
-    entry: IntArray
-    column: IntArray
+    entry: IntArray  #: (rows, 2); stencil weights; one past the last where there is none
+    column: IntArray  #: (rows, 2)
 
     @classmethod
     def of(cls, entry: IntArray, row: IntArray, column: IntArray, rows: int) -> TwoEntryRows:
@@ -325,20 +299,11 @@ class OutlineModel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CompactLayout:
-    """The compact sheet of one shape.
+    """The compact sheet of one shape."""
 
-    Attributes
-    ----------
-    shape : (S,) float
-    nodes : (N, 2) float, unit cells
-        Compact nodes.
-    weights : (2 K + 1,) float
-        Stencil weights, the last of them 0.
-    """
-
-    shape: FloatArray
-    nodes: FloatArray
-    weights: FloatArray
+    shape: FloatArray  #: (S,)
+    nodes: FloatArray  #: (N, 2), unit cells; compact nodes
+    weights: FloatArray  #: (2 K + 1,); stencil weights, the last of them 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -50,18 +50,10 @@ def even_points(polygon: shapely.Polygon, count: int = POINTS) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TransportMap:
-    """Where places of the flat sheet belong in the target.
+    """Where places of the flat sheet belong in the target."""
 
-    Attributes
-    ----------
-    source : (Q, 2) float, unit cells
-        Points of the flat sheet.
-    image : (Q, 2) float, unit-area lengths
-        Their images in the target's frame.
-    """
-
-    source: FloatArray
-    image: FloatArray
+    source: FloatArray  #: (Q, 2), unit cells; points of the flat sheet
+    image: FloatArray  #: (Q, 2), unit-area lengths; their images in the target's frame
     _tree: KDTree
 
     @classmethod

@@ -196,21 +196,11 @@ class VertexDrag:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Dual:
-    """The step's equations in the outline's coordinates, for one derivative and one set of voids.
+    """The step's equations in the outline's coordinates, for one derivative and one set of voids."""
 
-    Attributes
-    ----------
-    free : (F,) int
-        Voids that may change.
-    rows : (2 L, F) float
-        Weighted derivative of the outline.
-    factor : (2 L, 2 L) float, bool
-        Cholesky factor of rows @ rows.T + change * I.
-    """
-
-    free: IntArray
-    rows: FloatArray
-    factor: tuple[FloatArray, bool]
+    free: IntArray  #: (F,); voids that may change
+    rows: FloatArray  #: (2 L, F); weighted derivative of the outline
+    factor: tuple[FloatArray, bool]  #: (2 L, 2 L), bool; Cholesky factor of rows @ rows.T + change * I
 
     @classmethod
     def of(cls, root: FloatArray, slopes: FloatArray, free: IntArray, change: float) -> _Dual:

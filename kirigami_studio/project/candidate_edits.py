@@ -76,24 +76,13 @@ def set_label(document: Document, index: int, name: str, note: str) -> Edit:
 
 @dataclass(frozen=True, slots=True)
 class NewDesigns:
-    """What a finished run adds to a project.
-
-    Attributes
-    ----------
-    candidates : tuple of Candidate
-    provenance : mapping of str to str
-    seed : int or None
-        Seed that the settings show from now on; None leaves them as they are.
-    target : Outline or None
-        What the run was made for, if the document should return to it.
-    grid : (rows, columns) or None
-        What the settings show from now on where the run has chosen it.
-    """
+    """What a finished run adds to a project."""
 
     candidates: tuple[Candidate, ...]
     provenance: Mapping[str, str]
-    seed: int | None = None
-    target: Outline | None = None
+    seed: int | None = None  #: Seed that the settings show from now on; None leaves them as they are.
+    target: Outline | None = None  #: what the run was made for, if the document should return to it
+    #: (rows, columns); what the settings show from now on where the run has chosen it.
     grid: tuple[int, int] | None = None
 
 

@@ -34,34 +34,6 @@ class Mark(Enum):
 class Document:
     """Everything the user made in one project.
 
-    Attributes
-    ----------
-    target : Outline or None
-    settings : DesignSettings
-        For the next run; the candidates may stem from an earlier one.
-    candidates : tuple of Candidate
-        Of one run or of several runs for one target, all of one grid, best first.
-    chosen : int or None
-        Index of the candidate on the stage.
-    fabrication : FabricationSettings
-    provenance : mapping of str to str, read-only
-        Where the candidates come from, of all runs together; each candidate knows its own run.
-    marks : tuple of Mark
-        One for each candidate, pinned, rejected or neither; left out, none of them has any.
-    locked : frozenset of (row, column)
-        Voids whose ratio a change by hand leaves as it is.
-    artwork : Artwork or None
-        What is printed on the sheet.
-    drawing : tuple of Outline
-        The objects of the drawing board that the target was made of, the lowest first; none for a target that is one
-        object by itself.
-    guides : two tuples of float, mm
-        Of the drawing board: x of the upright ones and y of the level ones, ascending.
-    labels : tuple of Label
-        Name and note of each candidate; left out, they are named as those of one run.
-    runs : int
-        How many runs have named designs; the next one begins with another letter.
-
     Raises
     ------
     ProjectError
@@ -70,18 +42,23 @@ class Document:
     """
 
     target: Outline | None = None
+    #: For the next run; the candidates may stem from an earlier one.
     settings: DesignSettings = field(default_factory=DesignSettings)
-    candidates: tuple[Candidate, ...] = ()
-    chosen: int | None = None
+    candidates: tuple[Candidate, ...] = ()  #: of one run or of several runs for one target, all of one grid, best first
+    chosen: int | None = None  #: index of the candidate on the stage
     fabrication: FabricationSettings = field(default_factory=FabricationSettings)
+    #: read-only; where the candidates come from, of all runs together; each candidate knows its own run.
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping, hash=False)
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[Mark, ...] = ()  #: one for each candidate, pinned, rejected or neither; left out, none of them has any
+    #: frozenset of (row, column); voids whose ratio a change by hand leaves as it is.
     locked: frozenset[Void] = frozenset()
-    artwork: Artwork | None = None
+    artwork: Artwork | None = None  #: what is printed on the sheet
+    #: The objects of the drawing board that the target was made of, the lowest first; none for a target that is one
+    #: object by itself.
     drawing: tuple[Outline, ...] = ()
-    guides: Guides = NO_GUIDES
-    labels: tuple[Label, ...] = ()
-    runs: int = 0
+    guides: Guides = NO_GUIDES  #: mm; of the drawing board: x of the upright ones and y of the level ones, ascending
+    labels: tuple[Label, ...] = ()  #: name and note of each candidate; left out, they are named as those of one run
+    runs: int = 0  #: how many runs have named designs; the next one begins with another letter
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))

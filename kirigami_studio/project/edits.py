@@ -24,20 +24,11 @@ from kirigami_studio.settings.fabrication import FabricationChange, FabricationS
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A new document and what led to it.
+    """A new document and what led to it."""
 
-    Attributes
-    ----------
-    label : str
-        As it follows the word Undo: "Choose design 3".
-    document : Document
-    merge_key : str or None
-        Consecutive edits of one key are steps of one drag and undo together.
-    """
-
-    label: str
+    label: str  #: as it follows the word Undo: "Choose design 3"
     document: Document
-    merge_key: str | None = None
+    merge_key: str | None = None  #: consecutive edits of one key are steps of one drag and undo together
 
 
 class SettingsChange(DesignChange, total=False):
@@ -355,10 +346,8 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
 
     Parameters
     ----------
-    document : Document
     hinges : collection of int
         Numbered as in ``slits.CutTable``.
-    width_mm : float
 
     Raises
     ------
@@ -367,7 +356,7 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
     """
     gone = set(document.fabrication.options.removed)
     hinges = [hinge for hinge in hinges if hinge not in gone] or hinges
-    options = _without(document.fabrication.options, hinges)
+    options = document.fabrication.options.without(hinges)
     widths = dict(options.hinge_mm) | dict.fromkeys(hinges, round(float(width_mm), DECIMALS))
     changed = replace(options, hinge_mm=tuple(sorted(widths.items())))
     numbers = ",".join(str(hinge) for hinge in sorted(hinges))
@@ -383,28 +372,16 @@ def set_hinge_width(document: Document, hinges: Collection[int], width_mm: float
 
 def remove_hinges(document: Document, hinges: Collection[int]) -> Edit:
     """Leave no connector at these hinges."""
-    options = _without(document.fabrication.options, hinges)
-    changed = replace(options, removed=tuple(sorted({*options.removed, *hinges})))
     number = min(hinges, default=0)
     label = tr_n("Cut through connector {number}", "Cut through {count} connectors", len(hinges), number=number)
-    return _edit(document, changed, label)
+    return _edit(document, document.fabrication.options.cut_through(hinges), label)
 
 
 def reset_hinges(document: Document, hinges: Collection[int]) -> Edit:
     """Give connectors the sheet's usual width again."""
     number = min(hinges, default=0)
     label = tr_n("Reset connector {number}", "Reset {count} connectors", len(hinges), number=number)
-    return _edit(document, _without(document.fabrication.options, hinges), label)
-
-
-def _without(options: CutOptions, hinges: Collection[int]) -> CutOptions:
-    """The options without the choices for these connectors."""
-    chosen = set(hinges)
-    return replace(
-        options,
-        hinge_mm=tuple(pair for pair in options.hinge_mm if pair[0] not in chosen),
-        removed=tuple(hinge for hinge in options.removed if hinge not in chosen),
-    )
+    return _edit(document, document.fabrication.options.without(hinges), label)
 
 
 def _edit(document: Document, options: CutOptions, label: str, merge_key: str | None = None) -> Edit:

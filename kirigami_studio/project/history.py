@@ -22,15 +22,7 @@ class _Step:
 
 
 class History:
-    """The present document with the way back and forth.
-
-    Parameters
-    ----------
-    document : Document
-        Where the history starts; counts as saved.
-    limit : int
-        Number of steps that can be undone.
-    """
+    """The present document with the way back and forth."""
 
     def __init__(self, document: Document | None = None, limit: int = LONGEST_HISTORY) -> None:
         self._limit = limit

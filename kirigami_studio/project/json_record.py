@@ -43,8 +43,6 @@ class Record:
 
     Parameters
     ----------
-    value : object
-        What the parser made of it.
     place : str
         Its name in messages, e.g. ``design.json.settings``.
 

@@ -26,22 +26,14 @@ ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 class Label:
     """What a design is called, and what the user has noted of it.
 
-    Attributes
-    ----------
-    code : str
-        The name that it got by itself, such as "A1"; it never changes.
-    name : str
-        The name that the user gave it, "" for none.
-    note : str
-
     Raises
     ------
     ProjectError
         No such code, or a name or a note that is too long or cannot be shown.
     """
 
-    code: str
-    name: str = ""
+    code: str  #: the name that it got by itself, such as "A1"; it never changes
+    name: str = ""  #: the name that the user gave it, "" for none
     note: str = ""
 
     def __post_init__(self) -> None:

@@ -65,11 +65,8 @@ def migrate(members: Members, version: int, path: Path) -> Members:
 
     Parameters
     ----------
-    members : mapping of str to bytes
     version : int
         Format of the file, by its manifest.
-    path : Path
-        Of the file, for messages.
 
     Raises
     ------

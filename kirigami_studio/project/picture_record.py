@@ -25,33 +25,20 @@ LARGEST_PICTURE = 16 * 2**20
 class TracedPicture:
     """A picture and how the target was traced from it.
 
-    Attributes
-    ----------
-    name : str
-        Of its file, with the extension; the target is named after it.
-    content : bytes
-        Of its file.
-    automatic, threshold : float
-        Grey levels, 0 black .. 1 white: the one that would be chosen, and the one that was.
-    scale : float, source pixels
-        Length in the picture of one unit of the outline.
-    centre : (x, y) float, source pixels
-        The outline's centroid, from the lower left corner.
-    size : (width, height) int, source pixels
-
     Raises
     ------
     ProjectError
         No such name, too large, or numbers that no picture has.
     """
 
-    name: str
-    content: bytes
+    name: str  #: of its file, with the extension; the target is named after it
+    content: bytes  #: of its file
+    #: automatic, threshold: grey levels, 0 black .. 1 white: the one that would be chosen, and the one that was.
     automatic: float
     threshold: float
-    scale: float
-    centre: tuple[float, float]
-    size: tuple[int, int]
+    scale: float  #: source pixels; length in the picture of one unit of the outline
+    centre: tuple[float, float]  #: (x, y), source pixels; the outline's centroid, from the lower left corner
+    size: tuple[int, int]  #: (width, height), source pixels
 
     def __post_init__(self) -> None:
         if "\0" in self.name or Path(self.name).name != self.name or Path(self.name).suffix.lower() not in PICTURES:

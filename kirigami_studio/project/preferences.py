@@ -52,41 +52,22 @@ _FLAG = Setting(code="preferences.not_true_or_false", error=ProjectError).metada
 
 @dataclass(frozen=True, slots=True)
 class Preferences:
-    """Choices that outlive a project.
+    """Choices that outlive a project."""
 
-    Attributes
-    ----------
-    profile : str
-        Key of the machine profile that was chosen last.
-    dxf_version : DxfVersion
-        DXF dialect that was chosen last.
-    theme : Theme
-    language : str
-        Code of the window's language, or "system" for the desktop's.
-    material : str
-        Key of the material that was chosen last.
-    machine : str
-        Key of the machine that was chosen last; "" for the one that the material is for.
-    paper : Paper
-        That PDFs are spread over.
-    size : TypedSize
-    opened_mm, width_mm : float
-        Longer side of the opened shape, and width of the flat sheet.
-    machine_asked : bool
-        Whether the question for machine and material was answered, or declined.
-    motion : MotionPreference
-    """
-
-    profile: str = field(default="any", metadata=_NAME)
-    dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)
+    profile: str = field(default="any", metadata=_NAME)  #: key of the machine profile that was chosen last
+    dxf_version: DxfVersion = field(default=DxfVersion.R2010, metadata=_CHOICE)  #: DXF dialect that was chosen last
     theme: Theme = field(default=Theme.SYSTEM, metadata=_CHOICE)
+    #: Code of the window's language, or "system" for the desktop's.
     language: str = field(default="system", metadata=_NAME)
-    material: str = field(default=DEFAULT_PRESET, metadata=_NAME)
+    material: str = field(default=DEFAULT_PRESET, metadata=_NAME)  #: key of the material that was chosen last
+    #: Key of the machine that was chosen last; "" for the one that the material is for.
     machine: str = field(default="", metadata=_NAME_OR_NONE)
-    paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)
+    paper: Paper = field(default=Paper.NONE, metadata=_CHOICE)  #: that PDFs are spread over
     size: TypedSize = field(default=TypedSize.OPENED, metadata=_CHOICE)
+    #: opened_mm, width_mm: longer side of the opened shape, and width of the flat sheet.
     opened_mm: float = 100.0
     width_mm: float = 100.0
+    #: Whether the question for machine and material was answered, or declined.
     machine_asked: bool = field(default=False, metadata=_FLAG)
     motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
 

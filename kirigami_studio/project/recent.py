@@ -20,17 +20,13 @@ LONGEST_PATH = 4096
 class Recent:
     """The files that were used last, the newest first.
 
-    Attributes
-    ----------
-    projects, targets : tuple of str
-        Absolute paths.
-
     Raises
     ------
     ProjectError
         Something else than a list of paths.
     """
 
+    #: projects, targets: absolute paths.
     projects: tuple[str, ...] = ()
     targets: tuple[str, ...] = ()
 

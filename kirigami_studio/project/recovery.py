@@ -28,24 +28,12 @@ LARGEST_FILE = 256 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class RecoveryNote:
-    """Whose work a recovery file holds.
+    """Whose work a recovery file holds."""
 
-    Attributes
-    ----------
-    name : str
-        What the user calls the project: its file's name, or what the target is called.
-    path : str
-        Where the project was saved last, absolute; "" if it never was.
-    changed : str
-        When the latest change was made, ISO 8601 with the offset of its time zone.
-    digest : str
-        SHA-256 of the project's file as it was read or written last; "" if that is not known.
-    """
-
-    name: str
-    path: str
-    changed: str
-    digest: str = ""
+    name: str  #: what the user calls the project: its file's name, or what the target is called
+    path: str  #: where the project was saved last, absolute; "" if it never was
+    changed: str  #: when the latest change was made, ISO 8601 with the offset of its time zone
+    digest: str = ""  #: SHA-256 of the project's file as it was read or written last; "" if that is not known
 
     @property
     def when(self) -> datetime:

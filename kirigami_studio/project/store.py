@@ -41,23 +41,12 @@ _FIXED_DATE = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """What a project file holds.
-
-    Attributes
-    ----------
-    document : Document
-    picture : TracedPicture or None
-        What the target was traced from.
-    notes : tuple of str
-        What had to be left out, in sentences.
-    digest : str
-        SHA-256 of the file.
-    """
+    """What a project file holds."""
 
     document: Document
-    picture: TracedPicture | None = None
-    notes: tuple[str, ...] = ()
-    digest: str = ""
+    picture: TracedPicture | None = None  #: what the target was traced from
+    notes: tuple[str, ...] = ()  #: what had to be left out, in sentences
+    digest: str = ""  #: SHA-256 of the file
 
 
 def save(document: Document, path: Path | str, picture: TracedPicture | None = None) -> str:

@@ -555,7 +555,6 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
 
     Parameters
     ----------
-    saved : FabricationSettings
     given : mapping of str to object
         Settings of the sheet and of its cuts by name, material, machine and profile as :func:`find_material`,
         :func:`find_machine` and :func:`find_profile` read them; widths of single connectors, ``hinge_mm`` (pairs of

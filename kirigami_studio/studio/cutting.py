@@ -30,8 +30,6 @@ def plan_of(
 
     Parameters
     ----------
-    candidate : Candidate
-    settings : FabricationSettings
     deployment : Deployment, optional
         Of the candidate's final sheet, if it is known already.
     cancel : function

@@ -61,21 +61,11 @@ class ModelFound:
 
 @dataclass(frozen=True, slots=True)
 class Refitted:
-    """What a fit from a design's present sheet has found.
+    """What a fit from a design's present sheet has found."""
 
-    Attributes
-    ----------
-    decoded : Decoded
-        The fitted design with its motion, trimmed if the one it began with was.
-    better : bool
-        Whether it ranks before the one it began with, both untrimmed.
-    untrimmed : str
-        Why it could not be trimmed again, "" if that was not to be done or was.
-    """
-
-    decoded: Decoded
-    better: bool
-    untrimmed: str = ""
+    decoded: Decoded  #: the fitted design with its motion, trimmed if the one it began with was
+    better: bool  #: whether it ranks before the one it began with, both untrimmed
+    untrimmed: str = ""  #: why it could not be trimmed again, "" if that was not to be done or was
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,25 +88,13 @@ class FittedAgain:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KnownAsCut:
-    """What a run has found out about designs as cut, which holds as long as they are cut that way.
+    """What a run has found out about designs as cut, which holds as long as they are cut that way."""
 
-    Attributes
-    ----------
-    sheet : FabricationSettings
-        How the designs are cut, see :func:`one_sheet`.
-    jam_phi : mapping of Candidate to float, radians
-    refusals : mapping of Candidate to Note
-    losses : mapping of Candidate to float
-        As :class:`~kirigami_studio.pipeline.rank.Ranking` has them.
-    simulated : mapping of Candidate to AsCut
-        Those that were closed on their connectors in a close look.
-    """
-
-    sheet: FabricationSettings
-    jam_phi: Mapping[Candidate, float]
+    sheet: FabricationSettings  #: how the designs are cut, see :func:`one_sheet`
+    jam_phi: Mapping[Candidate, float]  #: radians
     refusals: Mapping[Candidate, Note]
-    losses: Mapping[Candidate, float]
-    simulated: Mapping[Candidate, AsCut]
+    losses: Mapping[Candidate, float]  #: as :class:`~kirigami_studio.pipeline.rank.Ranking` has them
+    simulated: Mapping[Candidate, AsCut]  #: those that were closed on their connectors in a close look
 
     @classmethod
     def of(cls, result: Result, cut: FabricationSettings) -> KnownAsCut:
@@ -152,15 +130,10 @@ def request_for(
 
     Parameters
     ----------
-    target : Outline
-    wanted : DesignSettings
     cut : FabricationSettings
         The sheet's width, and what its material and connectors need.
     least_panel_mm : float
         Least panel edge and neck that is asked for.
-    trim : bool
-        Whether the best designs are trimmed.
-    budget_seconds : float, optional
 
     Raises
     ------
@@ -194,9 +167,6 @@ def run_design(
     ----------
     request : Request
         Its grid may be open.
-    cut : FabricationSettings
-        How designs are cut.
-    cancel : callable
     least_panel_mm : float
         Least panel edge and neck that is asked for.
     beside : tuple of Candidate
@@ -231,7 +201,7 @@ def run_design(
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
-        result = yield from _ranked_as_cut(result, cut, beside, cancel)
+        result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
 
 
@@ -258,18 +228,7 @@ def completed(run: Iterator[object], tell: Tell) -> Result:
     raise Cancelled("run.no_result")
 
 
-def ranked_as_cut(result: Result, cut: FabricationSettings, tell: Tell) -> Result:
-    """Rank the designs of a run by how they do as cut, all in one go, see :func:`run_design`."""
-    steps = _ranked_as_cut(result, cut, (), never)
-    while True:
-        try:
-            tell(next(steps))
-        except StopIteration as end:
-            found: Result = end.value
-            return found
-
-
-def _ranked_as_cut(
+def ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
 ) -> Generator[Progress, None, Result]:
     """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
@@ -462,7 +421,7 @@ def fitting_again(
         yield FittedAgain(report.done, report.total, report.before, report.after)
     if better:
         found = Result(request, tuple(better.get(one, one) for one in among), 0, 0.0)
-        yield KnownAsCut.of((yield from _ranked_as_cut(found, cut, (), cancel)), cut)
+        yield KnownAsCut.of((yield from ranked_as_cut(found, cut, (), cancel)), cut)
 
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:

@@ -12,22 +12,12 @@ from kirigami_studio.foundation.words import mark, tr
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """One row of the table.
+    """One row of the table."""
 
-    Attributes
-    ----------
-    extension : str
-        Lower case, with the dot.
-    title : str
-    tip : str
-    cuts : bool
-        It holds the cut plan in mm; the others are pictures.
-    """
-
-    extension: str
+    extension: str  #: lower case, with the dot
     title: str
     tip: str
-    cuts: bool
+    cuts: bool  #: it holds the cut plan in mm; the others are pictures
 
     @property
     def filter(self) -> str:

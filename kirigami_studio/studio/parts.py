@@ -36,16 +36,11 @@ class Purpose(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartsRead:
-    """A drawing that holds several parts, and how they are drawn.
-
-    Attributes
-    ----------
-    source : SourceParts
-    sketches : tuple of tuple of (P, 2) float, source units
-        For each part its rings, or its lines where it encloses nothing; fewer vertices than the part itself.
-    """
+    """A drawing that holds several parts, and how they are drawn."""
 
     source: SourceParts
+    #: tuple of tuple of (P, 2) float, source units; for each part its rings, or its lines where it encloses nothing;
+    #: fewer vertices than the part itself.
     sketches: tuple[tuple[FloatArray, ...], ...]
 
 

@@ -47,33 +47,16 @@ class ChangedOnDisk:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Project:
-    """A project that was read.
-
-    Attributes
-    ----------
-    document : Document
-    picture : Picture or None
-        Behind its target.
-    notes : tuple of str
-        What could not be read, a sentence each.
-    """
+    """A project that was read."""
 
     document: Document
-    picture: Picture | None
-    notes: tuple[str, ...] = ()
+    picture: Picture | None  #: behind its target
+    notes: tuple[str, ...] = ()  #: what could not be read, a sentence each
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """A bundled project from one shape to another.
-
-    Attributes
-    ----------
-    path : Path
-    target : Outline
-    candidate : Candidate
-    design : PosedDesign
-    """
+    """A bundled project from one shape to another."""
 
     path: Path
     target: Outline
@@ -180,20 +163,11 @@ def extracted_picture(opened: Opened, folder: Path) -> Picture | None:
 
 @dataclass(frozen=True, slots=True)
 class Leftover:
-    """Unsaved work of a session that ended unexpectedly.
-
-    Attributes
-    ----------
-    file : Path
-    note : RecoveryNote or None
-        None if it cannot be read.
-    fault : str
-        Why it cannot be read, a sentence; else "".
-    """
+    """Unsaved work of a session that ended unexpectedly."""
 
     file: Path
-    note: RecoveryNote | None
-    fault: str = ""
+    note: RecoveryNote | None  #: None if it cannot be read
+    fault: str = ""  #: why it cannot be read, a sentence; else ""
 
 
 def keeping(

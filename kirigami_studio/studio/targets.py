@@ -42,23 +42,14 @@ LARGEST_SIDE = 1600
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white).
-
-    Attributes
-    ----------
-    path : Path
-    automatic, threshold : float, 0..1
-        The grey level that suits the picture best, and the one it is traced at.
-    traced : Traced or None
-        Where the target lies in it.
-    seen : (H, W, 4) uint8 or None
-        The picture reduced for drawing: red, green, blue, opacity.
-    """
+    """A picture that a target is traced from; grey levels run from 0 (black) to 1 (white)."""
 
     path: Path
+    #: automatic, threshold: 0..1; the grey level that suits the picture best, and the one it is traced at.
     automatic: float
     threshold: float
-    traced: Traced | None = None
+    traced: Traced | None = None  #: where the target lies in it
+    #: (H, W, 4) uint8; the picture reduced for drawing: red, green, blue, opacity.
     seen: NDArray[np.uint8] | None = field(default=None, compare=False, repr=False)
 
 
@@ -75,7 +66,6 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
 
     Parameters
     ----------
-    source : object
     choice : PartChoice, optional
         Of the parts of a drawing.
     threshold : float, 0..1, optional
@@ -124,16 +114,9 @@ def _read(source: str | os.PathLike[str], choice: PartChoice | None, threshold: 
 
 @dataclass(frozen=True, slots=True)
 class PartChoice:
-    """Which parts of a drawing are meant, and how they become one outline.
+    """Which parts of a drawing are meant, and how they become one outline."""
 
-    Attributes
-    ----------
-    words : str
-        ``all``, ``largest``, or names, numbers and layers.
-    merging : Merging
-    """
-
-    words: str
+    words: str  #: ``all``, ``largest``, or names, numbers and layers
     merging: Merging
 
     @classmethod
@@ -321,25 +304,14 @@ def reduced_picture(path: Path) -> NDArray[np.uint8] | None:
 
 @dataclass(frozen=True, slots=True)
 class TargetReading:
-    """What a target's shape says.
+    """What a target's shape says."""
 
-    Attributes
-    ----------
-    symmetry : str
-        How symmetric it is, in one or two sentences.
-    grid : (rows, columns) or None
-        What a run would choose, as far as that is known without trying; None where the settings ask for a symmetry
-        that the target is far from.
-    reason : str
-        Why, in one sentence.
-    start_refusal : str
-        Why the run would refuse the start on that grid, in one sentence; "" where it would not.
-    """
-
-    symmetry: str
+    symmetry: str  #: how symmetric it is, in one or two sentences
+    #: (rows, columns); what a run would choose, as far as that is known without trying; None where the settings ask for
+    #: a symmetry that the target is far from.
     grid: tuple[int, int] | None
-    reason: str
-    start_refusal: str = ""
+    reason: str  #: why, in one sentence
+    start_refusal: str = ""  #: why the run would refuse the start on that grid, in one sentence; "" where it would not
 
 
 def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Cancel) -> Iterator[TargetReading]:

@@ -84,23 +84,12 @@ def flat_size(deployment: Deployment, width_mm: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """One end of the motion.
+    """One end of the motion."""
 
-    Attributes
-    ----------
-    name : str
-        Of the start, or of the target.
-    outline : (P, 2) float
-        What the sheet is to look like, y up, of any size.
-    size_mm : (width, height) float, mm
-        Of the flat sheet; of the target as the opened sheet shows it.
-    match : float, 0..1, or None
-        IoU of the sheet with that outline; None where the sheet is trimmed: its edge is cut off.
-    """
-
-    name: str
-    outline: FloatArray
-    size_mm: tuple[float, float]
+    name: str  #: of the start, or of the target
+    outline: FloatArray  #: (P, 2); what the sheet is to look like, y up, of any size
+    size_mm: tuple[float, float]  #: (width, height), mm; of the flat sheet; of the target as the opened sheet shows it
+    #: 0..1, or None; IoU of the sheet with that outline; None where the sheet is trimmed: its edge is cut off.
     match: float | None
 
     @property
@@ -127,27 +116,14 @@ class State:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PassedState:
-    """A second target on the way of a design.
-
-    Attributes
-    ----------
-    name : str
-    outline : (P, 2) float
-    size_mm : (width, height) float, mm
-        As the sheet shows it.
-    match : float, 0..1
-        IoU of the sheet, untrimmed, with it.
-    phi : float, radians
-    trimmed : bool
-        Whether the design is trimmed: its match is still that of the whole sheet.
-    """
+    """A second target on the way of a design."""
 
     name: str
-    outline: FloatArray
-    size_mm: tuple[float, float]
-    match: float
-    phi: float
-    trimmed: bool
+    outline: FloatArray  #: (P, 2)
+    size_mm: tuple[float, float]  #: (width, height), mm; as the sheet shows it
+    match: float  #: 0..1; IoU of the sheet, untrimmed, with it
+    phi: float  #: radians
+    trimmed: bool  #: whether the design is trimmed: its match is still that of the whole sheet
 
     @classmethod
     def of(cls, candidate: Candidate, second: SecondMatch, width_mm: float) -> PassedState:
@@ -186,21 +162,12 @@ class PassedState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TwoStates:
-    """Both ends of a design's motion: the flat sheet, and the sheet at the target angle.
-
-    Attributes
-    ----------
-    start, target : State
-    phi : float, radians
-        The target angle.
-    passed : PassedState or None
-        The second target between them.
-    """
+    """Both ends of a design's motion: the flat sheet, and the sheet at the target angle."""
 
     start: State
     target: State
-    phi: float
-    passed: PassedState | None = None
+    phi: float  #: radians; the target angle
+    passed: PassedState | None = None  #: the second target between them
 
     @classmethod
     def of(cls, candidate: Candidate, design: PosedDesign, target: Outline, width_mm: float) -> TwoStates:

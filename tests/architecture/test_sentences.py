@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import kirigami_studio.lab
 from kirigami_studio.foundation import errors
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.sentences import SENTENCES, sentence
@@ -17,6 +18,12 @@ from kirigami_studio.foundation.sentences import SENTENCES, sentence
 CODE = re.compile(r"[a-z][a-z0-9_]*(\.[a-z0-9_]+)+")
 #: Told in one clause, which a longer sentence takes in.
 CLAUSES = re.compile(r"[.!?:)…}]$|\{\w+[^}]*\}$")
+
+
+def tables_of(repository: Path) -> list[Path]:
+    """The modules with sentences: those of the product, and that of the lab."""
+    package = repository / "kirigami_studio"
+    return [*(package / "foundation" / "sentences").glob("*.py"), package / "lab" / "sentences.py"]
 
 
 @dataclass(frozen=True)
@@ -52,9 +59,9 @@ def calls_in(path: Path) -> list[Call]:
 
 @pytest.fixture(scope="module")
 def calls(repository: Path) -> list[Call]:
-    package = repository / "kirigami_studio"
-    tables = package / "foundation" / "sentences"
-    return [call for path in sorted(package.rglob("*.py")) if tables not in path.parents for call in calls_in(path)]
+    tables = tables_of(repository)
+    paths = sorted((repository / "kirigami_studio").rglob("*.py"))
+    return [call for path in paths if path not in tables for call in calls_in(path)]
 
 
 def kinds_of_errors() -> set[str]:
@@ -87,9 +94,9 @@ def test_that_a_problem_brings_the_values_that_its_sentence_names(calls: list[Ca
 
 
 def test_that_no_code_is_left_over(repository: Path) -> None:
-    package = repository / "kirigami_studio"
-    tables = package / "foundation" / "sentences"
-    code = "\n".join(path.read_text(encoding="utf-8") for path in package.rglob("*.py") if tables not in path.parents)
+    tables = tables_of(repository)
+    paths = (repository / "kirigami_studio").rglob("*.py")
+    code = "\n".join(path.read_text(encoding="utf-8") for path in paths if path not in tables)
     assert [name for name in SENTENCES if f'"{name}"' not in code] == []
 
 
@@ -100,11 +107,14 @@ def test_that_codes_are_names_and_sentences_are_whole() -> None:
     assert [form for form in forms if "  " in form or form != form.strip()] == []
 
 
+def test_that_the_lab_brings_its_own_sentences() -> None:
+    assert set(kirigami_studio.lab.sentences.SENTENCES) <= set(SENTENCES)
+
+
 def test_that_no_code_stands_in_two_tables(repository: Path) -> None:
-    tables = (repository / "kirigami_studio" / "foundation" / "sentences").glob("*.py")
     keys = [
         key.value
-        for table in tables
+        for table in tables_of(repository)
         for node in ast.walk(ast.parse(table.read_text(encoding="utf-8")))
         if isinstance(node, ast.Dict)
         for key in node.keys

@@ -19,7 +19,7 @@ DIALECT = re.compile(r"\b(a person|told)\b", re.IGNORECASE)
 #: Docstrings that broke the rule when it was made, by package: mend some, and lower the number.
 OFFENDERS = {
     "": 1,
-    "evaluate": 94,
+    "evaluate": 93,
     "export": 71,
     "fabricate": 120,
     "generator": 45,

@@ -13,7 +13,7 @@ from pathlib import Path
 from babel.messages.catalog import Catalog
 
 from kirigami_studio.foundation.words import FOLDER_VARIABLE
-from tests.catalogues import KEYWORDS, template, write_compiled
+from tests.catalogues import template, write_compiled
 
 OPEN, CLOSE = "\N{LEFT WHITE SQUARE BRACKET}", "\N{RIGHT WHITE SQUARE BRACKET}"
 #: Written in no language, or data: names of files and figures, units, abbreviations of the field, keys.
@@ -64,12 +64,6 @@ window.session.history.mark_saved()
 window.close()
 print(json.dumps(found))
 """
-
-
-def test_that_translators_get_the_sentences_that_the_tests_compare(repository: Path) -> None:
-    recipe = (repository / "Makefile").read_text(encoding="utf-8")
-    named = re.findall(r" -k (\w+)(?::(\d),(\d))?", recipe)
-    assert {name: (int(one), int(many)) if one else None for name, one, many in named} == KEYWORDS
 
 
 def test_that_no_sentence_is_said_before_the_language_is_chosen(repository: Path) -> None:

@@ -20,24 +20,13 @@ from kirigami_studio.foundation.sentences import (
     mechanics,
     outlines,
     project,
-    training_and_benchmarks,
 )
 from kirigami_studio.foundation.words import fill, tr, tr_n
 
-#: Every sentence by the code of its problem.
-SENTENCES: Mapping[str, str | tuple[str, str]] = {
+#: Every sentence by the code of its problem; the lab adds its own when it is imported.
+SENTENCES: dict[str, str | tuple[str, str]] = {
     code: text
-    for table in (
-        assembly,
-        designs,
-        export,
-        fabricate,
-        interface,
-        mechanics,
-        outlines,
-        project,
-        training_and_benchmarks,
-    )
+    for table in (assembly, designs, export, fabricate, interface, mechanics, outlines, project)
     for code, text in table.SENTENCES.items()
 }
 

@@ -169,15 +169,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A U-Net of {levels} levels cannot halve {latent} pixels {halvings} times, or its mask of {mask} "
         "pixels is not a multiple of {latent}. Give it fewer levels."
     ),
-    "model.baseline_pixels": mark(
-        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. They must be even at "
-        "every level of the network but the last, and divide the mask."
-    ),
-    "model.diffusion_steps": mark("A diffusion model samples in 1 to {most} steps, got {steps}."),
-    "model.unknown_baseline": mark("There is no generator called '{kind:.40}'. Choose one of {choices}."),
-    "model.baseline_unreadable": mark(
-        "Cannot read a generator from {path}. Train one with 'kirigami-studio train cvae', 'cgan' or 'diffusion'."
-    ),
     "model.unknown_backbone": mark(
         "This version does not know the network '{backbone:.40}' of these weights. Install the latest version of "
         "Kirigami Studio."

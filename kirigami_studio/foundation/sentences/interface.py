@@ -109,4 +109,27 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Cannot write {path}: the link leads back to itself. Delete it or choose another name."
     ),
     "file.folder_not_writable": mark("Cannot write to {folder}. Choose a folder where you have permission to write."),
+    # Programs and processes
+    "training.needs_python": mark(
+        "This packaged program designs but does not train. Install the wheel of the same version for that."
+    ),
+    "cluster.package_missing": mark(
+        "A cluster needs the package distributed. Install it with pip install 'kirigami-studio[cluster]', or leave out "
+        "--scheduler."
+    ),
+    "cluster.no_answer": mark(
+        "Nobody answers at {address} within {seconds:g} seconds. Start 'dask scheduler', or correct the address."
+    ),
+    "cluster.no_workers": mark(
+        "The scheduler at {address} has no workers. Start some with 'dask worker {address} --nthreads 1'."
+    ),
+    "cluster.lost": mark(
+        "The scheduler at {address} went away. Finished runs are kept: start it again, and repeat this call."
+    ),
+    "processes.work_ends_them": mark(
+        "A process was ended from outside {times} times at one piece of work. If memory ran short, use fewer processes."
+    ),
+    "cluster.work_ends_workers": mark(
+        "One piece of work ended several workers of {address}, one after the other. They may be short of memory."
+    ),
 }

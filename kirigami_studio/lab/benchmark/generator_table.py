@@ -31,12 +31,13 @@ from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed, sample_fields
-from kirigami_studio.generator.weights import Model, load_model, load_weights
+from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import load_generator
 from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures, success_share
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key
+from kirigami_studio.lab.trained_weights import load_weights
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline

@@ -21,7 +21,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.velocity import backbone_of
-from kirigami_studio.generator.weights import digest_of, load_weights, variants_about
+from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.lab.benchmark.generator_table import (
@@ -33,6 +33,7 @@ from kirigami_studio.lab.benchmark.generator_table import (
 from kirigami_studio.lab.benchmark.match_table import MatchRow, match_figures
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
 from kirigami_studio.lab.fabricability import TRIAL, Fabricability, fabricability
+from kirigami_studio.lab.trained_weights import load_weights, variants_about
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 

@@ -114,7 +114,7 @@ def train(arguments: argparse.Namespace) -> int:
 
 
 def _train(arguments: argparse.Namespace, process: Process) -> None:
-    from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.lab.trained_weights import store_model
     from kirigami_studio.lab.training.dataset import digest_of_designs
     from kirigami_studio.lab.training.train_flow import FlowSettings, train_flow, trained_network
     from kirigami_studio.lab.training.validation import validator
@@ -290,7 +290,7 @@ def _family(arguments: argparse.Namespace, designs: Split | None) -> str:
 
 def grpo(arguments: argparse.Namespace) -> int:
     """Align a generator, or go on aligning it, and write its weights into the run folder."""
-    from kirigami_studio.generator.weights import store_model
+    from kirigami_studio.lab.trained_weights import store_model
     from kirigami_studio.lab.training.dataset import digest_of_designs
     from kirigami_studio.lab.training.grpo import GrpoSettings, aligned_network, train_grpo
     from kirigami_studio.lab.training.learner import training_device
@@ -350,7 +350,7 @@ def align(arguments: argparse.Namespace) -> int:
 
 
 def _align(arguments: argparse.Namespace, process: Process) -> None:
-    from kirigami_studio.generator.weights import store_variants
+    from kirigami_studio.lab.trained_weights import store_variants
     from kirigami_studio.lab.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
     from kirigami_studio.lab.training.validation import preference_figures
 
@@ -433,7 +433,8 @@ def seconds_allowed(arguments: argparse.Namespace) -> float:
 
 def starting_model(name: str, bundled: str = "prior") -> Model:
     """The weights that a run begins with: ``bundled`` ones, or a .safetensors file beside its manifest."""
-    from kirigami_studio.generator.weights import load_model, load_weights
+    from kirigami_studio.generator.weights import load_model
+    from kirigami_studio.lab.trained_weights import load_weights
 
     if name == "bundled":
         return load_model(bundled)

@@ -38,8 +38,9 @@ from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.generator.conditioning import square_pose, turned
 from kirigami_studio.generator.flow import integrate
 from kirigami_studio.generator.velocity import Code, Network
-from kirigami_studio.generator.weights import Model, store_model, variants_about
+from kirigami_studio.generator.weights import Model
 from kirigami_studio.lab.paper_evaluator import PaperScore, judge
+from kirigami_studio.lab.trained_weights import store_model, variants_about
 from kirigami_studio.lab.training.corpus import ChunkBatches
 from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
 from kirigami_studio.lab.training.flow_path import ConditionalPath, PathSample, cfm_errors

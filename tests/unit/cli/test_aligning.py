@@ -13,7 +13,8 @@ from safetensors.torch import load_file
 
 from kirigami_studio.cli import main
 from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
-from kirigami_studio.generator.weights import load_model, store_model, variants
+from kirigami_studio.generator.weights import load_model, variants
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lab.training.learner import grown_state
 from kirigami_studio.lab.training.train_aligned import VARIANTS, AlignSettings
 

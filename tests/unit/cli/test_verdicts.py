@@ -15,11 +15,12 @@ from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.foundation.steps import never, result_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.events import Progress, Result
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
@@ -116,21 +117,17 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     crossed = replace(irregular, score=replace(irregular.score, feasible=False), index=2)
     result = Result(Request(target, (4, 5), regular=0.0, polish=0), (irregular, uniform, crossed), 3, 0.0)
     straight = replace(document.fabrication, options=CutOptions(style=ConnectorStyle.STRAIGHT))
-    found = ranked_as_cut(result, straight, quietly)
+    found = result_of(ranked_as_cut(result, straight, (), never))
     assert found.candidates == (uniform, irregular, crossed)
     assert [found.ranking.cuttable(one) for one in found.candidates] == [True, False, False]
     reasons = [reason.code for reason in found.ranking.reasons(found.candidates)]
     assert reasons[1:] == ["rank.jams", "rank.not_feasible"]
     assert found.jam_phi[irregular] > math.radians(10.0)
-    centred = ranked_as_cut(result, document.fabrication, quietly)
+    centred = result_of(ranked_as_cut(result, document.fabrication, (), never))
     assert centred.candidates == (irregular, uniform, crossed) and centred.refusals == {}
-    brittle = ranked_as_cut(result, replace(document.fabrication, material="card-co2"), quietly)
+    brittle = result_of(ranked_as_cut(result, replace(document.fabrication, material="card-co2"), (), never))
     assert not any(brittle.ranking.cuttable(one) for one in brittle.candidates)
     assert {note.code for note in brittle.refusals.values()} == {"as_cut.breaks"}
-
-
-def quietly(progress: Progress) -> None:
-    """Nobody is told how far it has come."""
 
 
 @pytest.mark.torch

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
+import kirigami_studio.lab  # noqa: F401  (its sentences)
 from kirigami_studio.foundation import words
 from kirigami_studio.foundation.sentences import SENTENCES, sentence
 from kirigami_studio.foundation.words import decimal_sign, tr, tr_n

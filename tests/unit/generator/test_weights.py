@@ -18,14 +18,8 @@ from kirigami_studio.generator.feedback import Feedback
 from kirigami_studio.generator.network import VARIATION_COST, NetworkShape, TargetCode, VelocityNetwork
 from kirigami_studio.generator.sampler import BATCH, posed, sample_fields
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
-from kirigami_studio.generator.weights import (
-    digest_of,
-    load_model,
-    model_folder,
-    store_model,
-    store_variants,
-    variants,
-)
+from kirigami_studio.generator.weights import digest_of, load_model, model_folder, variants
+from kirigami_studio.lab.trained_weights import store_model, store_variants
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.silhouettes import load
 from tests.refusals import refused

@@ -9,8 +9,9 @@ import pytest
 from small_networks import random_network
 
 from kirigami_studio.cli import main
-from kirigami_studio.generator.weights import load_model, store_variants
+from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lab.benchmark.beginnings_suite import begun, measure_beginnings
+from kirigami_studio.lab.trained_weights import store_variants
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request

@@ -12,7 +12,7 @@ from command_line import answer
 from small_networks import random_network
 
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.generator.weights import load_model, store_model
+from kirigami_studio.generator.weights import load_model
 from kirigami_studio.lab.benchmark.grpo_suite import (
     AlignedRun,
     GrpoFigures,
@@ -22,6 +22,7 @@ from kirigami_studio.lab.benchmark.grpo_suite import (
 )
 from kirigami_studio.lab.benchmark.report.whole import made_from
 from kirigami_studio.lab.benchmark.run_store import RunStore
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lab.training.grpo import GrpoSettings, train_grpo
 from kirigami_studio.outlines.silhouettes import load
 

@@ -15,7 +15,8 @@ from kirigami_studio.foundation.errors import ExportError, ModelError, UsageErro
 from kirigami_studio.generator.network import NetworkShape
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
 from kirigami_studio.generator.velocity import Network
-from kirigami_studio.generator.weights import Model, load_model, load_weights, store_model, variants_about
+from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lab.trained_weights import load_weights, store_model, variants_about
 from kirigami_studio.lab.training.corpus import Corpus, FixedDesigns
 from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.fields import mixed_fields, structured_fields

@@ -17,7 +17,8 @@ from kirigami_studio.generator.conditioning import contour_points
 from kirigami_studio.generator.deployed_grid import DeployedGrid
 from kirigami_studio.generator.flow import trail
 from kirigami_studio.generator.network import VelocityNetwork
-from kirigami_studio.generator.weights import Model, load_model, store_model
+from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lab.training.preference_loss import PreferenceTerms, trail_gap
 from kirigami_studio.lab.training.train_aligned import GRIDS, LARGEST_PHI, AlignRun, AlignSettings, train_aligned
 from kirigami_studio.lattice.batched import BatchedLattice

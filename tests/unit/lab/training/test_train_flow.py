@@ -11,7 +11,8 @@ import torch
 
 from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.generator.network import NetworkShape
-from kirigami_studio.generator.weights import Model, load_model, store_model
+from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.fitted_fields import FittedFields, fitted_block
 from kirigami_studio.lab.training.flow_path import paired_noise, pairing_cost

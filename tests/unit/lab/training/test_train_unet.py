@@ -11,7 +11,8 @@ import torch
 
 from kirigami_studio.foundation.errors import ModelError
 from kirigami_studio.generator.unet import UNetShape, UNetVelocity
-from kirigami_studio.generator.weights import load_model, store_model
+from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lab.training.fitted_fields import fitted_block
 from kirigami_studio.lab.training.train_flow import FlowRun, FlowSettings, Sources, train_flow, trained_network
 from kirigami_studio.lab.training.validation import validator

@@ -1,4 +1,4 @@
-"""Sentences of ``lab`` and of clusters, by the code of the problem."""
+"""Sentences of the lab, by the code of the problem."""
 
 from __future__ import annotations
 
@@ -7,9 +7,6 @@ from kirigami_studio.foundation.words import mark
 SENTENCES: dict[str, str | tuple[str, str]] = {
     # training
     "training.unknown_family": mark("There is no family of designs called '{family:.40}'. Choose one of {choices}."),
-    "training.needs_python": mark(
-        "This packaged program designs but does not train. Install the wheel of the same version for that."
-    ),
     "training.no_samples_wanted": mark("A data set needs at least 1 sample, got {count_wanted}."),
     "training.fields_ended": mark("The data set could not be filled: no more fields to try."),
     "training.mask_differs": mark(
@@ -130,26 +127,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Timings need at least one variant and two targets, got {variants} and {targets}."
     ),
     "benchmark.spread_of_one": mark("A spread needs at least 2 samples of each target, got {k}."),
-    # clusters
-    "cluster.package_missing": mark(
-        "A cluster needs the package distributed. Install it with pip install 'kirigami-studio[cluster]', or leave out "
-        "--scheduler."
-    ),
-    "cluster.no_answer": mark(
-        "Nobody answers at {address} within {seconds:g} seconds. Start 'dask scheduler', or correct the address."
-    ),
-    "cluster.no_workers": mark(
-        "The scheduler at {address} has no workers. Start some with 'dask worker {address} --nthreads 1'."
-    ),
-    "cluster.lost": mark(
-        "The scheduler at {address} went away. Finished runs are kept: start it again, and repeat this call."
-    ),
-    "processes.work_ends_them": mark(
-        "A process was ended from outside {times} times at one piece of work. If memory ran short, use fewer processes."
-    ),
-    "cluster.work_ends_workers": mark(
-        "One piece of work ended several workers of {address}, one after the other. They may be short of memory."
-    ),
     # problem
     "problem.unknown_split": mark("There is no split called '{split:.40}'. Choose one of {choices}."),
     "problem.unknown_baseline": mark(
@@ -166,4 +143,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "There is no generator '{source:.80}': {reason}. Name it MODULE:CALLABLE, in the folder of this call."
     ),
     "problem.generator_failed": mark("The generator '{source:.80}' failed with {kind}: {reason}"),
+    # generators to compare with
+    "model.baseline_pixels": mark(
+        "Fields cannot be drawn into {latent} x {latent} pixels with masks of {mask}. They must be even at "
+        "every level of the network but the last, and divide the mask."
+    ),
+    "model.diffusion_steps": mark("A diffusion model samples in 1 to {most} steps, got {steps}."),
+    "model.unknown_baseline": mark("There is no generator called '{kind:.40}'. Choose one of {choices}."),
+    "model.baseline_unreadable": mark(
+        "Cannot read a generator from {path}. Train one with 'kirigami-studio train cvae', 'cgan' or 'diffusion'."
+    ),
 }
