@@ -1,8 +1,8 @@
 """Places where pieces meet in one end state only, and can be held open, or flat.
 
 Voids close in both end states, and the panels around them meet along other parts of their sides in each: *meetings*
-within a layer, where edges touch and magnets or tabs hold.  Pieces of different layers lie on each other: *locks* are places where a pin through
-both holds them, and with them the whole sheet, which has one degree of freedom.
+within a layer, where edges touch and magnets or tabs hold.  Pieces of different layers lie on each other: *locks* are
+places where a pin through both holds them, and with them the whole sheet, which has one degree of freedom.
 """
 
 from __future__ import annotations
