@@ -1,8 +1,8 @@
-"""Places where pieces meet in one end state only: there magnets, tabs or one more pin hold the sheet open, or flat.
+"""Places where pieces meet in one end state only, and can be held open, or flat.
 
 Voids close in both end states, and the panels around them meet along other parts of their sides in each: *meetings*
-within a layer, where edges touch.  Pieces of different layers lie on each other: *locks* are places where a pin through
-both holds them, and with them the whole sheet, which has one degree of freedom.
+within a layer, where edges touch and magnets or tabs hold.  Pieces of different layers lie on each other: *locks* are
+places where a pin through both holds them, and with them the whole sheet, which has one degree of freedom.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class Lock:
 
 
 def meetings(plan: PinnedPlan) -> tuple[Meeting, ...]:
-    """Meetings in both end states, the longest first; none open where the target angle leaves voids open."""
+    """Meetings in both end states, the longest first; voids that stay open have none."""
     assembly = plan.assembly
     ends = ((HeldState.OPEN, assembly.phi_target), (HeldState.FLAT, math.pi))
     found = [one for state, phi in ends for one in _meetings_at(plan, state, phi)]

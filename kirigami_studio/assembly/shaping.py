@@ -95,7 +95,7 @@ class Shaping:
         return made
 
     def _begin(self, deployment: Deployment) -> None:
-        """Cut the notches; where they cut a piece through, the ears that do it become smaller, once to halfway."""
+        """Cut the notches; ears that would cut a piece through become smaller, halfway first."""
         motion, options = self.motion, self.options
         panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
         owner, corner = np.nonzero(motion.hinged)
@@ -182,7 +182,7 @@ class Shaping:
         return ear[near], seen[near]
 
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
-        """Areas that ears (flat indices of corners) and their clearance sweep, seen from panels: (K, 3) Polygon."""
+        """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
         motion = self.motion
         radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
         drift = motion.drift[ear // 4] - motion.drift[seen]
@@ -247,7 +247,7 @@ class Shaping:
         return None
 
     def _held_narrowly(self, index: int, shape: BaseGeometry) -> Polygon:
-        """The same by the widest necks that there are; the largest part where ears do not hang together at all."""
+        """The same by the widest necks that there are; the largest part where there are none."""
         for share in NARROWER:
             self.neck_mm[index] = share * self.options.neck_mm
             if (one := self.held_together(index, shape)) is not None:
