@@ -52,7 +52,7 @@ class Candidate:
 
     @property
     def least_gap(self) -> float:
-        """Least distance, unit cells, between two pins of the sheet that is shown and cut, if it is pinned."""
+        """Least distance, unit cells, of pins of the sheet that is shown and cut, if it has pins."""
         return least_gap_of(self.final_sheet)
 
     @property

@@ -39,7 +39,7 @@ def checkerboard(rows: int, columns: int) -> FloatArray:
 
 
 def void_gaps(deployment: Deployment) -> FloatArray:
-    """What side a of each void, from p0 to p1, is longer than side b, from p0 to p3: (m, n), unit cells."""
+    """Side a of each void, from p0 to p1, less side b, from p0 to p3: (m, n), unit cells."""
     corners = deployment.compact[deployment.topology.void_nodes]
     a, b = (np.hypot(*np.moveaxis(corners[:, :, end] - corners[:, :, 0], -1, 0)) for end in (1, 3))
     gaps: FloatArray = a - b
@@ -47,7 +47,7 @@ def void_gaps(deployment: Deployment) -> FloatArray:
 
 
 def hand_of(field: RatioField) -> int:
-    """Sign, 1 or -1, that z = log10 x mostly has at even voids and the opposite of which it has at odd ones."""
+    """Hand, 1 or -1, of the pinwheel that most voids of a field belong to."""
     return 1 if float((checkerboard(field.rows, field.columns) * field.log10).sum()) >= 0.0 else -1
 
 
@@ -99,7 +99,7 @@ def least_gap_of(sheet: Sheet) -> float:
 
 @lru_cache(maxsize=64)
 def _ways(rows: int, columns: int) -> csr_matrix:
-    """The matrix of :class:`PinDistances`: between corners of each panel, and of panels one or two pins away."""
+    """Make the matrix of :class:`PinDistances`: for panels, and those one or two pins away."""
     tables = topology(rows, columns)
     pinned = set(tables.void_nodes.ravel().tolist())
     panels = [[node for node in panel if node in pinned] for panel in tables.panel_nodes.reshape(-1, 4).tolist()]
@@ -123,10 +123,10 @@ def _ways(rows: int, columns: int) -> csr_matrix:
 
 
 def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[int]]) -> dict[int, dict[int, int]]:
-    """Where pins of panels one or two pins away from a panel lie at phi = 0, seen from it: sums of compact nodes.
+    """Places at phi = 0, seen from a panel, of pins of panels one or two pins away.
 
-    From flat to phi = 0, a panel that is pinned to it at c is turned half about c, which takes w to 2 c - w; one that
-    is pinned to that at d is moved by 2 (c - d).
+    They are sums of compact nodes.  From flat to phi = 0, a panel that is pinned to it at c is turned half about c,
+    which takes w to 2 c - w; one that is pinned to that at d is moved by 2 (c - d).
     """
     places: dict[int, dict[int, int]] = {}
     for pin in panels[number]:

@@ -103,8 +103,9 @@ class Ranking:
         return not least or candidate.least_gap >= least - GAP_ROUNDING
 
     def cuttable(self, candidate: Candidate) -> bool:
-        """Whether it is feasible, all its panels are as wide as the material needs them, its pins as far apart, and
-        nobody found otherwise.
+        """Whether it can be cut as far as is known.
+
+        It is feasible, its panels are as wide and its pins as far apart as they have to be, and nobody found otherwise.
         """
         fits = self.wide_enough(candidate) and self.pins_apart(candidate)
         return candidate.score.feasible and fits and candidate not in self.refusals

@@ -55,9 +55,9 @@ class ShapeBounds:
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
 
     def with_sides_held(self, shape: FloatArray, gap: float) -> ShapeBounds:
-        """The same with every void on its side of the ratio 1, where a shape (S,) has it; locked ones as they are.
+        """The same with every void on the side of the ratio 1 where a shape (S,) has it.
 
-        A ``gap`` (unit cells) between pins says how far from 1 the ratio is at least.
+        Locked ones are as they are.  A ``gap`` (unit cells) between pins says how far from 1 the ratio is at least.
         """
         voids = self._locked.size
         turned, near = (self.low < self.high)[:voids], least_log_ratio(gap)

@@ -173,7 +173,7 @@ class FitOptions:
         return HANDS if self.least_gap else (0,)
 
     def beginning(self, grid: tuple[int, int], hand: int) -> Sheet:
-        """Where fits begin that have no guess: with the uniform sheet, or with the pinwheel of a hand."""
+        """Sheet where fits without a guess begin: the uniform one, or the pinwheel of a hand."""
         return self.handed(first_sheet(grid, self.start, free_rim=self.free_rim), hand)
 
     def handed(self, sheet: Sheet, hand: int) -> Sheet:
@@ -452,7 +452,7 @@ class _FitSearch:
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry)
 
     def from_guess(self, guess: Sheet, grid: tuple[int, int]) -> _FoundFit:
-        """A look from a given sheet of any grid, aligned by IoU; it keeps its symmetry, and its hand."""
+        """A look from a sheet of any grid, aligned by IoU; it keeps its symmetry and hand."""
         sheet = self._laid(guess, grid)
         pose = align(deploy(sheet).outline(self.phi), self.target.points)
         return self._fit(sheet, pose, LOOK_STEPS, FAR, symmetry_of(sheet))

@@ -1,4 +1,4 @@
-"""Last steps of a fit with a least panel size: every edge and neck keeps it; and with pins: all keep apart.
+"""Last steps of a fit with least sizes: edges and necks keep theirs, and pins keep apart.
 
 The penalty in the objective leaves sizes a little below the least one, because the match goes on pulling.  Here each
 step s solves the quadratic problem
@@ -76,7 +76,7 @@ def with_kept_sizes(
     stiffness: FloatArray | None = None,
     gap: float = 0.0,
 ) -> Sized:
-    """Go on from a fitted state until no edge and no neck is below ``least``, and no pins are nearer than ``gap``.
+    """Go on from a fitted state until no edge or neck is below ``least``, no pins below ``gap``.
 
     Parameters
     ----------

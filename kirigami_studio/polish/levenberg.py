@@ -131,8 +131,8 @@ def polish(
     least_panel : float, unit cells
         No panel edge or neck of the fitted sheet is smaller, wherever a sheet near by allows that; 0 for any size.
     least_gap : float, unit cells
-        No two pins of a pinned sheet come nearer, wherever a sheet near by allows that, and the sheet keeps its hand,
-        see ``pinwheel``; 0 for sheets without pins.
+        No two pins of a pinned sheet come nearer, wherever a sheet near by allows that, see ``pinwheel``; 0 for sheets
+        without pins.
     free_rim : bool
         Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places.
     symmetry : Symmetry, optional

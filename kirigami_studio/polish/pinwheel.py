@@ -1,10 +1,11 @@
-"""Pinwheels: sheets whose voids keep one side longer than the other, so that pins of one layer stay apart.
+"""Pinwheels: sheets whose voids have one longer side, so that pins keep apart.
 
-The ratios of a pinned sheet stay on their side of 1, even voids on one and odd voids on the other, which is the sheet's
-*hand*, see :mod:`kirigami_studio.evaluate.pins`.  Fits hold it by the limits of z = log10 x, pay for distances between
-pins below the least one, and end, like with panels too small, with steps that make it a bound.
+Fits of pinned sheets begin with ratios on one side of 1 at even voids and on the other at odd ones, which is the
+sheet's *hand*, see :mod:`kirigami_studio.evaluate.pins`.  In their first steps pins that are too near cost little, and
+each void goes to the side that the match asks for; then it is held there by the limits of z = log10 x, pins cost as
+much as panels that are too small, and the last steps make their distance a bound.
 
-A flip of the sheet would turn its hand: pinwheels have turns alone.
+A void on a mirror axis would have the ratio 1: pinned sheets have turns alone.
 """
 
 from __future__ import annotations

@@ -453,7 +453,7 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
 
 
 def gap_of(settings: FabricationSettings) -> float:
-    """How far apart pins have to stay, mm; 0 without pins, and for a material that is not known here."""
+    """Distance, mm, that pins keep; 0 without pins, and for an unknown material."""
     try:
         return pin_gap_mm(settings)
     except KirigamiError:

@@ -1,4 +1,4 @@
-"""Pinned sheets designed: how well they match with their pins apart, before rim pieces are cut to the target."""
+"""Pinned sheets designed: their match with pins apart, before rim pieces are cut."""
 
 from __future__ import annotations
 
