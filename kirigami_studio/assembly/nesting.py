@@ -175,7 +175,7 @@ def _tried(
 
 
 def _block(rectangles: Sequence[tuple[int, int, int]], width: float, height: float) -> list[Any] | None:
-    """Rectangles in the smallest square that holds them, which ends at the bed; None where none does."""
+    """Rectangles in the smallest square that holds them, within the bed; None where none does."""
     area = BEGIN * sum(wide * high for wide, high, _ in rectangles)
     longest = max(max(wide, high) for wide, high, _ in rectangles)
     while True:

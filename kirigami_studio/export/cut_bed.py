@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> strokes of one bed: numbers, then holes and openings, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, then holes, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
@@ -90,7 +90,7 @@ class PieceCuts:
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
-    """A counter-clockwise ring (L, 2), mm, moved outwards, and clockwise ones in the notches that this closes.
+    """A ring (L, 2), mm, moved outwards, and rings in notches that this closes.
 
     A notch whose mouth is narrower than the beam is cut from the inside; its mouth stays.  Corners stay sharp, unless a
     side beside one is so short that more material would be left there than the fillet of a beam: then the beam goes

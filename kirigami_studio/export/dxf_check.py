@@ -155,7 +155,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
 def _piece_report(
     path: Path, content: DxfContent, kerf: float, record: PieceRecord, problems: list[Problem]
 ) -> FileReport:
-    """Judge a bed with pieces: all cuts closed, none upon another, as many pieces as its record says."""
+    """Judge a bed with pieces: cuts closed and apart, as many pieces as its record says."""
     whole = "PART" not in content.facts
     if whole and len(content.paths) != record.lines:
         problems.append(Problem.error("cut_file.lines_differ", count=len(content.paths), promised=record.lines))

@@ -1,7 +1,7 @@
-"""Pieces of an assembly as files cut them: found on their beds, and put together again.
+"""Pieces of an assembly as files cut them: found on beds, and put together again.
 
 Tolerances: a finished outline lies within ``OUTLINE_MM`` of the one that was asked for, but for the fillets of half a
-kerf that a beam leaves in corners that point into a piece (buffers, by which finished outlines are told, miss half of
+kerf that a beam leaves in corners that point into a piece (buffers, by which outlines are finished, miss half of
 that at most); centres and diameters of holes are right within ``HOLE_MM``; pins meet within as much at every angle;
 pieces of one layer share no more than ``OVERLAP_MM2`` at any.
 """

@@ -82,7 +82,7 @@ def engraved(plan: CutPlan, text: str) -> CutPlan:
 
 
 def written_in(area: Polygon, text: str) -> tuple[FloatArray, ...]:
-    """Strokes (P, 2), mm, of an upright text as high as it fits into an area; none where it does not.
+    """Strokes (P, 2), mm, of an upright text as high as it fits into an area; none without room.
 
     The line under it says which side is down, so that 6 and 9 differ.
     """
