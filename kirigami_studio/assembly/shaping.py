@@ -257,10 +257,10 @@ class Shaping:
 
     def with_more(self, index: int, room: BaseGeometry) -> Polygon | None:
         """The body of a piece with all of an area that hangs on to it by a neck; None where that is nothing."""
-        body = self.bodies[index]
+        body: Polygon = self.bodies[index]
         found = self.held_together(index, united(body, room))
-        whole = None if found is None else united(found, body)
-        return whole if whole is not None and whole.geom_type == "Polygon" else None
+        whole = body if found is None else united(found, body)
+        return whole if found is not None and isinstance(whole, Polygon) else None
 
     def add(self, index: int, shape: Polygon) -> None:
         """Give a piece a larger shape; it is kept in mind by all that move past it later."""

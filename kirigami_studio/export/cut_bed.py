@@ -124,8 +124,8 @@ def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     """Farthest that a corner of a shape is from another shape, mm."""
-    corners = shapely.points(shapely.get_coordinates(one))
-    tree = shapely.STRtree(shapely.points(shapely.get_coordinates(other)))
+    corners = np.asarray(shapely.points(shapely.get_coordinates(one)), dtype=object).reshape(-1)
+    tree = shapely.STRtree(np.asarray(shapely.points(shapely.get_coordinates(other)), dtype=object).reshape(-1))
     if not len(corners) or not len(tree):
         return math.inf
     near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]

@@ -331,7 +331,7 @@ class MadePieces:
     @cached_property
     def works(self) -> tuple[Work, ...]:
         """Length and time of the cuts of each bed."""
-        return tuple(self.job.work(bed) for bed in self.job.beds)
+        return self.job.works
 
     @cached_property
     def flat_size_mm(self) -> tuple[float, float]:
