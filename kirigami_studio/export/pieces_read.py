@@ -231,7 +231,7 @@ def _pin_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], po
         sides = [[rows[hinge["pieces"][side]] for hinge in record["hinges"]] for side in (0, 1)]
         places = [_carried(np.array(ends[side]), poses[:, sides[side]]) for side in (0, 1)]
         miss = max(miss, float(np.linalg.norm(places[0] - places[1], axis=2).max()))
-        miss = max(miss, float(np.abs(np.subtract(*wide)).max()))
+        miss = max(miss, float(np.abs(np.subtract(wide[0], wide[1])).max()))
     told = {"pins": len(record["hinges"]), "angles": len(poses), "miss_um": round(1e3 * miss, 2)}
     return Finding.judged(miss <= HOLE_MM, "verify.pins_meet" if miss <= HOLE_MM else "verify.pins_miss", **told)
 
