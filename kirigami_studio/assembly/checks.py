@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,7 +122,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         piece.id: (float(x), float(y))
         for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True)
     }
-    problems = [Problem.error("pinned.falls_apart", places[name], piece=name) for name in plan.broken]
+    problems = _broken(plan, places)
     needed = options.ear_mm + options.clearance_mm
     if plan.gap_mm < needed - ROUNDNESS_MM:
         problems.append(
@@ -131,16 +131,18 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     if overlap > OVERLAP_MM2:
         problems.append(Problem.error("pinned.pieces_collide", overlap_mm2=overlap, angle_deg=math.degrees(worst_phi)))
     least_wall = options.asked_wall_mm
-    problems += [
-        Problem.error("pinned.wall_too_thin", places[piece.id], piece=piece.id, wall_mm=wall, needed_mm=least_wall)
-        for piece, wall in zip(assembly.pieces, walls, strict=True)
-        if wall < least_wall - ROUNDNESS_MM
-    ]
-    problems += [
-        Problem.warning("pinned.neck_too_narrow", places[piece.id], piece=piece.id, neck_mm=neck, needed_mm=least)
-        for piece, neck, least in zip(assembly.pieces, necks, [options.neck_mm] * len(necks), strict=True)
-        if 0.0 < neck < least - ROUNDNESS_MM
-    ]
+    thin = sorted((wall, piece.id) for piece, wall in zip(assembly.pieces, walls, strict=True))
+    thin = [one for one in thin if one[0] < least_wall - ROUNDNESS_MM]
+    if thin:
+        wall, name = thin[0]
+        values = {"count": len(thin), "piece": name, "wall_mm": wall, "needed_mm": least_wall}
+        problems.append(Problem.error("pinned.wall_too_thin", places[name], **values))
+    narrow = sorted((neck, piece.id) for piece, neck in zip(assembly.pieces, necks, strict=True) if neck > 0.0)
+    narrow = [one for one in narrow if one[0] < options.neck_mm - ROUNDNESS_MM]
+    if narrow:
+        neck, name = narrow[0]
+        values = {"count": len(narrow), "piece": name, "neck_mm": neck, "needed_mm": options.neck_mm}
+        problems.append(Problem.warning("pinned.neck_too_narrow", places[name], **values))
     if apart < options.head_mm:
         where = tuple(assembly.deployment.nodes(math.pi)[pair].mean(axis=0) * assembly.cell_mm)
         problems.append(
@@ -162,6 +164,13 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             )
         )
     return PinnedReport(figures, tuple(sorted(problems, key=lambda problem: problem.severity is Severity.WARNING)))
+
+
+def _broken(plan: PinnedPlan, places: Mapping[str, tuple[float, float]]) -> list[Problem]:
+    if not plan.broken:
+        return []
+    first = plan.broken[0]
+    return [Problem.error("pinned.falls_apart", places[first], piece=first, count=len(plan.broken))]
 
 
 def body_of(piece: Piece) -> Polygon:
