@@ -91,11 +91,11 @@ class PinnedFigures:
         for one in self.each:
             told = f"{100 * one.iou_exact:8.2f}  {one.least_gap_mm:16.2f}{' ' if one.kept else '!'} {one.panels:6d}"
             yield f"{one.target:{width}}  {one.grid:5}  {told}  {one.panel_area_cv:11.2f}  {one.processor_seconds:.1f}"
-        told = self.figures()
+        figures = self.figures()
         yield (
             f"mean {100 * np.mean([one.iou_exact for one in self.each]):.2f} %, "
-            f"worst {100 * min(one.iou_exact for one in self.each):.2f} % ({told['worst']}); "
-            f"pins apart in {told['kept']} of {told['designs']}"
+            f"worst {100 * min(one.iou_exact for one in self.each):.2f} % ({figures['worst']}); "
+            f"pins apart in {figures['kept']} of {figures['designs']}"
         )
 
 
