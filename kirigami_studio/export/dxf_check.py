@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.export.dxf_reading import (
@@ -173,7 +173,7 @@ def _piece_report(
         problems.append(Problem.error("cut_file.pieces_cross", (x, y)))
     closed = [found.points for found in content.paths if found.closed and len(found.points) > 3]
     areas = np.array([Polygon(ring) for ring in closed], dtype=object)
-    starts = shapely.points(np.array([ring[0] for ring in closed]).reshape(-1, 2))
+    starts = [Point(ring[0]) for ring in closed]
     inside = shapely.STRtree(starts).query(areas, predicate="contains_properly")[1]
     pieces = len(areas) - len(np.unique(inside))
     if whole and pieces != record.pieces:
