@@ -93,7 +93,7 @@ def network(path: Path) -> None:
 
 
 def artwork(path: Path) -> None:
-    from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
+    from kirigami_studio.gui.stage.artwork_painting import svg_to_png
 
     read_picture(path, svg_to_png)
 

@@ -69,6 +69,7 @@ def read_sheet(path: Path, kerf_mm: float, copies: int = 1) -> ReadSheet:
     Parameters
     ----------
     path : Path
+        A file, or a folder of one for each layer.
     kerf_mm : float
     copies : int
         That the file holds, one after the other.
@@ -92,8 +93,10 @@ def edge_cuts(path: Path) -> tuple[list[LineString], LineString]:
 
 
 def _curves(path: Path, copies: int) -> tuple[list[FloatArray], list[bool]]:
-    """The curves of the first copy, (P, 2) mm each, and which are closed; a name is none."""
-    entities = [entity for entity in ezdxf.readfile(path).modelspace() if entity.dxf.layer != "NAME"]
+    """The curves of the first copy, (P, 2) mm each, and which are closed; names and marks are none."""
+    files = sorted(path.glob("*.dxf")) if path.is_dir() else [path]
+    entities = [entity for file in files for entity in ezdxf.readfile(file).modelspace()]
+    entities = [entity for entity in entities if entity.dxf.layer not in ("NAME", "REGISTRATION")]
     entities = entities[: len(entities) // copies]
     lines = [np.array([(v.x, v.y) for v in make_path(entity).flattening(CHORD_MM)]) for entity in entities]
     return lines, [bool(getattr(one, "closed", False) or getattr(one, "is_closed", False)) for one in entities]

@@ -28,6 +28,7 @@ from thread_watch import ThreadWatch, in_another_thread, long_number
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.settings import settings_of
+from kirigami_studio.gui.files.file_dialogs import FileToOpen
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_application, create_window
@@ -55,17 +56,8 @@ class Places:
         self.folder_, self.project_ = folder, folder / "large.kiri"
         self.saved, self.cut, self.everything = folder / "saved.kiri", folder / "cut.dxf", folder / "everything"
 
-    def target(self) -> Path | None:
-        return None
-
-    def start(self) -> Path | None:
-        return None
-
-    def artwork(self) -> Path | None:
-        return None
-
-    def project(self) -> Path | None:
-        return self.project_
+    def open(self, wanted: FileToOpen) -> Path | None:
+        return self.project_ if wanted is FileToOpen.PROJECT else None
 
     def save(self, proposal: str) -> Path | None:
         return self.saved

@@ -104,18 +104,14 @@ class LayerMotion:
             found.append(np.stack([one, other], axis=1)[apart <= radius[one] + radius[other] + reach])
         return np.concatenate(found)
 
-    def distance_on_arc(
-        self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray
-    ) -> FloatArray:
+    def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
         """Least distance (K,) over the motion between points of panels ``other`` and points moving with ``one``."""
         drift = self.drift[one] - self.drift[other]
         seen = points - (moving - drift)
         radius = np.abs(drift)
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
         ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
-        ends = np.minimum(
-            np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening))
-        )
+        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
         return np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends)
 
 

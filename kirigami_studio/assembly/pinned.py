@@ -102,7 +102,9 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         shape = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
-        drilled = shape.difference(shapely.union_all(shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)))
+        drilled = shape.difference(
+            shapely.union_all(shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm))
+        )
         place, room = label_place(drilled)
         pieces.append(
             Piece(

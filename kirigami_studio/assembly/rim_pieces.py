@@ -50,7 +50,9 @@ class EndState:
     shares: GeometryArray
 
     @classmethod
-    def of(cls, deployment: Deployment, phi: float, cell_mm: float, turn: float, outline: Polygon, reach_mm: float) -> EndState:
+    def of(
+        cls, deployment: Deployment, phi: float, cell_mm: float, turn: float, outline: Polygon, reach_mm: float
+    ) -> EndState:
         """The state of a design at ``phi``, where t is ``turn``."""
         voids = shapely.polygons(deployment.voids(phi).reshape(-1, 4, 2) * cell_mm)
         voids = voids[shapely.area(voids) > LEAST_PART]
@@ -199,7 +201,13 @@ def _wanted(
 
 
 def _extended(
-    shaping: Shaping, index: int, state: EndState, other: EndState, want: BaseGeometry, still: BaseGeometry, spare: float
+    shaping: Shaping,
+    index: int,
+    state: EndState,
+    other: EndState,
+    want: BaseGeometry,
+    still: BaseGeometry,
+    spare: float,
 ) -> tuple[BaseGeometry | None, float]:
     """Add to a piece as much of an area as is free: the part added, where it is in the state, and mm2 beyond the other.
 

@@ -156,7 +156,10 @@ class Shaping:
         grown = options.clearance_mm + BODY_TOLERANCE
         left, bottom, right, top = window.bounds
         box = (left - grown, bottom - grown, right + grown, top + grown)
-        middle, reach = 0.5 * complex(left + right, bottom + top), 0.5 * abs(complex(right - left, top - bottom)) + grown
+        middle, reach = (
+            0.5 * complex(left + right, bottom + top),
+            0.5 * abs(complex(right - left, top - bottom)) + grown,
+        )
         turn = float(motion.sense[index]) * motion.opening
 
         def near(mover: IntArray, place: ComplexArray, radius: FloatArray | float) -> BoolArray:

@@ -117,7 +117,7 @@ def _picture(path: str) -> ArtPicture:
     """Read a picture; only for an SVG Qt is loaded, which draws it."""
 
     def draw(content: bytes, side: int) -> bytes:
-        drawn: bytes = import_module("kirigami_studio.gui.stage.artwork_jobs").svg_to_png(content, side)
+        drawn: bytes = import_module("kirigami_studio.gui.stage.artwork_painting").svg_to_png(content, side)
         return drawn
 
     return read_picture(path, draw)

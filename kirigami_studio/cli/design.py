@@ -38,7 +38,7 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, material_for, named_machine
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
@@ -51,7 +51,7 @@ from kirigami_studio.studio.making import (
     with_cuttable_chosen,
     written,
 )
-from kirigami_studio.studio.verdict import Verdict, refused
+from kirigami_studio.studio.verdict import RANK, Verdict, refused
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -137,8 +137,10 @@ class DesignOutcome:
     request : CutRequest
         The best design that can be cut in its project, and how it is cut.
     verdict : Verdict
-    files : mapping of str to (str, bytes)
-        Name and content by role, of a design from elsewhere that was asked for with its files.
+    files : mapping of str to str
+        Names by role, in the folder of the design, of a design from elsewhere that was asked for with its files.
+    contents : mapping of str to bytes
+        Of these files, by name; a name that stands for a folder has several.
     notes : tuple of Note
         What is not as it was asked for: no design is trimmed, or another one than the best is cut.
     """
@@ -146,14 +148,15 @@ class DesignOutcome:
     result: Result
     request: CutRequest
     verdict: Verdict
-    files: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    contents: Mapping[str, bytes] = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:
         """Write the files; returns their paths by role."""
-        for name, content in self.files.values():
+        for name, content in self.contents.items():
             write_atomically(folder / name, content)
-        return {role: str(folder / name) for role, (name, _) in self.files.items()}
+        return {role: str(folder / name) for role, name in self.files.items()}
 
 
 def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> DesignOutcome:
@@ -216,8 +219,10 @@ def designed_there(asked: Asked) -> Answer:
             return Answer(design, None)
         with TemporaryDirectory() as folder:
             design, paths = write_files(design, Path(folder))
-            files = {role: (Path(path).name, Path(path).read_bytes()) for role, path in paths.items()}
-        return Answer(replace(design, files=files), None)
+            files = {role: Path(path).name for role, path in paths.items()}
+            there = [path for path in sorted(Path(folder).rglob("*")) if path.is_file()]
+            contents = {path.relative_to(folder).as_posix(): path.read_bytes() for path in there}
+        return Answer(replace(design, files=files, contents=contents), None)
     except KirigamiError as error:
         return Answer(None, error)
 
@@ -337,9 +342,10 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
-    """Write project, cut file, layout, preview and candidates.
+    """Write project, cut files, layout, preview and candidates.
 
-    Returns the design, judged with its cut file as read back, and the paths of all files by role.
+    Beside ``cut.dxf`` there is a file of the kind that the machine takes, where that is another.
+    Returns the design, judged with its cut files as read back, and the paths of all files by role.
 
     The bytes depend on what is given alone: wall time is not written.
 
@@ -370,9 +376,16 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     write_png(job, paths["preview"])
     if made is None:
         raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
-    verdict = written(request, made, Output(paths["cut"]), request.as_cut).verdict
-    assert verdict is not None  # planned sheets are judged
-    return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
+    machine, verdicts = named_machine(request.settings), []
+    if machine is not None and machine.file != paths["cut"].suffix:
+        paths["machine_cut"] = paths["cut"].with_suffix(machine.file)
+    for role in [name for name in ("cut", "machine_cut") if name in paths]:
+        found = written(request, made, Output(paths[role]), request.as_cut)
+        assert found.verdict is not None  # planned sheets are judged
+        paths[role] = found.path  # a profile may ask for a folder
+        verdicts.append(found.verdict)
+    worst = max(verdicts, key=lambda verdict: RANK[verdict.level])
+    return replace(design, verdict=worst), {role: str(path) for role, path in paths.items()}
 
 
 def _folder_name(name: str, used: set[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from datetime import date
 from pathlib import Path
@@ -14,8 +14,10 @@ from kirigami_studio.fabricate.coupon import kerf_from_gaps, plan_coupon
 from kirigami_studio.fabricate.machine import SHELF as MACHINES
 from kirigami_studio.fabricate.machine import Machine, changed_machine, cuttable, find_machine
 from kirigami_studio.fabricate.machine import machines as all_machines
+from kirigami_studio.fabricate.material import SHELF as MATERIALS
 from kirigami_studio.fabricate.material import Material, default_material, find_material, library
-from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
+from kirigami_studio.fabricate.material_copies import changed_copy, mark_calibrated
+from kirigami_studio.fabricate.shelf import Contents, Item, Shelf
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.licences import components, normalised
 from kirigami_studio.foundation.words import tr
@@ -95,48 +97,53 @@ def _listing(arguments: argparse.Namespace, key: str, names: Sequence[str]) -> i
 
 def materials(arguments: argparse.Namespace) -> int:
     """List all materials, or save or delete one of one's own."""
-    _refuse_loose_options(arguments)
-    if arguments.delete is not None:
-        delete_copy(arguments.delete)
-        return _answer(arguments, {"deleted": arguments.delete}, tr("{key}: deleted", key=arguments.delete))
-    if arguments.copy is not None:
-        return _copy(arguments)
-    return _list(arguments)
-
-
-def _refuse_loose_options(arguments: argparse.Namespace) -> None:
-    """Refuse options that mean nothing without ``--copy`` or beside ``--delete``."""
-    if arguments.copy is not None and arguments.delete is not None:
-        raise UsageError("materials.copy_and_delete")
-    if arguments.copy is None and (arguments.key is not None or arguments.set or arguments.calibrated):
-        raise UsageError("materials.options_without_copy")
-    if arguments.calibrated and arguments.by is None:
-        raise UsageError("materials.calibrated_by_nobody")
+    _refuse_loose_options(arguments, "materials.copy_and_delete", "materials.options_without_copy")
+    found = library()
+    if arguments.machine is not None and arguments.copy is None:
+        found = replace(found, items=cuttable(find_machine(arguments.machine)))
+    listed = {
+        "materials": list(found.items),
+        "own": sorted(found.own),
+        "calibrated": [key for key, material in found.items.items() if material.calibrated],
+    }
+    return _kept(arguments, MATERIALS, found, listed, _row, _copied_material)
 
 
 def machines(arguments: argparse.Namespace) -> int:
     """List all machines, or save or delete one of one's own."""
+    _refuse_loose_options(arguments, "machines.copy_and_delete", "machines.options_without_copy")
+    found = all_machines()
+    listed = {"machines": {key: _machine_json(machine, key in found.own) for key, machine in found.items.items()}}
+    return _kept(arguments, MACHINES, found, listed, _machine_row, _copied_machine)
+
+
+def _refuse_loose_options(arguments: argparse.Namespace, both: str, loose: str) -> None:
+    """Refuse ``--copy`` beside ``--delete``, and options that mean nothing without ``--copy``."""
     if arguments.copy is not None and arguments.delete is not None:
-        raise UsageError("machines.copy_and_delete")
-    if arguments.copy is None and (arguments.key is not None or arguments.set):
-        raise UsageError("machines.options_without_copy")
+        raise UsageError(both)
+    if arguments.copy is None and (arguments.key is not None or arguments.set or vars(arguments).get("calibrated")):
+        raise UsageError(loose)
+
+
+def _kept(
+    arguments: argparse.Namespace,
+    shelf: Shelf[Item],
+    found: Contents[Item],
+    listed: Mapping[str, object],
+    row: Callable[[Item, bool], str],
+    copied: Callable[[argparse.Namespace, str], tuple[Item, Mapping[str, object]]],
+) -> int:
+    """List the values of a shelf, or delete or save one of the user's own."""
     if arguments.delete is not None:
-        MACHINES.delete(arguments.delete)
+        shelf.delete(arguments.delete)
         return _answer(arguments, {"deleted": arguments.delete}, tr("{key}: deleted", key=arguments.delete))
     if arguments.copy is not None:
-        made = changed_machine(arguments.copy, _copied_key(arguments), _changes(arguments))
-        MACHINES.save(made)
-        return _answer(arguments, {"saved": made.key}, tr("{material}: saved", material=_machine_row(made, own=True)))
-    found = all_machines()
-    if arguments.json:
-        listed = {key: _machine_json(machine, key in found.own) for key, machine in found.items.items()}
-        print_json({"machines": listed, "faults": [fault.text for fault in found.faults]})
-        return 0
-    for key, machine in found.items.items():
-        say(_machine_row(machine, key in found.own))
-    for fault in found.faults:
-        say(tr("Left out: {fault}", fault=fault.text))
-    return 0
+        made, told = copied(arguments, arguments.copy if arguments.key is None else arguments.key)
+        return _answer(arguments, {"saved": made.key, **told}, tr("{material}: saved", material=row(made, True)))
+    rows = [row(item, key in found.own) for key, item in found.items.items()]
+    faults = [fault.text for fault in found.faults]
+    left_out = [tr("Left out: {fault}", fault=fault) for fault in faults]
+    return _answer(arguments, {**listed, "faults": faults}, "\n".join([*rows, *left_out]))
 
 
 def _machine_json(machine: Machine, own: bool) -> dict[str, object]:
@@ -149,6 +156,14 @@ def _machine_row(machine: Machine, own: bool) -> str:
     width, height = machine.reach_mm
     reach = tr("{width:g} x {height:g} mm", width=width, height=height) if min(width, height) > 0.0 else tr("any size")
     return f"{machine.key:<20} {tr('own') if own else tr('bundled'):<8} {reach:<14} {tr(machine.name)}"
+
+
+def _row(material: Material, own: bool) -> str:
+    """Key, whose it is, whether and when it was calibrated, and its name."""
+    state = tr("uncalibrated")
+    if material.calibrated:
+        state = " ".join(part for part in (tr("calibrated"), material.measured_on, material.measured_by) if part)
+    return f"{material.key:<12} {tr('own') if own else tr('bundled'):<8} {state:<14} {material.name}"
 
 
 def _changes(arguments: argparse.Namespace) -> dict[str, object]:
@@ -168,54 +183,24 @@ def _changes(arguments: argparse.Namespace) -> dict[str, object]:
     return changes
 
 
-def _copied_key(arguments: argparse.Namespace) -> str:
-    """The new key of a copy, or the old one, which it then replaces."""
-    key: str = arguments.copy if arguments.key is None else arguments.key
-    return key
+def _copied_machine(arguments: argparse.Namespace, key: str) -> tuple[Machine, Mapping[str, object]]:
+    """Save a changed copy of a machine."""
+    made = changed_machine(arguments.copy, key, _changes(arguments))
+    MACHINES.save(made)
+    return made, {}
 
 
-def _copy(arguments: argparse.Namespace) -> int:
-    """Save a changed copy under its new key, or under the old one, which it then replaces."""
+def _copied_material(arguments: argparse.Namespace, key: str) -> tuple[Material, Mapping[str, object]]:
+    """Save a changed copy of a material, calibrated today if somebody measured it."""
+    if arguments.calibrated and arguments.by is None:
+        raise UsageError("materials.calibrated_by_nobody")
     machine = None if arguments.machine is None else find_machine(arguments.machine)
-    made = changed_copy(arguments.copy, _copied_key(arguments), _changes(arguments), machine)
+    made = changed_copy(arguments.copy, key, _changes(arguments), machine)
     if arguments.calibrated:
         made = mark_calibrated(made, date.today(), arguments.by)
     else:
-        save_copy(made)
-    return _answer(
-        arguments,
-        {"saved": made.key, "calibrated": made.calibrated},
-        tr("{material}: saved", material=_row(made, own=True)),
-    )
-
-
-def _list(arguments: argparse.Namespace) -> int:
-    found = library()
-    if arguments.machine is not None:
-        found = replace(found, items=cuttable(find_machine(arguments.machine)))
-    if arguments.json:
-        print_json(
-            {
-                "materials": list(found.items),
-                "own": sorted(found.own),
-                "calibrated": [key for key, material in found.items.items() if material.calibrated],
-                "faults": [fault.text for fault in found.faults],
-            }
-        )
-        return 0
-    for key, material in found.items.items():
-        say(_row(material, key in found.own))
-    for fault in found.faults:
-        say(tr("Left out: {fault}", fault=fault.text))
-    return 0
-
-
-def _row(material: Material, own: bool) -> str:
-    """Key, whose it is, whether and when it was calibrated, and its name."""
-    state = tr("uncalibrated")
-    if material.calibrated:
-        state = " ".join(part for part in (tr("calibrated"), material.measured_on, material.measured_by) if part)
-    return f"{material.key:<12} {tr('own') if own else tr('bundled'):<8} {state:<14} {material.name}"
+        MATERIALS.save(made)
+    return made, {"calibrated": made.calibrated}
 
 
 def coupon(arguments: argparse.Namespace) -> int:

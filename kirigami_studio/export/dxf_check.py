@@ -28,7 +28,7 @@ from kirigami_studio.export.dxf_reading import (
     read_content,
 )
 from kirigami_studio.export.file_content import MILLIMETRES
-from kirigami_studio.export.file_record import FileRecord, PieceRecord, piece_record_of, record_of
+from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRecord, piece_record_of, record_of
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
@@ -107,13 +107,13 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         The file is missing or of another kind, or the kerf makes no sense.
     """
     content = _read(Path(path))
-    kerf = _kerf(content, kerf_mm)
+    kerf, damaged = _kerf(content, kerf_mm)
     if purpose := content.facts.get("PURPOSE"):
         # Whatever else it has is meant for eyes.
         problems = [Problem.error("cut_file.not_for_cutting", purpose=plain_line(purpose))]
         return FileReport(Path(path), tuple(problems), content.unit, content.layers, len(content.paths), 0.0, 0.0,
                           (0.0, 0.0), kerf, None, None)  # fmt: skip
-    problems = [*content.problems, *_layer_problems(content.layers)]
+    problems = [*content.problems, *_layer_problems(content.layers), *damaged]
     drawn = content.paths
     content = _without_name(content, kerf, problems)
     try:
@@ -192,7 +192,8 @@ def _record(content: DxfContent, problems: list[Problem]) -> FileRecord | None:
     try:
         record = record_of(content.facts)
     except ExportError as error:
-        problems.append(Problem.error(error.code, **error.fields))
+        if all(problem.code != error.code for problem in problems):
+            problems.append(Problem.error(error.code, **error.fields))
         return None
     if record is not None and "PART" not in content.facts and len(content.paths) != record.lines:
         problems.append(Problem.error("cut_file.lines_differ", count=len(content.paths), promised=record.lines))
@@ -303,15 +304,15 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
     return replace(content, paths=cuts)
 
 
-def _kerf(content: DxfContent, kerf_mm: float | None) -> float:
-    text = content.facts.get("KERF_MM", "0") if kerf_mm is None else kerf_mm
-    try:
-        kerf = float(text)
-    except (TypeError, ValueError):
-        kerf = float("nan")
-    if not 0.0 <= kerf <= LARGEST_SHEET_MM:
-        raise ExportError("cut_file.kerf_not_a_width", value=text)
-    return kerf
+def _kerf(content: DxfContent, kerf_mm: float | None) -> tuple[float, list[Problem]]:
+    """The kerf of the call or of the file; 0 and a problem where the file names no width."""
+    kerf = _number(content, "KERF_MM", "0") if kerf_mm is None else kerf_mm
+    if 0.0 <= kerf <= LARGEST_SHEET_MM:
+        return kerf, []
+    if kerf_mm is not None:
+        raise ExportError("cut_file.kerf_not_a_width", value=kerf)
+    said = plain_line(content.facts["KERF_MM"], LONGEST_SAID)
+    return 0.0, [Problem.error("cut_file.record_not_readable", name="KERF_MM", value=said)]
 
 
 def _layer_problems(layers: Sequence[str]) -> list[Problem]:
@@ -427,9 +428,9 @@ def tabbed_outline(content: DxfContent, problems: list[Problem]) -> Polygon | No
     return Polygon(joined_ring([path.points for path in parts]))
 
 
-def _number(content: DxfContent, key: str) -> float:
+def _number(content: DxfContent, key: str, default: str = "nan") -> float:
     try:
-        return float(content.facts.get(key, "nan"))
+        return float(content.facts.get(key, default))
     except ValueError:
         return math.nan
 

@@ -5,7 +5,6 @@ A file may come from anywhere: its record is plain text of which only bounded nu
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -13,14 +12,18 @@ from dataclasses import dataclass, fields
 from kirigami_studio.export.dxf_reading import MOST_PIECES
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.provenance import ONE_SHEET, PROGRAM, SLOT_KERF, VERDICT
-from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM
+from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import COPY_GAP_MM, TAB_MM, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.plain_text import plain_line
 
-#: Letters of a fact that are looked at, and the largest number of anything.
-LONGEST_FACT, LARGEST_COUNT = 255, 10_000_000
+#: Letters of a fact that are looked at and that are repeated, and the largest number of anything.
+LONGEST_FACT, LONGEST_SAID, LARGEST_COUNT = 255, 40, 10_000_000
+#: The thinnest connector that a record may name, mm.
+LEAST_MM = 1e-6
+#: A number as records have it; Python reads others, too.
+NUMBER = re.compile(r"\d{1,20}(?:\.\d{1,20})?(?:e[-+]?\d{1,3})?", re.ASCII)
 #: A connector with a width of its own, and the name of a piece of a list.
 SINGLE = re.compile(r"(\d{1,6})=(\d{1,6}(?:\.\d{1,20})?(?:e-?\d{1,2})?)")
 
@@ -89,12 +92,12 @@ def record_of(facts: Mapping[str, str]) -> FileRecord | None:
         version=read.text(PROGRAM),
         design=read.text("DESIGN"),
         construction=read.one_of("CONSTRUCTION", (ONE_SHEET,)),
-        material=read.text("MATERIAL"),
+        material=read.word("MATERIAL"),
         machine=read.text("MACHINE", ""),
         profile=read.profile(),
         options=read.options(),
-        width_mm=read.number("WIDTH_MM"),
-        connector_mm=read.number("CONNECTOR_MM"),
+        width_mm=read.number("WIDTH_MM", least=SMALLEST_SHEET_MM),
+        connector_mm=read.number("CONNECTOR_MM", least=LEAST_MM),
         kerf_mm=read.number(SLOT_KERF if SLOT_KERF in facts else "KERF_MM"),
         least_connector_mm=read.number("LEAST_CONNECTOR_MM"),
         lines=read.count("LINES"),
@@ -111,7 +114,9 @@ class _Facts:
         self._facts = facts
 
     def _refusal(self, key: str) -> ExportError:
-        return ExportError("cut_file.record_not_readable", name=key, value=plain_line(self._facts.get(key, ""), 40))
+        return ExportError(
+            "cut_file.record_not_readable", name=key, value=plain_line(self._facts.get(key, ""), LONGEST_SAID)
+        )
 
     def text(self, key: str, default: str | None = None) -> str:
         """One short line."""
@@ -127,17 +132,21 @@ class _Facts:
             raise self._refusal(key)
         return found
 
-    def number(self, key: str, default: float | None = None) -> float:
+    def word(self, key: str) -> str:
+        """One short line that has something on it."""
+        found = self.text(key)
+        if not found:
+            raise self._refusal(key)
+        return found
+
+    def number(self, key: str, default: float | None = None, least: float = 0.0) -> float:
         """A length in mm."""
         if key not in self._facts and default is not None:
             return default
-        try:
-            found = float(self.text(key))
-        except ValueError:
-            raise self._refusal(key) from None
-        if not (math.isfinite(found) and 0.0 <= found <= LARGEST_SHEET_MM):
+        text = self.text(key)
+        if NUMBER.fullmatch(text) is None or not least <= float(text) <= LARGEST_SHEET_MM:
             raise self._refusal(key)
-        return found
+        return float(text)
 
     def count(self, key: str, default: int | None = None) -> int:
         """A whole number."""

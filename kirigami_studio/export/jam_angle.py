@@ -84,9 +84,7 @@ def neck_middles(places: Junctions, plan: CutPlan) -> FloatArray:
     gap = np.maximum(plan.hinges.finished_mm, 0.0) + plan.kerf_mm
     height = gap - np.where(places.on_edge, 0.5 * plan.kerf_mm, 0.0)
     tips = places.place + (height / places.sine)[:, None] * places.along
-    normal = np.stack([-places.through[:, 1], places.through[:, 0]], axis=1)
-    normal *= np.sign(np.sum(normal * places.along, axis=1))[:, None]
-    middles: FloatArray = tips - 0.5 * gap[:, None] * normal
+    middles: FloatArray = tips - 0.5 * gap[:, None] * places.normal
     return middles
 
 

@@ -19,7 +19,7 @@ from kirigami_studio.export.profile import NAME_LAYER, Profile
 from kirigami_studio.fabricate.copies import moved
 from kirigami_studio.fabricate.cut_path import CHORD_MM, edge_lengths, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPath, CutPlan, Layer
-from kirigami_studio.fabricate.finished_sheet import DUST_MM2
+from kirigami_studio.fabricate.finished_sheet import DUST_MM2, SAME_LINE_MM
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
@@ -200,7 +200,7 @@ def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:
     rings = [*_in_cutting_order(sheet, plan), sheet.exterior]
     contours = [shapely.get_coordinates(ring)[:-1] for ring in rings]
     origin = contours[-1].min(axis=0)
-    placed = [_without_repeats(np.round(points - origin, DECIMALS) + 0.0) for points in contours]
+    placed = [_without_spikes(_without_repeats(np.round(points - origin, DECIMALS) + 0.0)) for points in contours]
     layers = [Layer.SLITS] * (len(placed) - 1) + [Layer.OUTLINE]
     return list(zip(layers, placed, strict=True))
 
@@ -260,3 +260,18 @@ def _without_repeats(ring: FloatArray) -> FloatArray:
     """Drop points that rounding made equal to the one before."""
     kept: FloatArray = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
     return kept
+
+
+def _without_spikes(ring: FloatArray) -> FloatArray:
+    """Drop points (of P, 2) at which a contour comes back on its own line: cracks and slivers of no width.
+
+    They are left where the kerf of an edge cut lies just beside the outline, and would be cut twice.
+    """
+    while True:
+        back, ahead = np.roll(ring, 1, axis=0) - ring, np.roll(ring, -1, axis=0) - ring
+        crossed = np.abs(back[:, 0] * ahead[:, 1] - back[:, 1] * ahead[:, 0])
+        longer = np.maximum(np.hypot(*back.T), np.hypot(*ahead.T))
+        spikes = (np.sum(back * ahead, axis=1) > 0.0) & (crossed <= SAME_LINE_MM * longer)
+        if not spikes.any():
+            return ring
+        ring = np.delete(ring, int(np.argmax(spikes)), axis=0)

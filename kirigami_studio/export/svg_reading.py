@@ -80,7 +80,7 @@ def _parsed(path: Path) -> Any:
             raise ValueError("it repeats elements by 'use', as no cut file does")
         return cast(Any, SVG).parse(io.BytesIO(content), reify=False)
     except Exception as error:  # svgelements raises a dozen kinds on damaged files
-        raise ExportError("svg.not_readable", path=path, reason=str(error)) from error
+        raise ExportError("svg.not_readable", path=path, reason=str(error).rstrip(".")) from error
 
 
 def read_with_xml(path: Path) -> FileContent:

@@ -28,7 +28,7 @@ from kirigami_studio.fabricate.detours import NEGLIGIBLE_MM, ON_LINE_MM, TURNS, 
 from kirigami_studio.fabricate.endings import Seat
 from kirigami_studio.fabricate.finished_sheet import remaining_pieces
 from kirigami_studio.fabricate.fitting import Place
-from kirigami_studio.fabricate.hinged_cuts import HingedCuts, cut_through, places_of_ends
+from kirigami_studio.fabricate.hinged_cuts import HingedCuts, cut_through, places_of_ends, straight_asides
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable
 from kirigami_studio.fabricate.trimmed_sheet import CutPiece
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
@@ -481,7 +481,8 @@ class _Draft:
         wider = np.maximum(centres.height_mm - 0.5 * centres.span_mm, 0.0)
         turned = centres.position - 0.5 * wider[:, None] * centres.normal
         straight = tips - 0.5 * centres.span_mm[:, None] * centres.normal
-        cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, Counter())
+        asides = straight_asides(self._seats)
+        cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, asides, Counter())
         bulges = self._ring_bulges if self._ring_bulges.any() else None
         there = ~np.isin(np.arange(len(self._straight)), self._removed)
         where = np.where(self._straight[:, None], straight, turned)

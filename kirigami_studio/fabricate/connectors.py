@@ -47,6 +47,8 @@ class Hinges:
         Width asked for: more than what was planned for where there was no room.
     flexure_mm : (H,) float
         Length over which the connector bends.
+    aside : (H, 2) float, mm
+        From the T-junction along the through cut to the middle of the connector, where it is narrowest.
     lost : (H,) bool
         Connectors that went with what trimming cut off; they count as removed.
     """
@@ -59,6 +61,7 @@ class Hinges:
     finished_mm: FloatArray
     asked_mm: FloatArray
     flexure_mm: FloatArray
+    aside: FloatArray
     lost: BoolArray
 
     def __post_init__(self) -> None:
@@ -81,7 +84,8 @@ class Hinges:
         """For a plan that has no hinges."""
         shapes: dict[str, Any] = {field.name: np.empty(0) for field in fields(cls)}
         shapes |= {name: np.empty(0, dtype=np.intp) for name in ("cut", "end", "through")}
-        return cls(**(shapes | {"position": np.empty((0, 2)), "lost": np.empty(0, dtype=np.bool_)}))
+        shapes |= {name: np.empty((0, 2)) for name in ("position", "aside")}
+        return cls(**(shapes | {"lost": np.empty(0, dtype=np.bool_)}))
 
     def __len__(self) -> int:
         return int(self.position.shape[0])

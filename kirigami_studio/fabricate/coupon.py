@@ -10,6 +10,9 @@ Tongues
     the material.
 Marks
     Short slits above a column count it; short cuts at the left edge count the row.
+
+A material that asks for ligaments of more than ``WIDEST_RUNG_MM`` gets the coupon that many times larger: lengths below
+are those of the coupon of all others.
 """
 
 from __future__ import annotations
@@ -43,6 +46,8 @@ RUNGS, NARROWEST_RUNG_MM, WIDEST_RUNG_MM = 7, 0.05, 1.0
 MARK_MM, MARK_PITCH_MM = 0.8, 0.9
 #: With a wider kerf neighbouring cuts of the coupon would meet.
 WIDEST_KERF_MM = 0.5
+#: The largest coupon is this many times as large: 600 mm wide.
+LARGEST_SCALE = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,11 +86,17 @@ def kerf_from_gaps(gaps_mm: Sequence[float], slits: int = COMB_SLITS) -> Measure
     return MeasuredKerf(float(kerfs.mean()), 0.5 * float(np.ptp(kerfs)))
 
 
+def coupon_scale(material: Material) -> float:
+    """Enlargement of a material's coupon that has its smallest ligament among the connectors."""
+    return max(1.0, material.min_ligament_mm / WIDEST_RUNG_MM)
+
+
 def ligament_rungs(material: Material) -> tuple[float, ...]:
     """Connector widths (mm) of the columns: steps of sqrt(2) round the material's smallest ligament, ascending."""
     steps = sorted(range(-12, 13), key=lambda step: (abs(step), step))
     widths = [round(material.min_ligament_mm * 2.0 ** (0.5 * step), 2) for step in steps]
-    inside = [width for width in widths if NARROWEST_RUNG_MM <= width <= WIDEST_RUNG_MM]
+    widest = WIDEST_RUNG_MM * coupon_scale(material)
+    inside = [width for width in widths if NARROWEST_RUNG_MM <= width <= widest]
     return tuple(sorted(list(dict.fromkeys(inside))[:RUNGS]))
 
 
@@ -101,46 +112,46 @@ def plan_coupon(material: Material, kerf_mm: float | None = None) -> CutPlan:
     Raises
     ------
     FabricationError
-        A kerf above ``WIDEST_KERF_MM``, or a material whose ligaments are nowhere near 0.05 to 1 mm.
+        A kerf too wide for the flaps or the comb, or a material whose ligaments are nowhere near 0.05 to 10 mm.
     """
     kerf = check_length("kerf.negative", material.kerf_mm if kerf_mm is None else kerf_mm, zero_allowed=True)
-    if kerf > WIDEST_KERF_MM:
-        raise FabricationError("coupon.kerf_too_wide", widest_mm=WIDEST_KERF_MM, kerf_mm=kerf)
-    rungs = ligament_rungs(material)
-    if not rungs:
+    rungs, scale = ligament_rungs(material), coupon_scale(material)
+    if not rungs or scale > LARGEST_SCALE:
         raise FabricationError(
             "coupon.ligament_out_of_range",
             narrowest_mm=NARROWEST_RUNG_MM,
-            widest_mm=WIDEST_RUNG_MM,
+            widest_mm=WIDEST_RUNG_MM * LARGEST_SCALE,
             key=material.key,
             ligament_mm=material.min_ligament_mm,
         )
-    reach = 0.5 * kerf + OVERCUT_MM
-    slits = [*_flaps(rungs, kerf), *_column_marks(len(rungs))]
+    if kerf > WIDEST_KERF_MM * scale:
+        raise FabricationError("coupon.kerf_too_wide", widest_mm=WIDEST_KERF_MM * scale, kerf_mm=kerf)
+    reach = (0.5 * kerf + OVERCUT_MM) / scale
+    slits = [*_flaps(rungs, kerf, scale), *_column_marks(len(rungs))]
     edges = [*_comb(reach), *_row_marks(reach)]
-    outline = outline_path(SIZE_MM, kerf)
+    outline = outline_path(SIZE_MM, kerf / scale)
     origin = np.concatenate([outline, *slits, *edges]).min(axis=0)
+
+    def path(points: FloatArray, layer: Layer, closed: bool = False) -> CutPath:
+        rounded: FloatArray = np.round(scale * (points - origin), DECIMALS) + 0.0
+        return CutPath(rounded, layer, closed)
+
     paths = [
-        *(CutPath(_on_grid(points - origin), Layer.SLITS, False) for points in slits),
-        *(CutPath(_on_grid(points - origin), Layer.EDGE_SLITS, False) for points in edges),
-        CutPath(_on_grid(outline - origin), Layer.OUTLINE, True),
+        *(path(points, Layer.SLITS) for points in slits),
+        *(path(points, Layer.EDGE_SLITS) for points in edges),
+        path(outline, Layer.OUTLINE, closed=True),
     ]
     return CutPlan(
         paths=in_cutting_order(paths),
-        size_mm=SIZE_MM,
+        size_mm=(scale * SIZE_MM[0], scale * SIZE_MM[1]),
         connector_mm=rungs[0],
         kerf_mm=kerf,
         overcut_mm=OVERCUT_MM,
         hinges=Hinges.none(),
         material=material,
         design_hash=hashlib.sha256(f"coupon {asdict(material)} {kerf!r}".encode()).hexdigest()[:16],
-        notes=_notes(rungs),
+        notes=_notes(rungs, scale),
     )
-
-
-def _on_grid(points: FloatArray) -> FloatArray:
-    rounded: FloatArray = np.round(points, DECIMALS) + 0.0
-    return rounded
 
 
 def _comb(reach: float) -> list[FloatArray]:
@@ -152,7 +163,7 @@ def _comb(reach: float) -> list[FloatArray]:
     ]
 
 
-def _flaps(rungs: Sequence[float], kerf: float) -> list[FloatArray]:
+def _flaps(rungs: Sequence[float], kerf: float, scale: float) -> list[FloatArray]:
     """For each flap the path round three sides and the slit at the fourth."""
     cuts: list[FloatArray] = []
     for row, width in enumerate(FLAP_WIDTHS_MM):
@@ -160,9 +171,10 @@ def _flaps(rungs: Sequence[float], kerf: float) -> list[FloatArray]:
             middle = FIRST_FLAP_MM[0] + column * COLUMN_MM
             base = FIRST_FLAP_MM[1] + row * ROW_MM
             left, right, top = middle - 0.5 * width, middle + 0.5 * width, base + FLAP_HEIGHT_MM
-            inset = rung + kerf
-            if right - left - 2.0 * inset < max(SHORTEST_CUT_MM, 2.0 * kerf):
-                raise FabricationError("coupon.flap_too_narrow", flap_mm=width, connector_mm=rung, kerf_mm=kerf)
+            inset = (rung + kerf) / scale
+            if right - left - 2.0 * inset < max(SHORTEST_CUT_MM, 2.0 * kerf) / scale:
+                named = {"flap_mm": scale * width, "connector_mm": rung, "kerf_mm": kerf}
+                raise FabricationError("coupon.flap_too_narrow", **named)
             cuts.append(np.array([[left, base - ARM_MM], [left, top], [right, top], [right, base - ARM_MM]]))
             cuts.append(np.array([[left + inset, base], [right - inset, base]]))
     return cuts
@@ -191,9 +203,9 @@ def _row_marks(reach: float) -> list[FloatArray]:
     return marks
 
 
-def _notes(rungs: Sequence[float]) -> tuple[Note, ...]:
+def _notes(rungs: Sequence[float], scale: float) -> tuple[Note, ...]:
     widths = ", ".join(number(rung, "g") for rung in rungs)
-    flaps = ", ".join(number(width, "g") for width in FLAP_WIDTHS_MM)
+    flaps = ", ".join(number(scale * width, "g") for width in FLAP_WIDTHS_MM)
     return (
         Note.of("coupon.how_to_read_kerf", fingers=COMB_SLITS - 1, slits=COMB_SLITS),
         Note.of("coupon.how_to_read_ligament", widths=widths, flaps=flaps),

@@ -361,6 +361,7 @@ def _hinges(
         finished_mm=finished,
         asked_mm=asked,
         flexure_mm=cuts.flexure_mm,
+        aside=cuts.aside,
         lost=np.isin(np.arange(table.hinge_count), lost),
     )
 

@@ -65,6 +65,11 @@ class Seat:
         direction: FloatArray = math.cos(self.slant) * self.normal + math.sin(self.slant) * self.side
         return direction
 
+    @property
+    def aside_mm(self) -> float:
+        """How far along ``side`` a straight slit ends from its junction: there its connector is narrowest."""
+        return self.gap_mm * math.tan(self.slant)
+
     def distance(self, height_mm: float) -> float:
         """How far along the slit a perpendicular distance from the through cut is reached."""
         return height_mm / math.cos(self.slant)
@@ -122,6 +127,8 @@ class Ending:
         A relief hole, whose inside falls out.
     flexure_mm : float
         Length over which the connector bends.
+    aside_mm : float
+        How far along the through cut the middle of the connector is from the junction.
     """
 
     tip: FloatArray
@@ -129,6 +136,7 @@ class Ending:
     bulges: FloatArray | None
     closed: bool
     flexure_mm: float
+    aside_mm: float
 
 
 def attempts(style: ConnectorStyle) -> int:
@@ -165,7 +173,8 @@ def ending(style: ConnectorStyle, seat: Seat, radius_mm: float, attempt: int = 0
 def _round(seat: Seat, radius: float) -> Ending:
     centre = seat.junction + seat.distance(seat.gap_mm + radius) * seat.along
     tip = centre + radius * seat.along
-    return Ending(tip, np.stack([tip, centre - radius * seat.along]), np.ones(2), True, seat.span_mm)
+    points = np.stack([tip, centre - radius * seat.along])
+    return Ending(tip, points, np.ones(2), True, seat.span_mm, _below(seat, radius))
 
 
 def _teardrop(seat: Seat, radius: float) -> Ending:
@@ -176,7 +185,12 @@ def _teardrop(seat: Seat, radius: float) -> Ending:
     # Two arcs, each below half a circle, which every reader of bulges takes.
     bulge = math.tan((math.pi - touching) / 4.0)
     points = np.stack([tip, left, centre - radius * seat.along, right])
-    return Ending(tip, points, np.array([0.0, bulge, bulge, 0.0]), True, seat.span_mm)
+    return Ending(tip, points, np.array([0.0, bulge, bulge, 0.0]), True, seat.span_mm, _below(seat, radius))
+
+
+def _below(seat: Seat, radius: float) -> float:
+    """How far along the through cut the middle of a relief hole is from the junction."""
+    return (seat.gap_mm + radius) * math.tan(seat.slant)
 
 
 def _arc(seat: Seat, half_angle: float) -> Ending | None:
@@ -192,17 +206,18 @@ def _arc(seat: Seat, half_angle: float) -> Ending | None:
     first, last = -float(sides[0]), float(sides[1])
     points = np.stack([seat.at(turn, radius) for turn in (first, seat.slant, last)])
     bulges = np.array([math.tan((seat.slant - first) / 4.0), math.tan((last - seat.slant) / 4.0), 0.0])
-    return Ending(points[1], points, bulges, False, radius * (math.sin(last) - math.sin(first)))
+    ends = radius * math.sin(first), radius * math.sin(last)
+    return Ending(points[1], points, bulges, False, ends[1] - ends[0], 0.5 * (ends[0] + ends[1]))
 
 
 def _bar(seat: Seat, half_length: float) -> Ending | None:
     tip = seat.junction + seat.distance(seat.gap_mm) * seat.along
-    offset = seat.gap_mm * math.tan(seat.slant)
+    offset = seat.aside_mm
     sides = np.minimum(half_length, seat.reach_mm + np.array([offset, -offset]))
     if sides.min() < SHORTEST_SIDE * seat.span_mm or sides.sum() < 1.99 * BAR_SPANS[-1] * seat.span_mm:
         return None
     points = np.stack([tip - sides[0] * seat.side, tip, tip + sides[1] * seat.side])
-    return Ending(tip, points, None, False, float(sides.sum()))
+    return Ending(tip, points, None, False, float(sides.sum()), offset + 0.5 * float(sides[1] - sides[0]))
 
 
 def _turned(vector: FloatArray, angle: float) -> FloatArray:

@@ -56,6 +56,8 @@ class HingedCuts:
         Number of the piece that is the shape at a hinge, for those that have one.
     flexure_mm : (H,) float
         Length over which each connector bends.
+    aside : (H, 2) float, mm
+        From each junction along the through cut to the middle of the connector.
     straight : Counter of Obstacle
         How many hinges stayed straight although a style was asked for, by what was in the way.
     """
@@ -65,6 +67,7 @@ class HingedCuts:
     places: tuple[Place, ...]
     shapes: Mapping[int, int]
     flexure_mm: FloatArray
+    aside: FloatArray
     straight: Counter[Obstacle]
 
     def moved(self, move: Callable[[FloatArray], FloatArray]) -> HingedCuts:
@@ -143,8 +146,9 @@ def hinged_cuts(
     places = places_of_ends(pieces, tips, table, options.removed)
     made, places = cut_through(pieces, options.removed, places, hinge_seats, table, outline, overcut_mm)
     flexure = np.array([seat.span_mm for seat in hinge_seats])
+    aside = straight_asides(hinge_seats)
     if options.style in (ConnectorStyle.STRAIGHT, ConnectorStyle.CENTRED):
-        return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), {}, flexure, Counter())
+        return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), {}, flexure, aside, Counter())
     fitting = Fitting(options.style, hinge_seats, radius, table, made, places, outline, kerf_mm)
     removed = set(options.removed)
     fitted = fitting.fit([hinge for hinge in range(table.hinge_count) if hinge not in removed])
@@ -157,7 +161,13 @@ def hinged_cuts(
         shapes[hinge] = len(made)
         made.append(shape.piece)
         flexure[hinge] = shape.ending.flexure_mm
-    return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, fitting.obstacles())
+        aside[hinge] = shape.ending.aside_mm * hinge_seats[hinge].side
+    return HingedCuts(tuple(made), tuple(hinge_seats), tuple(places), shapes, flexure, aside, fitting.obstacles())
+
+
+def straight_asides(hinge_seats: Sequence[Seat]) -> FloatArray:
+    """From junctions to the narrowest places of connectors beside straight slits: (H, 2), mm."""
+    return np.array([seat.aside_mm * seat.side for seat in hinge_seats]).reshape(-1, 2)
 
 
 def places_of_ends(

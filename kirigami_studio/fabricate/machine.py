@@ -16,7 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, library
-from kirigami_studio.fabricate.shelf import Contents, Shelf
+from kirigami_studio.fabricate.shelf import LARGEST_NUMBER, LEAST_NUMBER, Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import plain_line, plain_lines
@@ -74,6 +74,9 @@ USUAL = {
     MachineKind.KNIFE: "cutting-plotter",
     MachineKind.HAND: "hand",
 }
+#: Profiles that machines may name (``export.profile`` has them) and kinds of cut files.
+PROFILES = ("any", "lightburn", "k40", "single", "layers", "slots", "cricut", "silhouette", "glowforge", "xtool")
+FILES = (".dxf", ".svg", ".pdf", ".lbrn2")
 #: Numbers of the machine that older files of materials have.
 OLDER_ENTRIES = (
     "travel_mm_s", "acceleration_mm_s2", "on_delay_s", "off_delay_s", "bed_width_mm", "bed_height_mm",
@@ -94,6 +97,7 @@ def _number(
         decimals=decimals,
         scale=scale,
         least=0.0,
+        most=LARGEST_NUMBER,
         code="machine.number_negative",
         error=FabricationError,
     ).metadata
@@ -109,8 +113,8 @@ def _moving(label: str, about: str, unit: str, high: float, step: float) -> Mapp
         high=high,
         step=step,
         decimals=2,
-        least=0.0,
-        above_least=True,
+        least=LEAST_NUMBER,
+        most=LARGEST_NUMBER,
         code="machine.number_not_positive",
         error=FabricationError,
     ).metadata
@@ -219,6 +223,12 @@ class Machine:
 
     def __post_init__(self) -> None:
         check(self, key=self.key)
+        for code, value, known in (
+            ("machine.no_such_profile", self.profile, PROFILES),
+            ("machine.no_such_file", self.file, FILES),
+        ):
+            if value not in known:
+                raise FabricationError(code, key=self.key, value=value, choices=", ".join(known))
         object.__setattr__(self, "name", plain_line(self.name))
         object.__setattr__(self, "note", plain_lines(self.note))
 

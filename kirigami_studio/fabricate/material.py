@@ -15,7 +15,7 @@ from typing import Any
 
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.fabricate.shelf import Contents, Shelf
+from kirigami_studio.fabricate.shelf import LARGEST_NUMBER, LEAST_NUMBER, Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line, plain_lines
@@ -71,8 +71,8 @@ def _number(
         step=step,
         decimals=decimals,
         scale=scale,
-        least=0.0,
-        above_least=not zero,
+        least=0.0 if zero else LEAST_NUMBER,
+        most=LARGEST_NUMBER,
         code="material.number_negative" if zero else "material.number_not_positive",
         error=FabricationError,
     )

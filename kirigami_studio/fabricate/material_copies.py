@@ -5,36 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import date
-from pathlib import Path
 from typing import Any
 
 from kirigami_studio.fabricate.machine import Machine, material_on
 from kirigami_studio.fabricate.material import SHELF, Construction, Material, find_material, with_entries_of_now
 from kirigami_studio.foundation.errors import FabricationError
-
-
-def save_copy(material: Material) -> Path:
-    """Save an own material under its key; one of the same key is replaced, a preset of that key stays and is hidden.
-
-    Raises
-    ------
-    FabricationError
-        A key that cannot be a file's name, or the folder of the presets.
-    ExportError
-        The file cannot be written.
-    """
-    return SHELF.save(material)
-
-
-def delete_copy(key: str) -> None:
-    """Delete an own material; a preset of that key comes back.
-
-    Raises
-    ------
-    FabricationError
-        There is no own material of that key.
-    """
-    SHELF.delete(key)
 
 
 def changed_copy(source: str, key: str, changes: Mapping[str, object], machine: Machine | None = None) -> Material:
@@ -102,5 +77,5 @@ def mark_calibrated(
         kerf_mm=material.kerf_mm if kerf_mm is None else kerf_mm,
         min_ligament_mm=material.min_ligament_mm if min_ligament_mm is None else min_ligament_mm,
     )
-    save_copy(measured)
+    SHELF.save(measured)
     return measured

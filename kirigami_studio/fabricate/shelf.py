@@ -24,6 +24,8 @@ from kirigami_studio.foundation.files import read_toml, write_atomically
 from kirigami_studio.foundation.plain_text import plain_line
 from kirigami_studio.foundation.resources import resource
 
+#: Numbers above 0 are at least so large and all at most so large: farther out arithmetic overflows.
+LEAST_NUMBER, LARGEST_NUMBER = 1e-6, 1e9
 #: Keys are file names on every platform: lower case, so that no two differ by capitals only.
 KEY = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
 #: Files of these names cannot exist on Windows.
@@ -118,8 +120,9 @@ class Shelf(Generic[Item]):
             files, faults = [], [Note(self.codes["folder"], {"folder": folder, "reason": reason})]
         for path in files:
             try:
-                items[path.stem] = self.read(path)
-                own.add(path.stem)
+                item = self.read(path)
+                items[item.key] = item
+                own.add(item.key)
             except FabricationError as error:
                 faults.append(Note(error.code, error.fields))
         return Contents(items, frozenset(own), tuple(faults))
@@ -152,7 +155,8 @@ class Shelf(Generic[Item]):
         try:
             entries = read_toml(path)
         except (OSError, ValueError) as error:
-            raise FabricationError(self.codes["unreadable"], path=path, reason=str(error)) from error
+            reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+            raise FabricationError(self.codes["unreadable"], path=path, reason=reason) from error
         entries = dict(self.now(entries))
         expected = {
             one.name: one.default is MISSING and one.default_factory is MISSING

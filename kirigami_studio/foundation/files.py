@@ -83,7 +83,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     if any(line.count(b".") > MOST_DOTS for line in content.splitlines()):
         raise ValueError(f"a line of it holds more than {MOST_DOTS} dots")
     try:
-        entries = tomllib.loads(content.decode("utf-8"))
+        entries = tomllib.loads(content.decode("utf-8-sig"))  # editors of Windows write a mark at the beginning
         _check_whole_numbers(entries)
     except RecursionError as error:
         raise ValueError("it is nested too deep") from error

@@ -10,7 +10,8 @@ that ends w before a flank, thickness h, panels of size S):
 
 An arc or a bar lengthens the connector: by a strip of that length, with E h / k_n = L / w and E h / k_s = (L / w)^3.
 At k = 0 the first is 3 % above E h w^2 / 15.8, the value of handbooks for a ligament beside a deep edge crack (Tada,
-Paris and Irwin).  A connector turns about a point 0.73 w from the flank, 0.56 w at k = 4 w.
+Paris and Irwin).  A connector turns about a point 0.73 w from the flank, 0.56 w at k = 4 w, where it is
+narrowest: below the tip of a slit that arrives at a slant.
 """
 
 from __future__ import annotations
@@ -126,6 +127,13 @@ class Junctions:
         crossed: FloatArray = np.abs(self.along[:, 0] * self.through[:, 1] - self.along[:, 1] * self.through[:, 0])
         return crossed
 
+    @property
+    def normal(self) -> FloatArray:
+        """Unit vector (H, 2) square to the through cut, on the slit's side."""
+        normal = np.stack([-self.through[:, 1], self.through[:, 0]], axis=1)
+        turned: FloatArray = normal * np.sign(np.sum(normal * self.along, axis=1))[:, None]
+        return turned
+
 
 def junctions(deployment: Deployment, width_mm: float, nodes: IntArray | None = None) -> Junctions:
     """Find the junctions of a design.
@@ -185,12 +193,31 @@ def junctions(deployment: Deployment, width_mm: float, nodes: IntArray | None = 
     )
 
 
+def tip_asides(found: Junctions, width_mm: FloatArray, kerf_mm: float, hole_mm: float = 0.0) -> FloatArray:
+    """From junctions along the through cuts to below the ends of slits (H, 2), mm.
+
+    Parameters
+    ----------
+    found : Junctions
+    width_mm : (H,) float
+        Finished widths.
+    kerf_mm : float
+    hole_mm : float
+        Radius of the holes that slits end in: a connector is narrowest below the middle of its hole.
+    """
+    gap = width_mm + np.where(found.on_edge, 0.5, 1.0) * kerf_mm + hole_mm
+    leaning = np.sum(found.along * found.through, axis=1) / found.sine
+    aside: FloatArray = (gap * leaning)[:, None] * found.through
+    return aside
+
+
 def cut_connectors(
     found: Junctions,
     width_mm: FloatArray,
     kerf_mm: float,
     centres: FloatArray | None = None,
     longer_mm: FloatArray | None = None,
+    aside: FloatArray | None = None,
 ) -> SheetConnectors:
     """Connectors where slits end a finished width before the junction; those of width 0 are left out.
 
@@ -200,9 +227,12 @@ def cut_connectors(
         Finished widths; 0 for a removed connector.
     centres : (H, 2) or (H, 2, 2) float, mm, optional
         Rotation centres in the flat sheet, one place or a place on A and one on B; where connectors at straight slits
-        have theirs unless given: off the junction on the slit's side.
+        have theirs unless given: off the through cut on the slit's side, where the connector is narrowest.
     longer_mm : (H,) float, mm, optional
         By how much connectors are longer than at the ends of straight slits; then they turn about their middle.
+    aside : (H, 2) float, mm, optional
+        From the junctions along the through cuts to the middles of the connectors; to below the tips of straight slits
+        unless given.
 
     Raises
     ------
@@ -221,7 +251,8 @@ def cut_connectors(
     flank = np.where(found.on_edge[there], 0.0, 0.5 * kerf_mm)
     if centres is None:
         height = np.where(longer > 0.0, 0.5 * width, centre_height(width, kerf_mm)) + flank
-        middle = found.place[there] + (height / found.sine[there])[:, None] * found.along[there]
+        along = tip_asides(found, width_mm, kerf_mm) if aside is None else aside
+        middle = found.place[there] + along[there] + height[:, None] * found.normal[there]
         both = np.stack([middle, middle], axis=1)
     else:
         if centres.shape not in ((count, 2), (count, 2, 2)) or not np.all(np.isfinite(centres)):
@@ -242,9 +273,7 @@ def cut_connectors(
 
 def _heights(found: Junctions, there: IntArray, middle: FloatArray) -> FloatArray:
     """How far (H,), mm, centres are from the middle of the through cut, positive on the slit's side."""
-    normal = np.stack([-found.through[there, 1], found.through[there, 0]], axis=1)
-    normal *= np.sign(np.sum(normal * found.along[there], axis=1))[:, None]
-    height: FloatArray = np.sum((middle - found.place[there]) * normal, axis=1)
+    height: FloatArray = np.sum((middle - found.place[there]) * found.normal[there], axis=1)
     return height
 
 

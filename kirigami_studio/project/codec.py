@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget, co
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch
 from kirigami_studio.evaluate.trimming import Trim, trim
-from kirigami_studio.fabricate.machine import OLDER_ENTRIES
+from kirigami_studio.fabricate.machine import OLDER_ENTRIES, Machine, MachineKind
 from kirigami_studio.fabricate.material import OLD_LIMIT, Material, with_entries_of_now
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.arrays import FloatArray
@@ -260,11 +260,18 @@ def _nodes(record: Record) -> Nodes:
 def _fabrication_json(settings: FabricationSettings) -> dict[str, object]:
     options = settings.options
     lists = {"hinge_mm": [list(pair) for pair in options.hinge_mm], "removed": list(options.removed)}
-    own = None
-    if settings.own is not None:
-        own = {name: one for name, one in asdict(settings.own).items() if one is not None}
-        own["sources"] = dict(settings.own.sources)
-    return {**settings_json(settings), "options": {**settings_json(options), **lists}, "own": own}
+    own, machine = settings.own, settings.own_machine
+    return {
+        **settings_json(settings),
+        "options": {**settings_json(options), **lists},
+        "own": None if own is None else _own_json(own) | {"sources": dict(own.sources)},
+        # Not there without one, so that such projects stay as they were.
+        **({} if machine is None else {"own_machine": _own_json(machine)}),
+    }
+
+
+def _own_json(own: Material | Machine) -> dict[str, object]:
+    return {name: one for name, one in asdict(own).items() if one is not None}
 
 
 def _fabrication(record: Record) -> FabricationSettings:
@@ -277,6 +284,7 @@ def _fabrication(record: Record) -> FabricationSettings:
             removed=tuple(_hinge(entry) for entry in options.list("removed")),
         ),
         own=_own_material(record.record("own")) if record.holds("own") else None,
+        own_machine=_own_machine(record.record("own_machine")) if record.holds("own_machine") else None,
     )
 
 
@@ -290,6 +298,12 @@ def _own_material(record: Record) -> Material:
     # The note is longer than a name; a material makes plain text of it itself.
     note = {"note": record.verbatim("note")}
     return Material(**with_entries_of_now(limits) | _plain_fields(record, Material) | older | newer | note)
+
+
+def _own_machine(record: Record) -> Machine:
+    """The numbers of a machine; its note is longer than a name, as a material's."""
+    words = {"kind": one_of(MachineKind, record.text("kind")), "note": record.verbatim("note")}
+    return Machine(**_plain_fields(record, Machine) | words)
 
 
 def _hinge(entry: object) -> int:
@@ -307,7 +321,7 @@ def _hinge_width(entry: object) -> tuple[int, float]:
     return _hinge(hinge), float(width)
 
 
-def _plain_fields(record: Record, kind: type[Material | Score | Evenness]) -> dict[str, Any]:
+def _plain_fields(record: Record, kind: type[Material | Machine | Score | Evenness]) -> dict[str, Any]:
     """What a record has for those fields of a dataclass that hold one text, number or flag."""
     read = {"str": record.text, "float": record.number, "int": record.whole, "bool": record.flag}
     entries = [entry for entry in fields(kind) if entry.type in read]

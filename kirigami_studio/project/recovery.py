@@ -56,9 +56,9 @@ def keep(document: Document, note: RecoveryNote, path: Path, picture: TracedPict
     """
     # Imported here, so that reading notes does not slow the start of the window.
     from kirigami_studio.project import store
-    from kirigami_studio.project.store import with_stored_material
+    from kirigami_studio.project.store import with_stored_values
 
-    stream = io.BytesIO(store.pack(with_stored_material(document), picture))
+    stream = io.BytesIO(store.pack(with_stored_values(document), picture))
     with zipfile.ZipFile(stream, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(NOTE, json.dumps(asdict(note), indent=1))
     write_atomically(path, stream.getvalue())

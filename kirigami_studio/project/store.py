@@ -13,7 +13,9 @@ from pathlib import Path
 from kirigami_studio import __version__
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.design_record import record_in
+from kirigami_studio.fabricate.machine import machines
 from kirigami_studio.fabricate.material import library
+from kirigami_studio.fabricate.shelf import Contents, Item
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.project import migrations
@@ -23,7 +25,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
-from kirigami_studio.settings.fabrication import stored_material
+from kirigami_studio.settings.fabrication import stored_machine, stored_material
 
 SUFFIX = ".kiri"
 #: Kinds of cut file that carry the design they came from.
@@ -62,20 +64,26 @@ def save(document: Document, path: Path | str, picture: TracedPicture | None = N
     ExportError
         The file cannot be written.
     """
-    content = pack(with_stored_material(document), picture)
+    content = pack(with_stored_values(document), picture)
     write_atomically(Path(path), content)
     return hashlib.sha256(content).hexdigest()
 
 
-def with_stored_material(document: Document) -> Document:
-    """The document as it is saved: with the numbers of its material, if that is the user's own."""
-    settings, known = document.fabrication, library()
-    numbers = stored_material(settings)
-    if settings.material in known.items:
-        numbers = known.items[settings.material] if settings.material in known.own else None
-    if numbers == settings.own:
+def with_stored_values(document: Document) -> Document:
+    """The document as it is saved, with the numbers of an own material and an own machine."""
+    settings = document.fabrication
+    own = _own(library(), settings.material, stored_material(settings))
+    machine = _own(machines(), settings.machine, stored_machine(settings))
+    if (own, machine) == (settings.own, settings.own_machine):
         return document
-    return replace(document, fabrication=replace(settings, own=numbers))
+    return replace(document, fabrication=replace(settings, own=own, own_machine=machine))
+
+
+def _own(known: Contents[Item], key: str, stored: Item | None) -> Item | None:
+    """The user's own value of a key, or else the stored one; None for a bundled one."""
+    if key not in known.items:
+        return stored
+    return known.items[key] if key in known.own else None
 
 
 def digest_on_disk(path: Path) -> str | None:
@@ -109,7 +117,7 @@ def packed_design(document: Document, candidate: Candidate) -> bytes:
     label = document.label_of(candidate)
     labels = () if label is None else (label,)
     alone = replace(document, candidates=(candidate,), chosen=0, marks=(), labels=labels, artwork=None)
-    return pack(with_stored_material(alone))
+    return pack(with_stored_values(alone))
 
 
 def load(path: Path | str) -> Document:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.fabricate.fastener import SIZES, WALL_MM, Fastener
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
     cuttable,
@@ -91,9 +92,9 @@ class FabricationSettings:
         Whether the design's name is engraved on the sheet.
     opened_mm : float or None
         Longer side of the opened shape, which ``width_mm`` follows; None where the width itself was asked for.
-    own : Material or None
-        The numbers of ``material`` where that is the user's own and no preset.  Not a choice, so it takes no part in
-        comparisons.
+    own, own_machine : Material or Machine or None
+        The numbers of ``material`` and ``machine`` where these are the user's own and not bundled.  No choices, so they
+        take no part in comparisons.
 
     Raises
     ------
@@ -361,6 +362,7 @@ class FabricationSettings:
         ).metadata,
     )
     own: Material | None = field(default=None, compare=False)
+    own_machine: Machine | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         check(self)
@@ -412,6 +414,27 @@ class CutChange(SheetChange, OptionsChange, total=False):
 def stored_material(settings: FabricationSettings) -> Material | None:
     """Return the material's numbers as the project stores them; None for bundled materials."""
     return settings.own if settings.own is not None and settings.own.key == settings.material else None
+
+
+def stored_machine(settings: FabricationSettings) -> Machine | None:
+    """Return the machine's numbers as the project stores them; None for bundled machines."""
+    own = settings.own_machine
+    return own if own is not None and own.key == settings.machine else None
+
+
+def stored_values(settings: FabricationSettings) -> Iterator[tuple[Machine | Material, Machine | Material | None]]:
+    """Numbers that the project stores, each with those of its key in the library, if any."""
+    if (machine := stored_machine(settings)) is not None:
+        yield machine, machines().items.get(machine.key)
+    if (material := stored_material(settings)) is not None:
+        yield material, library().items.get(material.key)
+
+
+def unlike(stored: Machine | Material, used: Machine | Material | None) -> Note | None:
+    """Word on a machine or material in the place of another; names and notes do not count."""
+    if used is None or used == replace(stored, name=used.name, note=used.note):
+        return None
+    return Note.of("plan.machine_differs" if isinstance(used, Machine) else "plan.material_differs", name=used.name)
 
 
 def material_for(settings: FabricationSettings) -> Material:
@@ -489,8 +512,8 @@ def pin_gap_mm(settings: FabricationSettings) -> float:
 
 
 def named_machine(settings: FabricationSettings) -> Machine | None:
-    """Return the machine of the settings; None where they name none, or an unknown one."""
-    return machines().items.get(settings.machine) if settings.machine else None
+    """Return the machine of the settings, from library or project; None if there is none."""
+    return machines().items.get(settings.machine, stored_machine(settings)) if settings.machine else None
 
 
 def machine_for(settings: FabricationSettings) -> Machine:
@@ -530,16 +553,11 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
 
 
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
-    """Settings without a project: with the given material, or one that the machine cuts.
+    """Settings without a project: the given material, or one that the machine cuts.
 
-    The width is the material's usual one unless given.
+    The sheet is as wide as is usual in it, unless the width is given.
 
-    Raises
-    ------
-    UsageError
-        What no settings can hold.
-    FabricationError
-        No such material or machine; the sentence lists those that there are.
+    What is ``given`` is read, and refused, as :func:`with_choices` does.
     """
     usual = FabricationSettings(material=default_material().key)
     if given.get("machine") is not None and given.get("material") is None:
@@ -563,9 +581,9 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     Raises
     ------
     UsageError
-        What no settings can hold.
+        A value that its setting does not take, or no such profile.
     FabricationError
-        No such material or machine; the sentence lists those that there are.
+        No such material or machine.
     """
     changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
     if "material" in given:

@@ -22,6 +22,7 @@ from kirigami_studio.fabricate.connectors import hinge_widths
 from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
+from kirigami_studio.fabricate.hinged_cuts import HOLED
 from kirigami_studio.fabricate.making_room import long_enough
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
@@ -50,6 +51,7 @@ from kirigami_studio.mechanics.connectors import (
     cut_connectors,
     flexure_length,
     junctions,
+    tip_asides,
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
@@ -284,6 +286,7 @@ def planned_sheet(
         plan.kerf_mm,
         centres,
         np.where(longer > LONGER_MM, longer, 0.0),
+        hinges.aside,
     )
     bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
     young = plan.material.young_gpa if young_gpa is None else young_gpa
@@ -336,7 +339,9 @@ def _unplanned_sheet(deployment: Deployment, settings: FabricationSettings, mate
         longer = _longer_by_bows(bending_lengths(span, kerf, height), widths, kerf)
         off = height / found.sine
         centres = found.place + off[:, None] * found.along
-    connectors = cut_connectors(found, widths, kerf, centres, longer)
+    aside = tip_asides(found, widths, kerf, material.relief_radius_mm if options.style in HOLED else 0.0)
+    aside *= options.style is not ConnectorStyle.ARC  # arcs lie around their junction
+    connectors = cut_connectors(found, widths, kerf, centres, longer, aside)
     elastic = ElasticSheet(MPA_PER_GPA * material.young_gpa, material.thickness_mm)
     return sheet_network(found.corners, connectors, elastic)
 

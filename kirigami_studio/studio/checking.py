@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.dxf_check import FileReport, check_file
@@ -20,12 +19,14 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.settings.fabrication import FabricationSettings, stored_material
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    named_machine,
+    stored_machine,
+    stored_material,
+)
 from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, planned
 from kirigami_studio.studio.verdict import Level, Verdict, refused
-
-if TYPE_CHECKING:
-    from kirigami_studio.fabricate.material import Material
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -179,7 +180,7 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
     ----------
     record : FileRecord
     path : Path
-        The file, which has the numbers of a material that is no preset.
+        The file, which has the numbers of a material and of a machine that are not bundled.
     saved : FabricationSettings
         Of the project; what the record does not tell is taken from there.
 
@@ -189,12 +190,17 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
         A record of settings that there are none of.
     """
     try:
+        named = replace(saved, material=record.material, machine=record.machine)
+        material, machine = stored_material(named), stored_machine(named)
+        unknown = record.material not in library().items and material is None
+        if unknown or (record.machine and named_machine(named) is None):
+            enclosed = _enclosed(path) or saved
+            material, machine = material or enclosed.own, machine or enclosed.own_machine
         return replace(
-            saved,
+            named,
             width_mm=record.width_mm,
-            material=record.material,
-            machine=record.machine,
-            own=_own_material(record.material, path, saved),
+            own=material,
+            own_machine=machine,
             connector_mm=record.connector_mm,
             kerf_mm=record.kerf_mm,
             options=record.options,
@@ -204,17 +210,6 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
         )
     except KirigamiError as error:
         raise ExportError("cut_file.record_not_readable", name=error.code, value="") from error
-
-
-def _own_material(key: str, path: Path, saved: FabricationSettings) -> Material | None:
-    """Numbers of a material that is no preset: the project's, else the file's."""
-    if key in library().items:
-        return None
-    stored = stored_material(saved)
-    if stored is not None and stored.key == key:
-        return stored
-    enclosed = _enclosed(path)
-    return None if enclosed is None else enclosed.own
 
 
 def _enclosed(path: Path) -> FabricationSettings | None:

@@ -16,7 +16,13 @@ from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for, named_machine
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    material_for,
+    named_machine,
+    stored_values,
+    unlike,
+)
 
 
 def plan_of(
@@ -77,10 +83,10 @@ def plan_sheet(
         cancel=cancel,
         machine=machine,
     )
+    told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
     if settings.machine and machine is None:
-        missing = Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name)
-        return replace(plan, notes=(*plan.notes, missing))
-    return plan
+        told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
+    return replace(plan, notes=(*plan.notes, *told)) if told else plan
 
 
 def refuse_errors(report: PlanReport) -> None:

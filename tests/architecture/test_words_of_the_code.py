@@ -23,7 +23,7 @@ OFFENDERS = {
     "export": 71,
     "fabricate": 120,
     "generator": 45,
-    "gui": 398,
+    "gui": 366,
     "lab": 208,
     "mechanics": 44,
     "outlines": 108,

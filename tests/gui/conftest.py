@@ -16,6 +16,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.gui.files.file_dialogs import FileToOpen
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
@@ -51,16 +52,7 @@ class PathAnswers:
         self.answer: Path | None = None
         self.proposals: list[str] = []
 
-    def target(self) -> Path | None:
-        return self.answer
-
-    def start(self) -> Path | None:
-        return self.answer
-
-    def artwork(self) -> Path | None:
-        return self.answer
-
-    def project(self) -> Path | None:
+    def open(self, wanted: FileToOpen) -> Path | None:
         return self.answer
 
     def save(self, proposal: str) -> Path | None:

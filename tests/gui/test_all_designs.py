@@ -11,22 +11,21 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QImage, QRegion
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.material import Material, default_material
-from kirigami_studio.gui.gallery import table_card
+from kirigami_studio.gui.gallery import cards as card_list
+from kirigami_studio.gui.gallery import design_table
 from kirigami_studio.gui.gallery.all_designs import AllDesigns
-from kirigami_studio.gui.gallery.badges import badges_of
-from kirigami_studio.gui.gallery.card_delegate import CardButton
+from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_model import NAME_ROLE, VERDICT_ROLE
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
-from kirigami_studio.gui.gallery.table_card import button_boxes
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets.theme import LIGHT
-from kirigami_studio.gui.widgets.verdict_marks import ICONS
+from kirigami_studio.gui.widgets.verdict_marks import ICONS, badges_of
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.pipeline.rank import Ranking
@@ -116,7 +115,7 @@ def test_that_a_design_is_pinned_rejected_and_renamed_by_keys(designed: MainWind
 
 def test_that_buttons_of_a_card_pin_and_reject_it(designed: MainWindow, table: AllDesigns, qtbot: QtBot) -> None:
     view = table.table
-    boxes = button_boxes(view.visualRect(view.model_.index(1, 0)))
+    boxes = view.cards.button_boxes(view.visualRect(view.model_.index(1, 0)))
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.PIN].center())
     qtbot.mouseClick(view.viewport(), LEFT, pos=boxes[CardButton.REJECT].center())
     assert designed.session.document.marks[1] is Mark.REJECTED and designed.session.history.position == 2
@@ -129,7 +128,7 @@ def test_that_filters_and_order_are_those_of_the_gallery(designed: MainWindow, t
     assert table.show_all.isVisible() and table.count.text().startswith("2 of 3 shown")
     designed.gallery.bar.filters.pinned.setChecked(True)
     assert table.filters.pinned.isChecked() and names(table) == []
-    assert table.table.hint()[0] == "No design matches the filter"
+    assert table.table.hint().startswith("No design matches the filter")
     QTest.mouseClick(table.show_all, LEFT)
     assert len(names(table)) == 3 and not table.show_all.isVisible() and not table.filters.pinned.isChecked()
     row = table.order.findData(SortOrder.MATCH)
@@ -191,9 +190,11 @@ def near(picture: QImage, colour: QColor, left: int, right: int) -> int:
 
 
 def test_that_the_smallest_feature_is_ringed_where_it_is_too_thin(designs: Document, qtbot: QtBot) -> None:
+    view = QWidget()
+    qtbot.addWidget(view)
     candidate, target = designs.candidates[0], designs.target
     design = PosedDesign(deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi)
-    size = table_card.card_size(430).boundedTo(table_card.card_size(430))
+    size = design_table.TableCards(view).size_for(430)
     pictures = [
         states_pixmap(design, target, size, 1.0, LIGHT, as_cut=True, ringed=ringed).toImage()
         for ringed in (False, True)
@@ -206,14 +207,14 @@ def test_that_the_smallest_feature_is_ringed_where_it_is_too_thin(designs: Docum
 def test_that_pictures_wait_for_their_turn(designed: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[int] = []
     turns: list[None] = []
-    draw = table_card.states_pixmap
+    draw = design_table.states_pixmap
 
     def counted(*arguments: object, **options: object) -> object:
         drawn.append(len(turns))
         return draw(*arguments, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(table_card, "PAINT_SECONDS", 0.0)
-    monkeypatch.setattr(table_card, "states_pixmap", counted)
+    monkeypatch.setattr(card_list, "PAINT_SECONDS", 0.0)
+    monkeypatch.setattr(design_table, "states_pixmap", counted)
     designed.gallery.bar.filters.grouped.setChecked(False)
     designed.presenters.all_designs.show(True)
     page = designed.presenters.all_designs.page
@@ -354,7 +355,7 @@ def test_that_badges_follow_the_material(designed: MainWindow, table: AllDesigns
 def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path) -> None:
     window.commands["all_designs"].trigger()
     page = window.presenters.all_designs.page
-    assert page is not None and page.isVisible() and page.table.hint()[0] == "No designs yet"
+    assert page is not None and page.isVisible() and page.table.hint().startswith("No designs yet")
     assert not page.use.isEnabled() and not page.alike.isEnabled()
     press(page, KEY.Key_C, KEY.Key_Return, KEY.Key_1, KEY.Key_Escape)
     assert window.columns.isVisible()

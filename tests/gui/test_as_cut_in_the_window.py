@@ -16,7 +16,7 @@ from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.overlays import Overlay
-from kirigami_studio.gui.stage.grip_items import grip_places
+from kirigami_studio.gui.stage.gripping import grip_places
 from kirigami_studio.gui.stage.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.studio.making import planned

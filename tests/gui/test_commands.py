@@ -55,8 +55,8 @@ def test_that_a_changed_state_changes_enabling_checking_and_words_at_once(window
         return Wording("Running" if now.running else "Idle", "What goes on")
 
     command = Command(
-        "probe",
         "Probes",
+        "probe",
         "Idle",
         "What goes on",
         lambda: None,

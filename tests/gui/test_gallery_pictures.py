@@ -6,8 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from PySide6.QtGui import QRegion
 
 from kirigami_studio.gui.gallery import card_delegate
+from kirigami_studio.gui.gallery import cards as card_list
 from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]
@@ -25,11 +27,11 @@ def test_that_cards_wait_for_their_pictures_and_get_them(
         drawn.append(len(owed))
         return draw(*arguments)  # type: ignore[arg-type]
 
-    def begun() -> None:
+    def begun(region: QRegion) -> None:
         owed.append(cards.pending)
-        begin()
+        begin(region)
 
-    monkeypatch.setattr(card_delegate, "PAINT_SECONDS", 0.0)
+    monkeypatch.setattr(card_list, "PAINT_SECONDS", 0.0)
     monkeypatch.setattr(card_delegate, "candidate_pixmap", counted)
     monkeypatch.setattr(cards, "begin", begun)
     window.services.project.open(project_file)

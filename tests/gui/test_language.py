@@ -188,8 +188,7 @@ def test_that_the_program_goes_on_in_the_other_language(project_file: Path, tmp_
 
 @pytest.mark.usefixtures("german")
 def test_that_the_empty_gallery_is_german(window: MainWindow) -> None:
-    assert window.gallery.view.hint[0] == "Noch keine Entwürfe"
-    assert window.gallery.view.hint[1].startswith("Hier erscheinen die Entwürfe")
+    assert window.gallery.view.empty_text().startswith("Noch keine Entwürfe\n\nHier erscheinen die Entwürfe")
 
 
 @pytest.mark.usefixtures("german")

@@ -15,7 +15,6 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.gallery.card_delegate import alike_box
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, OPEN_ROLE, GalleryModel
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.run import look_alikes
@@ -68,7 +67,7 @@ def mark_of_alike(window: MainWindow) -> QPoint:
     view = window.gallery.view
     index = view.model_.index(head(window), 0)
     view.scrollTo(index)
-    return alike_box(view.visualRect(index)).center()
+    return view.cards.alike_box(view.visualRect(index), index).center()
 
 
 def test_that_look_alikes_are_one_card_that_opens_and_closes_by_a_click(stacked: MainWindow, similar: Document) -> None:

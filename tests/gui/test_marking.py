@@ -10,7 +10,7 @@ from PySide6.QtGui import QContextMenuEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.gallery.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document, Mark
@@ -21,7 +21,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 def press_button(window: MainWindow, qtbot: QtBot, row: int, button: CardButton) -> None:
     view = window.gallery.view
-    place = button_boxes(view.visualRect(view.model_.index(row, 0)))[button].center()
+    place = view.cards.button_boxes(view.visualRect(view.model_.index(row, 0)))[button].center()
     qtbot.mouseMove(view.viewport(), place)
     qtbot.mouseClick(view.viewport(), LEFT, pos=place)
 
@@ -66,7 +66,7 @@ def test_that_delete_rejects_the_chosen_design_and_goes_on_to_the_next(
     qtbot.keyClick(view, Qt.Key.Key_Backspace)
     qtbot.keyClick(view, Qt.Key.Key_Backspace)
     assert set(designed.session.document.marks) == {Mark.REJECTED}
-    assert view.hint[0] == "All designs are rejected" and designed.session.document.chosen == 2
+    assert view.empty_text().startswith("All designs are rejected") and designed.session.document.chosen == 2
     for _ in range(3):
         designed.commands["undo"].trigger()
     assert designed.session.document.chosen == 0
@@ -135,9 +135,9 @@ def test_that_hovering_a_card_shows_its_buttons_and_leaving_hides_them(designed:
     view = designed.gallery.view
     rect = view.visualRect(view.model_.index(1, 0))
     before = view.grab(rect).toImage()
-    qtbot.mouseMove(view.viewport(), button_boxes(rect)[CardButton.PIN].center())
+    qtbot.mouseMove(view.viewport(), view.cards.button_boxes(rect)[CardButton.PIN].center())
     qtbot.waitUntil(lambda: view.cards.hovered_button is CardButton.PIN)
-    boxes = button_boxes(rect)
+    boxes = view.cards.button_boxes(rect)
     assert view.grab(boxes[CardButton.REJECT]).toImage() != before.copy(
         boxes[CardButton.REJECT].translated(-rect.topLeft())
     )

@@ -23,7 +23,7 @@ from kirigami_studio.pipeline.events import Finished
 from kirigami_studio.pipeline.variety import distances
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.project.edits import Edit
-from kirigami_studio.studio.designing import generating
+from kirigami_studio.studio.designing import generating, ranking_of
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -64,7 +64,10 @@ def test_that_again_adds_designs_of_the_next_seed_and_keeps_choice_and_marks(
     assert services.session.stage is not None and services.session.stage.candidate == before.candidate
     until(lambda: not services.run.running)
     after = services.session.document
-    assert len(after.candidates) == 6 and after.candidates == tuple(shown(drawn))
+    ranking = drawn.gallery.view.model_.ranking
+    assert len(after.candidates) == 6 and after.candidates == ranking.ranked(after.candidates) == tuple(shown(drawn))
+    assert replace(ranking, jam_phi={}, refusals={}, losses={}) == ranking_of(after)
+    assert set(ranking.jam_phi) == set(after.candidates), "known of all as cut"
     assert {one.seed for one in after.candidates} == {0, 1} and set(before.candidates) < set(after.candidates)
     assert after.candidate == before.candidate and services.session.stage.candidate == before.candidate
     assert dict(zip(after.candidates, after.marks, strict=True))[before.candidates[1]] is Mark.PINNED

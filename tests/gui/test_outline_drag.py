@@ -19,8 +19,8 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue
-from kirigami_studio.gui.stage import vertex_drag
-from kirigami_studio.gui.stage.vertex_drag import DragStart, Follower
+from kirigami_studio.gui.stage import outline_drag
+from kirigami_studio.gui.stage.outline_drag import DragStart, Follower
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -304,8 +304,8 @@ def test_that_a_follower_stops_when_asked_and_after_letting_go_when_its_time_is_
     assert not next(steps).stuck
     asked.append(True)
     assert list(steps) == [] and follower.waiting
-    monkeypatch.setattr(vertex_drag, "LAST_SECONDS", 0.0)
+    monkeypatch.setattr(outline_drag, "LAST_SECONDS", 0.0)
     follower.release()
     found = list(follower.steps(lambda: False))
-    assert [one.stuck for one in found] == [False] * (vertex_drag.LAST_STEPS - 1) + [True]
+    assert [one.stuck for one in found] == [False] * (outline_drag.LAST_STEPS - 1) + [True]
     assert not found[-1].arrived and not follower.waiting

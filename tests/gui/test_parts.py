@@ -83,14 +83,14 @@ def test_that_start_and_second_target_are_chosen_among_the_parts_of_a_drawing_to
     purpose: str, asks: str, button: str, window: MainWindow, logo: Path, until: Until
 ) -> None:
     reader = {"start": window.target.start, "second": window.settings.second}[purpose]
-    reader.file_dropped.emit(str(logo))
+    reader.drops.file_dropped.emit(str(logo))
     picker = opened(window, until)
     assert names(picker) == {"disc"} and asks in picker.about.text() and picker.take.text() == button
     assert picker.size_.text() == "The outline is 40.0 \N{MULTIPLICATION SIGN} 40.0 mm; only its shape counts."
     before = window.session.document
     picker.reject()
     assert window.session.document is before and window.status_text.text() == "No part was taken; nothing changed."
-    reader.file_dropped.emit(str(logo))
+    reader.drops.file_dropped.emit(str(logo))
     opened(window, until)
     click_part(picker, 30, -40)
     click_part(picker, 75, -40)
@@ -107,7 +107,7 @@ def test_that_start_and_second_target_are_chosen_among_the_parts_of_a_drawing_to
 def test_that_the_picker_for_a_start_is_that_for_a_target_the_next_time(
     window: MainWindow, logo: Path, until: Until
 ) -> None:
-    window.target.start.file_dropped.emit(str(logo))
+    window.target.start.drops.file_dropped.emit(str(logo))
     opened(window, until).reject()
     window.files.open(str(logo))
     picker = opened(window, until)
@@ -119,7 +119,7 @@ def test_that_the_picker_for_a_start_is_that_for_a_target_the_next_time(
 
 def test_that_parts_too_hollow_for_a_start_are_refused(window: MainWindow, until: Until, tmp_path: Path) -> None:
     ring = '<path id="sickle" d="M10 10h80v10h-70v60h70v10h-80z"/><circle id="dot" cx="70" cy="50" r="5"/>'
-    window.target.start.file_dropped.emit(str(written(tmp_path, ring)))
+    window.target.start.drops.file_dropped.emit(str(written(tmp_path, ring)))
     opened(window, until).take.click()
     until(lambda: any("hollow" in message.sentence for message in window.messages.messages))
     assert window.session.document.settings.start.is_plain
@@ -306,11 +306,11 @@ def test_that_a_cut_file_is_the_second_target_of_its_design_or_a_start_like_its_
     until(lambda: path.exists() and not services.session.queue.busy)
     target, stage = services.session.document.target, services.session.stage
     assert target is not None and stage is not None
-    designed.settings.second.file_dropped.emit(str(path))
+    designed.settings.second.drops.file_dropped.emit(str(path))
     until(lambda: services.session.document.settings.second is not None)
     second = services.session.document.settings.second
     assert second is not None and second.outline == target
-    designed.target.start.file_dropped.emit(str(path))
+    designed.target.start.drops.file_dropped.emit(str(path))
     until(lambda: not services.session.document.settings.start.is_plain)
     start = services.session.document.settings.start.outline
     assert start is not None and designed.dialogs.parts is None

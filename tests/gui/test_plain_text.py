@@ -24,6 +24,11 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.machine import SHELF as MACHINES
+from kirigami_studio.fabricate.machine import changed_machine
+from kirigami_studio.fabricate.material import SHELF as MATERIALS
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.fabricate.material_copies import changed_copy
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets.card import ElidedLabel, own_markup
 from kirigami_studio.gui.widgets.chart import Chart
@@ -31,7 +36,7 @@ from kirigami_studio.gui.window.about import AboutWindow
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.edits import Edit
+from kirigami_studio.project.edits import Edit, set_fabrication
 from kirigami_studio.project.labels import Label
 
 Until = Callable[[Callable[[], bool]], None]
@@ -85,15 +90,21 @@ def tip_label() -> QLabel:
 
 @pytest.fixture
 def hostile(window: MainWindow, designs: Document, name: str, tmp_path: Path, until: Until) -> MainWindow:
-    """A project open whose names are all HTML: target, start, second target, design, note, file and folder."""
+    """A project open whose names are all HTML: target, design, note, machine, material, file and folder."""
     assert designs.target is not None
+    MACHINES.save(replace(changed_machine("co2-laser", "evil", {}), name=name, note=name))
+    MATERIALS.save(replace(changed_copy("card-co2", "evil", {}), name=name, note=name))
     target = replace(designs.target, name=name)
     labels = (Label("A1", name[:40], name), *designs.labels[1:])
     document = replace(designs, target=target, labels=labels, drawing=(target,))
+    document = set_fabrication(document, machine="evil", material="evil").document
     folder = tmp_path / "<b>folder<i>"
     folder.mkdir()
     path = folder / "<img src='p.png'>.kiri"
     store.save(document, path)
+    MACHINES.delete("evil")
+    MATERIALS.save(replace(find_material("evil"), kerf_mm=0.3))
+    window.fabrication.chooser.reload()
     window.services.project.recent.load(tmp_path / "recent.toml")
     window.services.project.open(path)
     until(lambda: window.session.stage is not None and window.fabrication.export.isEnabled())

@@ -17,7 +17,7 @@ from stopwatch import paced
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading, batches, plotting
+from kirigami_studio.gui.stage.curves import ANGLES, Reading, batches, plotting
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy

@@ -13,9 +13,8 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.gui.stage.edge_cuts import LEAST_GAP, RimShapes
 from kirigami_studio.gui.stage.layout_view import LayoutView
-from kirigami_studio.gui.stage.rim_drag import LEAST_GAP
-from kirigami_studio.gui.stage.rim_items import RimShapes
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import rim_table

@@ -18,8 +18,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.artwork import Artwork, Laid
 from kirigami_studio.export.artwork_picture import picture_of
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
-from kirigami_studio.gui.stage.artwork_items import ShownArtwork
-from kirigami_studio.gui.stage.artwork_jobs import painting_artwork
+from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, painting_artwork
 from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField

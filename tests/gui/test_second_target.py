@@ -18,7 +18,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
-from kirigami_studio.gui.run.second_target_row import PRESENT
+from kirigami_studio.gui.run.settings_panel import PRESENT
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.stage.phi_slider import MarkKind

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.session.messages import Tone
-from kirigami_studio.gui.stage.rim_drag import moved, room_of
+from kirigami_studio.gui.stage.edge_cuts import moved, room_of
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import laid_sheet

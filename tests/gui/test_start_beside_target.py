@@ -21,8 +21,8 @@ from kirigami_studio.foundation.errors import SheetError
 from kirigami_studio.gui.gallery.gallery_model import START_ROLE
 from kirigami_studio.gui.run.generation import own_start
 from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.target.outline_board import StartBoard
 from kirigami_studio.gui.target.sketch_context import Change
-from kirigami_studio.gui.target.start_board import StartBoard
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.readable import TIMES
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -192,7 +192,7 @@ def test_that_board_and_panel_say_what_the_next_run_would_refuse(heart: MainWind
 def test_that_the_run_refuses_it_in_the_same_words(heart: MainWindow, until: Until) -> None:
     services = heart.services
     services.settings.change(grid=(4, 4))
-    services.start.draw(Outline.from_points(SLOTTED, "polygon"))
+    services.start.take(Outline.from_points(SLOTTED, "polygon"))
     until(lambda: heart.target.start_refusal.isVisible())
     heart.commands["generate"].trigger()
     until(lambda: bool(heart.messages.messages) and not services.run.running)

@@ -10,7 +10,7 @@ import pytest
 from kirigami_studio.export.artwork_picture import read_picture
 from kirigami_studio.export.artwork_raster import image_of
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
+from kirigami_studio.gui.stage.artwork_painting import svg_to_png
 
 
 def test_that_an_svg_is_drawn_with_its_text_and_its_transparency(tmp_path: Path, qapp: object) -> None:

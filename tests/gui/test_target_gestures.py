@@ -42,6 +42,18 @@ def test_that_a_silhouette_is_found_by_typing_its_name_in_the_library(
     assert window.run.generate.isEnabled()
 
 
+@pytest.mark.parametrize(("typed", "found"), [("herz", "heart"), ("heart", "heart"), ("letter-l", "letter-l")])
+def test_that_the_library_knows_its_names_in_german_and_those_of_the_command_line(
+    typed: str, found: str, german: None, window: MainWindow, qtbot: QtBot, until: Until
+) -> None:
+    window.commands["library"].trigger()
+    picker = window.dialogs.picker
+    assert picker is not None
+    qtbot.keyClicks(picker.search, typed)
+    qtbot.keyClick(picker.search, Qt.Key.Key_Return)
+    until(lambda: window.session.document.target == silhouettes.load(found))
+
+
 def test_that_the_library_prefers_the_title_that_fits_best(window: MainWindow, qtbot: QtBot, until: Until) -> None:
     window.commands["library"].trigger()
     picker = window.dialogs.picker

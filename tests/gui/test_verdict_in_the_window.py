@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.options import ConnectorStyle
-from kirigami_studio.gui.gallery.badges import badges_of, closing_text
 from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.messages import Tone
+from kirigami_studio.gui.widgets.verdict_marks import badges_of, closing_text
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.studio.as_cut import Source
 from kirigami_studio.studio.verdict import AnswerState, Level, Question

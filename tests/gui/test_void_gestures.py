@@ -150,11 +150,11 @@ def test_that_shift_makes_the_wheel_fine_and_the_bounds_hold(by_hand: MainWindow
 
 def test_that_the_wheel_still_zooms_beside_the_voids_and_outside_the_mode(by_hand: MainWindow, qtbot: QtBot) -> None:
     view = by_hand.stage.view
-    with qtbot.waitSignal(view.zoom_changed):
+    with qtbot.waitSignal(view.view_changed):
         turn(view, QPoint(4, 4), 1)
     view.fit()
     by_hand.commands["hand"].trigger()
-    with qtbot.waitSignal(view.zoom_changed):
+    with qtbot.waitSignal(view.view_changed):
         turn(view, middle_of(view, (1, 2)), 1)
     assert not by_hand.services.hand.busy
 

@@ -10,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from kirigami_studio.fabricate.material import library
-from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, save_copy
+from kirigami_studio.fabricate.machine import SHELF as MACHINES
+from kirigami_studio.fabricate.machine import changed_machine, machines
+from kirigami_studio.fabricate.material import SHELF, library
+from kirigami_studio.fabricate.material_copies import changed_copy
 from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.services import Services
@@ -43,12 +45,12 @@ def told(window: MainWindow, words: str) -> list[Message]:
 @pytest.fixture
 def own_project(designs: Document, own_materials: Path, tmp_path: Path) -> Path:
     """A project cut from an own material that nobody has in stock any more."""
-    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.41, "kerf_mm": 0.07, "name": "My film"}))
+    SHELF.save(changed_copy("film-uv", "my-film", {"connector_mm": 0.41, "kerf_mm": 0.07, "name": "My film"}))
     document = edits.set_fabrication(designs, material="my-film").document
     path = tmp_path / "own.kiri"
     store.save(document, path)
     assert store.load(path) == document
-    delete_copy("my-film")
+    SHELF.delete("my-film")
     assert "my-film" not in library().items
     return path
 
@@ -75,12 +77,12 @@ def test_that_a_deleted_own_material_is_still_cut_and_can_be_taken_over(
 
 
 def test_that_the_own_stock_wins_over_what_a_project_knew(window: MainWindow, own_project: Path, until: Until) -> None:
-    save_copy(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
+    SHELF.save(changed_copy("film-uv", "my-film", {"connector_mm": 0.55, "kerf_mm": 0.07, "name": "My film"}))
     window.services.project.open(own_project)
     until(lambda: window.fabrication.export.isEnabled())
     assert window.fabrication.numbers["ligament"].text() == "0.55 mm"
     (message,) = told(window, "differs from the project's")
-    assert message.details == "connector_mm: 0.41 in the project, 0.55 in your materials"
+    assert message.details == "connector_mm: 0.41 in the project, 0.55 in yours"
 
 
 def test_that_a_preset_is_not_carried(designs: Document, tmp_path: Path) -> None:
@@ -98,6 +100,33 @@ def test_that_an_impossible_material_in_a_project_is_refused(entry: str, value: 
 
     with pytest.raises(store.ProjectError, match="Cannot open"):
         store.load(rewritten(own_project, spoil))
+
+
+# own machines ----------------------------------------------------------------------------------------------------
+
+
+def test_that_a_machine_that_nobody_has_is_shown_used_and_can_be_taken_over(
+    window: MainWindow, designs: Document, tmp_path: Path, until: Until
+) -> None:
+    MACHINES.save(changed_machine("cricut-maker", "my-cutter", {"bed_width_mm": "77", "name": "My cutter"}))
+    changes = {"machine": "my-cutter", "material": "drag-knife", "profile": "cricut"}
+    document = edits.set_fabrication(designs, **changes).document  # type: ignore[arg-type]
+    store.save(document, tmp_path / "own.kiri")
+    mine = machines().items["my-cutter"]
+    MACHINES.delete("my-cutter")
+    window.services.project.open(tmp_path / "own.kiri")
+    until(lambda: window.fabrication.export.isEnabled())
+    chooser = window.fabrication.chooser
+    assert (chooser.machine.currentText(), chooser.material.currentData()) == ("My cutter", "drag-knife")
+    assert "77" in chooser.machine.toolTip() and chooser.wanted_file == ".svg"
+    (message,) = told(window, "You don't have the machine")
+    dict(message.actions)["Add to my machines"]()
+    assert machines().items["my-cutter"] == mine
+    assert chooser.machine.currentText() == "My cutter"
+    MACHINES.save(replace(mine, bed_width_mm=78.0))
+    window.services.project.open(tmp_path / "own.kiri")
+    until(lambda: bool(told(window, "differs from the project's")))
+    assert told(window, "differs from the project's")[0].details == "bed_width_mm: 77 in the project, 78 in yours"
 
 
 # the photo -------------------------------------------------------------------------------------------------------

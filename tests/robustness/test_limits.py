@@ -10,7 +10,7 @@ from kirigami_studio.cli import inputs
 from kirigami_studio.export import artwork_picture, dxf_reading, svg_reading
 from kirigami_studio.foundation import files
 from kirigami_studio.generator import weights
-from kirigami_studio.gui.stage import artwork_jobs
+from kirigami_studio.gui.stage import artwork_painting
 from kirigami_studio.lab.baselines import stored
 from kirigami_studio.lab.benchmark import run_store
 from kirigami_studio.lab.training import dataset, fitted_fields, learner
@@ -35,7 +35,7 @@ def rows() -> list[str]:
         f"{read_image.MOST_PIXELS_IN_COLOUR // 10**6} million for parts by colour | |",
         f"| mask | {inputs.MOST_MASK_MEGABYTES} MB | {inputs.MOST_MASK_PIXELS // 10**6} million pixels | |",
         f"| artwork | {artwork_picture.MOST_MEGABYTES} MB | {read_image.MOST_PIXELS // 10**6} million pixels; "
-        f"SVG as above | SVG {artwork_jobs.MOST_SECONDS:g} s |",
+        f"SVG as above | SVG {artwork_painting.MOST_SECONDS:g} s |",
         f"| cut DXF to check | {dxf_reading.LARGEST_FILE // 10**6} MB | {read_dxf.MOST_ENTITIES:_} entities | "
         f"{dxf_reading.LEAST_SECONDS:g} s and {dxf_reading.SECONDS_PER_MEGABYTE:g} s for each MB |",
         f"| written SVG read back | {svg_reading.LARGEST_FILE // 10**6} MB | no `use` | |",

@@ -110,7 +110,7 @@ def test_that_artwork_shows_no_pixel_of_another_file(tmp_path: Path, secret: Pat
     """Qt opens files itself, past Python's audit."""
     from kirigami_studio.export.artwork_picture import read_picture
     from kirigami_studio.foundation.errors import TargetError
-    from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
+    from kirigami_studio.gui.stage.artwork_painting import svg_to_png
 
     path = tmp_path / name
     path.write_text(linking(str(secret))[name], encoding="utf-8")
@@ -127,7 +127,7 @@ def test_that_artwork_shows_no_pixel_of_another_file(tmp_path: Path, secret: Pat
 
 def test_that_artwork_with_an_embedded_picture_is_drawn(tmp_path: Path, secret: Path) -> None:
     from kirigami_studio.export.artwork_picture import read_picture
-    from kirigami_studio.gui.stage.artwork_jobs import svg_to_png
+    from kirigami_studio.gui.stage.artwork_painting import svg_to_png
 
     packed = base64.b64encode(secret.read_bytes()).decode()
     path = tmp_path / "embedded.svg"

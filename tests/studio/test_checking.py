@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -190,6 +191,12 @@ GOOD = {
         ("REMOVED_0", "5 -7"),
         ("MATERIAL", "x" * 300),
         ("VERDICT", "ready_to_cut_really"),
+        ("CONNECTOR_MM", "0"),
+        ("WIDTH_MM", "1e-300"),
+        ("WIDTH_MM", "1_0"),
+        ("KERF_MM", "\u0663"),
+        ("MATERIAL", ""),
+        ("MATERIAL", "\u202e"),
     ],
 )
 def test_that_a_hostile_record_is_refused_in_one_short_line(name: str, value: str) -> None:
@@ -209,6 +216,33 @@ def test_that_a_damaged_record_makes_a_file_unsound_and_no_more(
     report = check_file(bad)
     assert [problem.code for problem in report.problems] == ["cut_file.record_not_readable"]
     assert report.record is None and report.pieces == 1
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [("KERF_MM", "-1"), ("KERF_MM", 400 * "9"), ("LINES", "x"), ("CONNECTOR_MM", "0"), ("MATERIAL", "")],
+)
+@pytest.mark.parametrize("name", ["cut.svg", "cut.dxf", "cut_r12.dxf", "cut.lbrn2"])
+def test_that_a_hostile_record_in_a_file_is_said_once_and_its_geometry_is_checked_anyway(
+    name: str, entry: str, value: str, exported: Callable[..., ExportedFiles], project: Document, tmp_path: Path
+) -> None:
+    (good,) = (path for path in exported().files if path.name == name)
+    text = good.read_text(encoding="utf-8")
+    # In a DXF beyond the next line, which says what follows; else behind a space.
+    behind = r"(?: |\s+9\s+\$CUSTOMPROPERTY\s+1\r?\n|\s+1000\r?\n)"
+    spoilt, times = re.subn(rf"(\b{entry}{behind})[^\s;&<]*", lambda found: found[1] + value, text)
+    assert times >= 1
+    bad = tmp_path / name
+    bad.write_text(spoilt, encoding="utf-8")
+    found = checked(bad)
+    assert [problem.code for problem in found.report.problems].count("cut_file.record_not_readable") == 1
+    (problem,) = (problem for problem in found.report.problems if problem.code == "cut_file.record_not_readable")
+    assert problem.fields["name"] == entry and len(problem.text) < 250 and problem.text.isprintable()
+    assert not found.sound and found.report.pieces == 1 and found.report.record is None
+    try:
+        assert checked(bad, project).verdict is not None
+    except ExportError as error:
+        assert value.startswith("99") and str(error).count(".. ") == 0  # the second reader takes no such number
 
 
 def test_that_files_of_others_and_of_earlier_versions_have_no_record() -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from shapely.geometry import LineString
 
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.jam_angle import jam_angle_of_file
@@ -14,6 +15,7 @@ from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.strokes import strokes_of
 from kirigami_studio.export.verification import file_voids, verify_export
+from kirigami_studio.fabricate.finished_sheet import overlap_length
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import with_choices
@@ -55,6 +57,13 @@ def test_that_an_export_tells_the_simulated_jam_of_its_file(sheet: Sheet, profil
     (verified,) = found.verifications
     assert verified.jam_phi == as_cut.jam_phi
     assert found.verdict is not None and "as_cut.file_jams" not in [one.code for one in found.verdict.problems]
+
+
+def test_that_slots_beside_a_trimmed_edge_are_cut_once() -> None:
+    asked = CutRequest.of(load(TRIMMED_STAR))
+    plan = planned(replace(asked, settings=with_choices(asked.settings, {"connector_mm": 0.3}))).plan
+    strokes = strokes_of(plan, find_profile("slots"))
+    assert overlap_length([LineString(stroke.travelled()) for stroke in strokes]) < 1e-9
 
 
 def test_that_a_file_that_is_not_as_planned_has_no_simulated_jam(sheet: Sheet, tmp_path: Path) -> None:

@@ -85,10 +85,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Material {key!r:.60}: {name} must be of type {kind}, got {value!r:.40}. Correct its file."
     ),
     "material.number_not_positive": mark(
-        "Material {key!r:.60}: {name} must be a number above 0, got {value!r:.40}. Correct its file."
+        "Material {key!r:.60}: {name} must be a number above 0, got {value!r:.40} (from {least:g} to "
+        "{most:g} is taken). Correct its file."
     ),
     "material.number_negative": mark(
-        "Material {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40}. Correct its file."
+        "Material {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40} (up to {most:g} is "
+        "taken). Correct its file."
     ),
     "material.power_above_full": mark(
         "Material {key!r:.40}: power_percent must be 0 to 100, got {power_percent:g}. Give the share of full power."
@@ -128,11 +130,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Machine {key!r:.60}: {name} must be of type {kind}, got {value!r:.40}. Correct its file."
     ),
     "machine.no_such_kind": mark("Machine {key!r:.60}: there is no kind {value!r:.40}. Choose one of {choices}."),
+    "machine.no_such_profile": mark("Machine {key!r:.60}: there is no profile {value!r:.40}. Choose one of {choices}."),
+    "machine.no_such_file": mark(
+        "Machine {key!r:.60}: files are not written as {value!r:.40}. Choose one of {choices}."
+    ),
     "machine.number_not_positive": mark(
-        "Machine {key!r:.60}: {name} must be a number above 0, got {value!r:.40}. Correct its file."
+        "Machine {key!r:.60}: {name} must be a number above 0, got {value!r:.40} (from {least:g} to "
+        "{most:g} is taken). Correct its file."
     ),
     "machine.number_negative": mark(
-        "Machine {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40}. Correct its file."
+        "Machine {key!r:.60}: {name} must be a number of 0 or more, got {value!r:.40} (up to {most:g} is "
+        "taken). Correct its file."
     ),
     "machine.unknown": mark("There is no machine {name!r:.60}. Choose one of {known}."),
     "machine.folder_not_readable": mark("Cannot read your own machines in {folder}: {reason}."),
@@ -159,6 +167,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "plan.machine_unknown": mark(
         "You do not have the machine {name!r:.60}. Bed and times are those of {machine}; choose your machine."
     ),
+    "plan.machine_differs": mark("Your machine {name} differs from the project's; yours is used."),
+    "plan.material_differs": mark("Your material {name} differs from the project's; yours is used."),
     "plan.machine_does_not_cut": mark(
         "{machine} is not known to cut {material}, whose figures are for another kind of machine. Choose a material "
         "that it cuts, or another machine."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from pathlib import Path
 from typing import Protocol
 
@@ -10,26 +11,29 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
-TARGET_FILTER = mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
-START_FILTER = mark("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
-ARTWORK_FILTER = mark("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)")
 PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
+
+
+class FileToOpen(Enum):
+    """A file to open: the title of its dialog, and which files it lists."""
+
+    TARGET = mark("Open target"), mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
+    START = (
+        mark("Open start outline"),
+        mark("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"),
+    )
+    ARTWORK = (
+        mark("Choose picture"),
+        mark("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)"),
+    )
+    PROJECT = mark("Open project"), PROJECT_FILTER
 
 
 class FileDialogs(Protocol):
     """Asks the user for files; None means that the user has cancelled."""
 
-    def target(self) -> Path | None:
-        """A target to open."""
-
-    def start(self) -> Path | None:
-        """A shape to open as the start outline."""
-
-    def artwork(self) -> Path | None:
-        """A picture to print on the sheet."""
-
-    def project(self) -> Path | None:
-        """A project to open."""
+    def open(self, wanted: FileToOpen) -> Path | None:
+        """A file to open."""
 
     def save(self, proposal: str) -> Path | None:
         """A place for the project."""
@@ -51,20 +55,9 @@ class SystemFileDialogs:
         self._window = window
         self._folder = ""
 
-    def target(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open target"), self._folder, tr(TARGET_FILTER))
-        return self._remembered(name)
-
-    def start(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open start outline"), self._folder, tr(START_FILTER))
-        return self._remembered(name)
-
-    def artwork(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Choose picture"), self._folder, tr(ARTWORK_FILTER))
-        return self._remembered(name)
-
-    def project(self) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr("Open project"), self._folder, tr(PROJECT_FILTER))
+    def open(self, wanted: FileToOpen) -> Path | None:
+        title, shown = wanted.value
+        name, _ = QFileDialog.getOpenFileName(self._window, tr(title), self._folder, tr(shown))
         return self._remembered(name)
 
     def save(self, proposal: str) -> Path | None:

@@ -13,7 +13,7 @@ from kirigami_studio.foundation.resources import resource_root
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.files.recent_files import RecentFiles
 from kirigami_studio.gui.files.recovering import Recovery
-from kirigami_studio.gui.make.cutting import MaterialStore
+from kirigami_studio.gui.make.cutting import ProjectStock
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.session.session import Session
@@ -101,22 +101,19 @@ class OpenProject(QObject):
 
     Parameters
     ----------
-    session : Session
-    targeting : Targeting
     hand : HandEditor
         Finishes what is being changed by hand first.
     preferences : UserPreferences
         Has what new projects start with.
     stop_work : callable
         Stops all work for the present document, before another one comes.
-    parent : QObject
 
     Attributes
     ----------
     files : ProjectFiles
     recovery : Recovery
     recent : RecentFiles
-    materials : MaterialStore
+    stock : ProjectStock
     """
 
     saved = Signal(Path)
@@ -137,7 +134,7 @@ class OpenProject(QObject):
         self.files = ProjectFiles(session, targeting, self)
         self.recovery = Recovery(session, targeting.tracer, self.files.new_folder, self)
         self.recent = RecentFiles(session, self)
-        self.materials = MaterialStore(session, self)
+        self.stock = ProjectStock(session, self)
         targeting.source_read.connect(self.recent.take_target)
         self.files.saved.connect(self._on_saved)
         self.files.opened.connect(self._on_opened)
@@ -191,12 +188,12 @@ class OpenProject(QObject):
             else tr("Opened {path}.", path=path)
         )
         self.recent.take_project(path)
-        self.materials.compare(document)
+        self.stock.compare(document)
 
     def _on_recovered(self, document: Document, path: Path | None) -> None:
         self._stop_work()
         self._session.restart(document, path, saved=False)
-        self.materials.compare(document)
+        self.stock.compare(document)
 
     # its history ---------------------------------------------------------------------------------------------------
 

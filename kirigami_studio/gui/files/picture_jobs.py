@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,8 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.studio.making import CutRequest, export_job, planned
+from kirigami_studio.studio import importing
+from kirigami_studio.studio.making import CutRequest, closed, export_job, judged, planned
 
 #: Pixels that are painted at a time; each band costs the whole recording again, less what lies outside it.
 BAND = 1_000_000
@@ -121,7 +122,10 @@ def writing_svg(content: bytes, path: Path, cancel: Cancel) -> Iterator[Path]:
 
 
 def drawing_cuts(request: CutRequest, cancel: Cancel) -> Iterator[bytes]:
-    """Plan the cuts and yield them as SVG in mm, the very bytes of an exported file."""
+    """Plan the cuts, judge them and yield them as SVG in mm, the very bytes of an exported file."""
+    importing.import_as_cut()
     from kirigami_studio.export.svg import cut_svg_bytes
 
-    yield cut_svg_bytes(export_job(request, planned(request, cancel)))
+    made = planned(request, cancel)
+    verdict = judged(request, made, closed(request, made))
+    yield cut_svg_bytes(replace(export_job(request, made), verdict=verdict.level.value))

@@ -77,7 +77,7 @@ class PictureMaker(QObject):
         """Put the cut plan on the clipboard as SVG in mm, for a drawing program or a laser program."""
         request = self._cutting.request
         if request is None:
-            self._session.post(Message(tr("No design to copy yet. Generate one first."), Tone.HINT))
+            self._session.hint(tr("No design to copy yet. Generate one first."))
             return
         self._session.set_status(tr("Planning the cuts …"))
         callbacks = JobCallbacks(self._on_cuts, on_failed=self._report_failure)

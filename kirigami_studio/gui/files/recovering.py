@@ -175,7 +175,7 @@ class Recovery(QObject):
         self._questions.clear()
         self._read(waiting)
         if not waiting:
-            self._session.post(Message(tr("There is no unsaved work to recover."), Tone.HINT))
+            self._session.hint(tr("There is no unsaved work to recover."))
 
     def _abandoned(self) -> tuple[Path, ...]:
         """Files of sessions that are no longer running, oldest first, locked from now on."""

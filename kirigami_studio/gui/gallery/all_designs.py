@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QSlider,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.gallery.design_table import WIDTHS, DesignTable
@@ -22,6 +13,7 @@ from kirigami_studio.gui.gallery.gallery_model import GalleryModel
 from kirigami_studio.gui.gallery.gallery_panel import STEPS
 from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_text
 from kirigami_studio.gui.widgets.card import ElidedLabel, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row, slider
 
 
 class AllDesigns(QFrame):
@@ -41,14 +33,9 @@ class AllDesigns(QFrame):
         self.table = DesignTable(model)
         self.filters = FilterControls(self, "all-")
         self.filters.changed.connect(lambda: self.selection_changed.emit(self.filters.apply(self._selection)))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 8, 8, 8)
-        column.setSpacing(8)
-        column.addLayout(self._head())
+        head, foot = self._head(), self._foot()
         self.filter_row = self._filter_row()
-        column.addWidget(self.filter_row)
-        column.addWidget(self.table, 1)
-        column.addLayout(self._foot())
+        column(head, self.filter_row, (self.table, 1), foot, on=self, spacing=8, margins=(12, 8, 8, 8))
         self.table.size_wanted.connect(lambda step: self.card_size.setValue(self.card_size.value() + step))
         self.table.compare_wanted.connect(self.compare)
         self.table.compared_changed.connect(self._show_compared)
@@ -58,70 +45,42 @@ class AllDesigns(QFrame):
         self._count()
 
     def _head(self) -> QHBoxLayout:
-        title = QLabel(tr("All designs"))
-        title.setObjectName("cardTitle")
         self.count = FittingLabel()
         self.order = order_box("allOrder")
         self.order.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.order.setFixedWidth(150)
         self.order.activated.connect(lambda _: self.order_wanted.emit(self.order.currentData()))
-        self.card_size = QSlider(Qt.Orientation.Horizontal)
-        self.card_size.setObjectName("cardSize")
-        self.card_size.setRange(0, len(WIDTHS) - 1)
-        self.card_size.setPageStep(1)
+        tip = tr("Size of the cards (+ and -).")
+        self.card_size = slider("cardSize", tr("Size of the cards"), tip, len(WIDTHS) - 1, 1)
         self.card_size.setFixedWidth(70)
-        self.card_size.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.card_size.setAccessibleName(tr("Size of the cards"))
-        self.card_size.setToolTip(tr("Size of the cards (+ and -)."))
         self.card_size.valueChanged.connect(self.table.set_size)
         self.card_size.setValue(1)
         self.again = ToolButton("allAgain", "again", tr("More designs (Ctrl+R)."))
-        self.alike = QPushButton(tr("More like this"))
-        self.alike.setObjectName("small")
-        self.alike.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.alike.setToolTip(
-            tr("Generate designs like the one that is marked, and add them. The slider says how near they are to it.")
+        self.alike = push_button(
+            tr("More like this"),
+            tr("Generate designs like the one that is marked, and add them. The slider says how near they are to it."),
         )
-        self.nearness = QSlider(Qt.Orientation.Horizontal)
-        self.nearness.setObjectName("allNearness")
-        self.nearness.setRange(0, STEPS)
-        self.nearness.setPageStep(STEPS // 10)
+        name = tr("How far from the marked design new ones may be")
+        tip = tr("Left: close variations of the marked design. Right: loosely similar.")
+        self.nearness = slider("allNearness", name, tip, STEPS, STEPS // 10)
         self.nearness.setFixedWidth(90)
-        self.nearness.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.nearness.setAccessibleName(tr("How far from the marked design new ones may be"))
-        self.nearness.setToolTip(tr("Left: close variations of the marked design. Right: loosely similar."))
+        for one in (self.card_size, self.nearness):
+            one.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.nearness.valueChanged.connect(self.nearness_changed)
-        self.comparison = QPushButton()
-        self.comparison.setObjectName("small")
-        self.comparison.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.comparison.setToolTip(
-            tr("Compare up to nine designs (C). Mark them with Space, the keys 1 to 9, Ctrl+click, or all with Ctrl+A.")
+        tip = tr(
+            "Compare up to nine designs (C). Mark them with Space, the keys 1 to 9, Ctrl+click, or all with Ctrl+A."
         )
+        self.comparison = push_button("", tip)
         self.comparison.clicked.connect(self.compare)
         self.close_button = ToolButton("closeAllDesigns", "close", tr("Back to the window (Esc)."))
         self.close_button.clicked.connect(self.closed)
-        row = QHBoxLayout()
-        row.setSpacing(8)
-        row.addWidget(title)
-        row.addWidget(self.count)
-        row.addStretch(1)
-        near, far = QLabel(tr("near")), QLabel(tr("far"))
-        for label in (near, far):
-            label.setObjectName("muted")
-        parts: tuple[QWidget | None, ...] = (self.alike, near, self.nearness, far, self.again, None)
-        for part in (*parts, self.comparison, self.order, self.card_size, self.close_button):
-            if part is None:
-                row.addSpacing(6)
-            else:
-                row.addWidget(part)
-        return row
+        more = (self.alike, label(tr("near")), self.nearness, label(tr("far")), self.again)
+        last = (self.comparison, self.order, self.card_size, self.close_button)
+        return row(label(tr("All designs"), name="cardTitle"), self.count, ..., *more, 6, *last, spacing=8)
 
     def _filter_row(self) -> QWidget:
         pane = self.filters.wide()
-        self.show_all = QPushButton(tr("Show all"))
-        self.show_all.setObjectName("link")
-        self.show_all.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.show_all.setToolTip(tr("Take every filter off."))
+        self.show_all = push_button(tr("Show all"), tr("Take every filter off."), name="link")
         layout = pane.layout()
         if isinstance(layout, QHBoxLayout):
             layout.addWidget(self.show_all)
@@ -132,17 +91,11 @@ class AllDesigns(QFrame):
         """What the keys do, and the note on the current design."""
         self.note = ElidedLabel()
         self.keys = FittingLabel()
-        self.use = QPushButton(tr("Use this design"))
-        self.use.setObjectName("primary")
-        self.use.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.use.setToolTip(tr("Take the marked design to the stage and close this table (Enter)."))
+        self.use = push_button(
+            tr("Use this design"), tr("Take the marked design to the stage and close this table (Enter)."), "primary"
+        )
         self.use.clicked.connect(self._use)
-        row = QHBoxLayout()
-        row.setSpacing(12)
-        row.addWidget(self.keys)
-        row.addWidget(self.note, 1)
-        row.addWidget(self.use)
-        return row
+        return row(self.keys, (self.note, 1), self.use, spacing=12)
 
     def _use(self) -> None:
         if self.table.current is not None:
@@ -166,10 +119,6 @@ class AllDesigns(QFrame):
         beside = [other for other in (row + 1, row - 1) if 0 <= other < self._model.rowCount()]
         if len(self.table.compared) == 1 and beside:
             self.table.toggle_compared(self._model.entries[beside[0]].candidate)
-
-    def focus(self) -> None:
-        """Give the keyboard to what is shown."""
-        self.table.setFocus()
 
     def show_selection(self, selection: Selection) -> None:
         """Show which designs are shown, and in which order."""

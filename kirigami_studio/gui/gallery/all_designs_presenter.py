@@ -28,11 +28,6 @@ class AllDesignsPresenter(QObject):
     ----------
     pages : QStackedWidget
         Of the window: its first page is in the place of the table otherwise.
-    panel : GalleryPanel
-    designs : GalleryPresenter
-    session : Session
-    generation : Generation
-    marks : DesignMarks
     choose : callable
         Puts a design on the stage.
     compare : callable
@@ -85,7 +80,7 @@ class AllDesignsPresenter(QObject):
         self.show_document()
         self._pages.setCurrentWidget(page)
         page.table.go_to(self._designs.chosen)
-        page.focus()
+        page.table.setFocus()
 
     def leave_to(self, on: bool) -> None:
         """Something else is shown that the table would hide."""
@@ -118,7 +113,7 @@ class AllDesignsPresenter(QObject):
         bar.nearness.valueChanged.connect(page.nearness.setValue)
         page.nearness.setValue(bar.nearness.value())
         table = page.table
-        table.hint = lambda: view.hint
+        table.hint = view.empty_text
         table.left.connect(lambda: self.show(False))
         table.taken.connect(self._put_on_stage)
         table.pin_wanted.connect(self._marks.pin)

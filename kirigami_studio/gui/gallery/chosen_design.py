@@ -1,13 +1,13 @@
 """Work on the chosen design in the worker: trim it, fit it again, score it as the generator sampled it.
 
-:class:`ChosenDesign` is the one that is asked.  :class:`TrimSwitch` and :class:`Refitter` each run at most one
-:class:`ChosenDesignJob` and make one edit of its result; :class:`SampledScores` changes nothing.
+:class:`ChosenDesign` is the one that is asked.  :class:`TrimSwitch` and :class:`Refitter` each run at most one job and
+make one edit of its result; :class:`SampledScores` changes nothing.
 """
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections import OrderedDict
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Generic, TypeVar
@@ -16,7 +16,7 @@ from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.steps import Steps
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.run.generation import Generation
 from kirigami_studio.gui.run.regularity import Regularity
 from kirigami_studio.gui.session.messages import Message, Tone
@@ -33,22 +33,15 @@ T = TypeVar("T")
 CAPACITY = 256
 
 
-class ChosenDesignJob(Generic[T]):
-    """At most one job on the chosen design; its only report ends it.
+class ChosenDesignJob(QObject, Generic[T]):
+    """At most one job on the chosen design; its only report ends it."""
 
-    Parameters
-    ----------
-    session : Session
-    on_busy : callable
-        Hears whether a design is being worked on.
-    on_report : callable
-        Gets the candidate that the job was begun with, and the report.
-    """
+    busy_changed = Signal(bool)  #: whether a design is being worked on
+    STOPPED = ""  #: said when the user stops it
 
-    def __init__(
-        self, session: Session, on_busy: Callable[[bool], None], on_report: Callable[[Candidate, T], None]
-    ) -> None:
-        self._session, self._on_busy, self._on_report = session, on_busy, on_report
+    def __init__(self, session: Session, parent: QObject) -> None:
+        super().__init__(parent)
+        self._session = session
         self._job = LatestJob[T](session.queue)
         self._candidate: Candidate | None = None
 
@@ -57,12 +50,12 @@ class ChosenDesignJob(Generic[T]):
         """Whether a design is being worked on."""
         return self._job.busy
 
-    def start(self, name: str, candidate: Candidate, steps: Steps[T]) -> None:
-        """Start a job on a design; ``name`` follows the word "while"."""
+    def begin(self, name: str, candidate: Candidate, steps: Steps[T]) -> None:
+        """Begin a job on a design; ``name`` follows the word "while"."""
         self.stop()
         self._candidate = candidate
         self._job.start(name, steps, JobCallbacks(self._on_result, self._end, self._end, self._fail))
-        self._on_busy(True)
+        self.busy_changed.emit(True)
 
     def stop(self) -> None:
         """Stop, and ignore what is still being made."""
@@ -70,16 +63,25 @@ class ChosenDesignJob(Generic[T]):
             self._job.stop()
             self._end()
 
+    def cancel(self) -> None:
+        """Stop because the user says so."""
+        self.stop()
+        self._session.set_status(tr(self.STOPPED))
+
     def stop_unless(self, candidate: Candidate | None) -> None:
         """Go on only while this design is the one on the stage."""
         if candidate != self._candidate:
             self.stop()
 
+    @abstractmethod
+    def take(self, before: Candidate, report: T) -> None:
+        """Take what was made of the candidate that the job was begun with."""
+
     def _on_result(self, report: T) -> None:
         before = self._candidate
         self.stop()
         if before is not None:
-            self._on_report(before, report)
+            self.take(before, report)
 
     def _fail(self, sentence: str, trace: str) -> None:
         self._end()
@@ -87,7 +89,7 @@ class ChosenDesignJob(Generic[T]):
 
     def _end(self) -> None:
         self._candidate = None
-        self._on_busy(False)
+        self.busy_changed.emit(False)
 
 
 def chosen_name(document: Document) -> str:
@@ -95,20 +97,10 @@ def chosen_name(document: Document) -> str:
     return tr("the design") if document.label is None else tr("design {name}", name=document.label.text)
 
 
-class TrimSwitch(QObject):
+class TrimSwitch(ChosenDesignJob[Decoded]):
     """Trims the chosen design along the target, or takes its trim off."""
 
-    busy_changed = Signal(bool)
-
-    def __init__(self, session: Session, parent: QObject) -> None:
-        super().__init__(parent)
-        self._session = session
-        self.job = ChosenDesignJob[Decoded](session, self.busy_changed.emit, self._on_result)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a design is being trimmed."""
-        return self.job.busy
+    STOPPED = mark("Trimming stopped; nothing changed.")
 
     def switch(self, on: bool) -> None:
         """Trim the chosen design, or bring back what was cut off; while it is being trimmed, stop that."""
@@ -116,7 +108,7 @@ class TrimSwitch(QObject):
         if not on and self.busy:
             self.cancel()
         elif candidate is None:
-            self._session.post(Message(tr("Choose a finished design first, then trim it."), Tone.HINT))
+            self._session.hint(tr("Choose a finished design first, then trim it."))
         elif on and candidate.trim is None:
             self._start(candidate)
         elif not on and candidate.trim is not None:
@@ -124,20 +116,15 @@ class TrimSwitch(QObject):
             self._replace(replace(candidate, trim=None), label)
             self._session.set_status(tr("Trim removed."))
 
-    def cancel(self) -> None:
-        """Stop because the user says so."""
-        self.job.stop()
-        self._session.set_status(tr("Trimming stopped; nothing changed."))
-
     def _start(self, candidate: Candidate) -> None:
         document = self._session.document
         if document.target is None:
             return
         steps = partial(trimming, candidate, document.target, document.fabrication)
-        self.job.start(tr("trimming the design"), candidate, steps)
+        self.begin(tr("trimming the design"), candidate, steps)
         self._session.set_status(tr("Trimming {name} …", name=chosen_name(document)))
 
-    def _on_result(self, before: Candidate, report: Decoded) -> None:
+    def take(self, before: Candidate, report: Decoded) -> None:
         after, trim = report.candidate, report.candidate.trim
         if before != self._session.document.candidate or trim is None:
             return
@@ -158,41 +145,26 @@ class TrimSwitch(QObject):
             self._session.apply(edits.replace_candidate(document, document.chosen, candidate, label))
 
 
-class Refitter(QObject):
+class Refitter(ChosenDesignJob[Refitted]):
     """Fits the chosen design again by what the settings prefer."""
 
-    busy_changed = Signal(bool)
-
-    def __init__(self, session: Session, parent: QObject) -> None:
-        super().__init__(parent)
-        self._session = session
-        self.job = ChosenDesignJob[Refitted](session, self.busy_changed.emit, self._on_result)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a design is being fitted."""
-        return self.job.busy
+    STOPPED = mark("Fitting stopped; nothing changed.")
 
     def start(self) -> None:
         """Fit the chosen design."""
         document = self._session.document
         candidate, target = document.candidate, document.target
         if candidate is None or target is None:
-            self._session.post(Message(tr("Choose a finished design first, then fit it again."), Tone.HINT))
+            self._session.hint(tr("Choose a finished design first, then fit it again."))
             return
         if len(document.locked) == candidate.sheet.field.ratio.size:
-            self._session.post(Message(tr("Every void is locked. Unlock the ones to fit."), Tone.HINT))
+            self._session.hint(tr("Every void is locked. Unlock the ones to fit."))
             return
         steps = partial(refitting, candidate, target, document.settings, document.locked, document.fabrication)
-        self.job.start(tr("fitting the design"), candidate, steps)
+        self.begin(tr("fitting the design"), candidate, steps)
         self._session.set_status(tr("Fitting {design} … Press Esc to stop.", design=chosen_name(document)))
 
-    def cancel(self) -> None:
-        """Stop because the user says so."""
-        self.job.stop()
-        self._session.set_status(tr("Fitting stopped; nothing changed."))
-
-    def _on_result(self, before: Candidate, report: Refitted) -> None:
+    def take(self, before: Candidate, report: Refitted) -> None:
         after = report.decoded.candidate
         numbers = {
             "before": 100 * before.score.iou_exact,
@@ -321,15 +293,14 @@ class ChosenDesign(QObject):
         if self._hand.postpones(lambda: self.trim(on)):
             return
         if self._running:
-            text = tr("Wait for the run to finish, then trim a design.")
-            self._session.post(Message(text, Tone.HINT))
+            self._session.hint(tr("Wait for the run to finish, then trim a design."))
         else:
             self.trimming.switch(on)
 
     def refit(self) -> None:
         """Fit the chosen design again."""
         if not self._running and not self._hand.postpones(self.refit):
-            self.trimming.job.stop()
+            self.trimming.stop()
             self.refitting.start()
 
     def cancel(self) -> None:
@@ -345,11 +316,11 @@ class ChosenDesign(QObject):
 
     def stop(self) -> None:
         """Stop, and ignore what is still being made."""
-        self.trimming.job.stop()
-        self.refitting.job.stop()
+        self.trimming.stop()
+        self.refitting.stop()
 
     def _stop_unless(self, entry: Entry | None) -> None:
         """Go on only with the design that is on the stage now."""
         candidate = None if entry is None else entry.candidate
-        self.trimming.job.stop_unless(candidate)
-        self.refitting.job.stop_unless(candidate)
+        self.trimming.stop_unless(candidate)
+        self.refitting.stop_unless(candidate)

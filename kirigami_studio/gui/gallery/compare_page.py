@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QScrollArea, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
@@ -20,6 +20,7 @@ from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
+from kirigami_studio.gui.widgets.layouts import column, plain_pane, row
 from kirigami_studio.gui.widgets.legends import Chip
 from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_feature, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette, themed
@@ -41,32 +42,15 @@ GAP, BETWEEN = 10, 24
 
 @dataclass(frozen=True, slots=True)
 class ComparedDesign:
-    """A design beside others, and all that is known of it.
-
-    Attributes
-    ----------
-    entry : Entry
-    name : str
-        What it is called.
-    width_mm : float
-        Of its flat sheet.
-    chosen : bool
-        Whether it is the one on the stage.
-    as_cut : AsCut or None
-        How it does as cut, as far as that is known.
-    simulated : bool
-        Whether that was simulated, not estimated.
-    seconds : float or None
-        That cutting it takes, as far as that is known.
-    """
+    """A design beside others, and all that is known of it."""
 
     entry: Entry
-    name: str
-    width_mm: float
-    chosen: bool = False
-    as_cut: AsCut | None = None
-    simulated: bool = False
-    seconds: float | None = None
+    name: str  #: what it is called
+    width_mm: float  #: of its flat sheet
+    chosen: bool = False  #: whether it is the one on the stage
+    as_cut: AsCut | None = None  #: how it does as cut, as far as that is known
+    simulated: bool = False  #: whether that was simulated, not estimated
+    seconds: float | None = None  #: that cutting it takes, as far as that is known
 
 
 #: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.
@@ -215,14 +199,14 @@ class FigureRows(QWidget):
         rows = math.ceil(len(self.values) / columns)
         widest = max(label.sizeHint().width() for label in self.captions.values())
         for place, name in enumerate(self.values):
-            side, row = divmod(place, rows)
+            side, below = divmod(place, rows)
             self.captions[name].setMaximumWidth(widest)
             for part, label in enumerate((self.captions[name], self.values[name], self.gaps[name])):
-                self._grid.addWidget(label, row, 4 * side + part)
+                self._grid.addWidget(label, below, 4 * side + part)
             self.gaps[name].setVisible(gaps)
         self._grid.setColumnMinimumWidth(3, BETWEEN if columns == 2 else 0)
-        for column, stretch in ((0, 100), (3, 1), (4, 100 if columns == 2 else 0), (7, 1)):
-            self._grid.setColumnStretch(column, stretch)
+        for place, stretch in ((0, 100), (3, 1), (4, 100 if columns == 2 else 0), (7, 1)):
+            self._grid.setColumnStretch(place, stretch)
 
 
 class Pane(QWidget):
@@ -238,15 +222,8 @@ class Pane(QWidget):
         self.view.setAccessibleName(tr("Layout of design {number}", number=place + 1))
         self.figures = FigureRows()
         self._shown: tuple[Entry, Outline | None] | None = None
-        head = QHBoxLayout()
-        head.addWidget(self.title, 1)
-        head.addWidget(self.use)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
-        column.addLayout(head)
-        column.addWidget(self.view, 1)
-        column.addWidget(self.figures)
+        head = row((self.title, 1), self.use)
+        column(head, (self.view, 1), self.figures, on=self, spacing=4)
 
     def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
         """Show the layout of a design over the target, unless it is there already."""
@@ -280,7 +257,7 @@ class ComparePage(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self._designs: tuple[ComparedDesign, ...] = ()
+        self.designs: tuple[ComparedDesign, ...] = ()  #: shown, the first one first
         self._overlays: frozenset[Overlay] | None = None
         self._palette: Palette = LIGHT
         self._view = 1.0, QPointF()
@@ -290,8 +267,7 @@ class ComparePage(QWidget):
         self.swap = ToolButton("swap", "swap", tr("Swap: choose the other design (Shift+K)."))
         self.leave = ToolButton("leaveCompare", "close", tr("Close the comparison (K or Esc)."))
         self.leave.clicked.connect(self.left)
-        sheet = QWidget()
-        sheet.setObjectName("plain")
+        sheet = plain_pane()
         self._grid = QGridLayout(sheet)
         self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setSpacing(GAP)
@@ -301,31 +277,19 @@ class ComparePage(QWidget):
         self.panes_area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.panes_area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.panes_area.setWidget(sheet)
-        foot = QHBoxLayout()
-        foot.setSpacing(4)
-        for part in (self.bar, self.swap, self.leave):
-            foot.addWidget(part, 1 if part is self.bar else 0)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        column.addWidget(self.panes_area, 1)
-        column.addLayout(foot)
+        foot = row((self.bar, 1), self.swap, self.leave, spacing=4)
+        column((self.panes_area, 1), foot, on=self, spacing=8)
         self.bar.phi_changed.connect(self.phi_changed)
-
-    @property
-    def designs(self) -> tuple[ComparedDesign, ...]:
-        """Those that are shown, the first one first."""
-        return self._designs
 
     @property
     def shown(self) -> tuple[Pane, ...]:
         """The panes that hold them."""
-        return tuple(self.panes[: len(self._designs)])
+        return tuple(self.panes[: len(self.designs)])
 
     @property
     def summary(self) -> tuple[str, ...]:
         """The header of the stage, longest text first."""
-        sheets = [one.entry.candidate for one in self._designs]
+        sheets = [one.entry.candidate for one in self.designs]
         if len(sheets) < 2:
             return ()
         apart = max(differences(sheets[1:], sheets[0].sheet))
@@ -353,12 +317,12 @@ class ComparePage(QWidget):
 
     def show_designs(self, designs: Sequence[ComparedDesign], target: Outline | None) -> None:
         """Show these designs, at most :data:`MOST`; angle, zoom and place stay."""
-        self._designs = tuple(designs[:MOST])
-        while len(self.panes) < len(self._designs):
+        self.designs = tuple(designs[:MOST])
+        while len(self.panes) < len(self.designs):
             self._add_pane()
-        first = figures_of(self._designs[0]) if self._designs else {}
+        first = figures_of(self.designs[0]) if self.designs else {}
         for place, pane in enumerate(self.panes):
-            one = self._designs[place] if place < len(self._designs) else None
+            one = self.designs[place] if place < len(self.designs) else None
             if one is None:
                 pane.hide()
                 pane.empty()
@@ -370,7 +334,7 @@ class ComparePage(QWidget):
             pane.show()
         self._share_bounds()
         self._mark_angles()
-        self.swap.setVisible(len(self._designs) == 2)
+        self.swap.setVisible(len(self.designs) == 2)
         self._arrange()
         self.shown_changed.emit()
 
@@ -400,25 +364,25 @@ class ComparePage(QWidget):
             pane.view.share(shared)
 
     def _mark_angles(self) -> None:
-        self.bar.set_ready(bool(self._designs))
-        if self._designs:
-            first = self._designs[0].entry
-            contacts = [one.entry.candidate.score.contact for one in self._designs]
+        self.bar.set_ready(bool(self.designs))
+        if self.designs:
+            first = self.designs[0].entry
+            contacts = [one.entry.candidate.score.contact for one in self.designs]
             touches = max((contact.phi for contact in contacts if contact is not None), default=None)
             second = first.candidate.second
             self.bar.set_marks(first.design.phi_target, touches, None if second is None else second.target.phi)
 
     def _arrange(self) -> None:
         """Lay out panes in rows of equal length, and figures alike in all of them."""
-        count = len(self._designs)
+        count = len(self.designs)
         if not count:
             return
         most = max(2, (self.width() + GAP) // (LEAST_WIDTH + GAP))
         rows = math.ceil(count / most)
         columns = math.ceil(count / rows)
         if columns != self._columns:
-            for column in range(MOST):
-                self._grid.setColumnStretch(column, 1 if column < columns else 0)
+            for place in range(MOST):
+                self._grid.setColumnStretch(place, 1 if place < columns else 0)
             for place, pane in enumerate(self.panes):
                 self._grid.addWidget(pane, *divmod(place, columns))
             self._columns = columns
@@ -458,14 +422,14 @@ class ComparePage(QWidget):
             pane.view.set_view(zoom, shift)
 
     def _take(self, place: int) -> None:
-        if place < len(self._designs):
-            self.taken.emit(self._designs[place].entry.candidate)
+        if place < len(self.designs):
+            self.taken.emit(self.designs[place].entry.candidate)
 
     def _place_of(self, event: QKeyEvent) -> int | None:
         """The design that a key without others stands for."""
         plain = not event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
         place = event.key() - Qt.Key.Key_1
-        return place if plain and 0 <= place < len(self._designs) else None
+        return place if plain and 0 <= place < len(self.designs) else None
 
     def event(self, event: QEvent) -> bool:
         """Take the keys of designs before the window does."""

@@ -12,7 +12,6 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.compare_page import MOST, ComparedDesign, ComparePage
 from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
-from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader, AsCutState
@@ -30,9 +29,6 @@ class Comparison(QObject):
 
     Parameters
     ----------
-    panel : GalleryPanel
-    page : ComparePage
-    session : Session
     as_cut : AsCutReader
         Simulates the design on the stage.
     choose : callable
@@ -83,8 +79,7 @@ class Comparison(QObject):
         """Show a design beside the chosen one."""
         stage = self._session.stage
         if stage is None or candidate == stage.candidate:
-            sentence = tr("This is the chosen design. Ctrl+click another card to compare.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("This is the chosen design. Ctrl+click another card to compare."))
             return
         self.compare((stage.candidate, candidate))
 
@@ -109,8 +104,7 @@ class Comparison(QObject):
             self._compared = (stage.candidate,) if other is None else (stage.candidate, other)
         if stage is None or len(self.compared) < 2:
             self._show_switches(False)
-            sentence = tr("Nothing to compare yet. The gallery needs two designs.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("Nothing to compare yet. The gallery needs two designs."))
             return
         if not self._comparing:
             self._page.fit()

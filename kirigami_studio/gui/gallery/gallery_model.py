@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -110,36 +111,34 @@ class GalleryModel(QAbstractListModel):
             return self._described(entry)
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
             return self._placed(entry)
-        if role == VALUE_ROLE:
-            return format_value(self._as_item(entry, 0), self._selection, self._width_mm)
-        simple = {CANDIDATE_ROLE: entry.candidate, DESIGN_ROLE: entry.design, RISE_ROLE: entry.rise}
-        if role == NAME_ROLE:
-            return self.name_of(entry.candidate)
-        if role == NOTE_ROLE:
-            return self.note_of(entry.candidate)
-        if role == MARK_ROLE:
-            return self.mark_of(entry.candidate)
-        if role == VERDICT_ROLE:
-            return self.verdict_of(entry.candidate)
-        if role == FEATURE_ROLE:
-            return entry.candidate.score.evenness.least_feature_mm(self._width_mm)
-        if role == THIN_ROLE:
-            return not self.ranking.wide_enough(entry.candidate)
-        if role == ALIKE_ROLE:
-            return self._stacks.under(entry.candidate)
-        if role == OPEN_ROLE:
-            return self._stacks.is_open(entry.candidate)
-        if role == GRID_ROLE:
-            sheet = entry.candidate.sheet
-            return f"{sheet.rows} \N{MULTIPLICATION SIGN} {sheet.columns}" if self._several_grids() else ""
-        if role == START_ROLE:
-            return start_of(entry.candidate) if self._several_starts() else ""
-        if role == FRESH_ROLE:
-            return entry.candidate in self._fresh
-        return simple.get(role)
+        known = self._facts.get(role)
+        return None if known is None else known(entry)
 
-    def _several_grids(self) -> bool:
-        return any(entry.candidate.sheet.grid != self._all[0].candidate.sheet.grid for entry in self._all)
+    @cached_property
+    def _facts(self) -> dict[int, Callable[[Entry], object]]:
+        """What each role asks of a design."""
+        return {
+            CANDIDATE_ROLE: lambda entry: entry.candidate,
+            DESIGN_ROLE: lambda entry: entry.design,
+            RISE_ROLE: lambda entry: entry.rise,
+            VALUE_ROLE: lambda entry: format_value(self._as_item(entry, 0), self._selection, self._width_mm),
+            NAME_ROLE: lambda entry: self.name_of(entry.candidate),
+            NOTE_ROLE: lambda entry: self.note_of(entry.candidate),
+            MARK_ROLE: lambda entry: self.mark_of(entry.candidate),
+            VERDICT_ROLE: lambda entry: self.verdict_of(entry.candidate),
+            FEATURE_ROLE: lambda entry: entry.candidate.score.evenness.least_feature_mm(self._width_mm),
+            THIN_ROLE: lambda entry: not self.ranking.wide_enough(entry.candidate),
+            ALIKE_ROLE: lambda entry: self._stacks.under(entry.candidate),
+            OPEN_ROLE: lambda entry: self._stacks.is_open(entry.candidate),
+            GRID_ROLE: self._grid,
+            START_ROLE: lambda entry: start_of(entry.candidate) if self._several_starts() else "",
+            FRESH_ROLE: lambda entry: entry.candidate in self._fresh,
+        }
+
+    def _grid(self, entry: Entry) -> str:
+        rows, columns = entry.candidate.sheet.grid
+        several = any(one.candidate.sheet.grid != self._all[0].candidate.sheet.grid for one in self._all)
+        return f"{rows} \N{MULTIPLICATION SIGN} {columns}" if several else ""
 
     def _several_starts(self) -> bool:
         if self._starts_differ is None:

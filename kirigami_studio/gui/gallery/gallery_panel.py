@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QSize, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.gallery.gallery_filters import FilterControls, order_box
 from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder, count_text
 from kirigami_studio.gui.gallery.gallery_view import GalleryView
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row, slider
 from kirigami_studio.lattice.sheet import Sheet
 
 #: Nearness at the two ends of the slider, and where it starts.
@@ -65,7 +66,7 @@ class GalleryBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._selection = Selection()
+        self.selection = Selection()  #: wanted to be seen
         self._chosen: tuple[Sheet, str] | None = None
         self._unlike: tuple[Sheet, str] | None = None
         self.order = order_box("galleryOrder")
@@ -78,52 +79,26 @@ class GalleryBar(QWidget):
         self.alike = ToolButton("moreLike", "alike", tr("More like the chosen design (Ctrl+Shift+R)."), checkable=True)
         tip = tr("Compare two designs side by side (K). Ctrl+click a card to compare with it.")
         self.compare = SwitchButton("compare", "compare", tip)
-        row = QHBoxLayout()
-        row.setSpacing(4)
-        row.addWidget(self.order, 1)
-        for button in (self.all, self.filter, self.compare, self.again, self.alike):
-            row.addWidget(button)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 8, 0)
-        column.setSpacing(6)
-        column.addLayout(row)
-        self.filter_pane = self.filters.narrow()
-        self.alike_pane = self._alike_pane()
-        for pane in (self.filter_pane, self.alike_pane):
-            column.addWidget(pane)
-            pane.hide()
+        buttons = (self.all, self.filter, self.compare, self.again, self.alike)
+        self.filter_pane, self.alike_pane = self.filters.narrow(), self._alike_pane()
+        parts = (row((self.order, 1), *buttons, spacing=4), self.filter_pane, self.alike_pane)
+        column(*parts, on=self, spacing=6, margins=(0, 0, 8, 0))
+        self.filter_pane.hide()
+        self.alike_pane.hide()
         self.filter.toggled.connect(self._fold)
         self.alike.toggled.connect(self._fold)
         self.set_ready(False)
 
     def _alike_pane(self) -> QWidget:
-        self.nearness = QSlider(Qt.Orientation.Horizontal)
-        self.nearness.setObjectName("nearness")
-        self.nearness.setRange(0, STEPS)
-        self.nearness.setPageStep(STEPS // 10)
+        far = tr("How far from the chosen design new ones may be")
+        tip = tr("Left: close variations of the chosen design. Right: loosely similar.")
+        self.nearness = slider("nearness", far, tip, STEPS, STEPS // 10)
         self.nearness.setValue(round(STEPS * (NEAREST - USUAL) / (NEAREST - FARTHEST)))
-        self.nearness.setAccessibleName(tr("How far from the chosen design new ones may be"))
-        self.nearness.setToolTip(tr("Left: close variations of the chosen design. Right: loosely similar."))
-        self.draw = QPushButton(tr("Add"))
-        self.draw.setObjectName("small")
-        self.draw.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.draw.setToolTip(tr("Generate designs like the chosen one and add them (Ctrl+Shift+R)."))
-        pane = QWidget()
-        row = QHBoxLayout(pane)
-        row.setContentsMargins(0, 0, 0, 2)
-        row.setSpacing(8)
-        self.near_label = QLabel(tr("near"))
-        self.near_label.setBuddy(self.nearness)
-        row.addWidget(self.near_label)
-        row.addWidget(self.nearness, 1)
-        row.addWidget(QLabel(tr("far")))
-        row.addWidget(self.draw)
+        self.draw = push_button(tr("Add"), tr("Generate designs like the chosen one and add them (Ctrl+Shift+R)."))
+        self.near_label = label(tr("near"), self.nearness, name="")
+        pane, far_label = QWidget(), QLabel(tr("far"))
+        row(self.near_label, (self.nearness, 1), far_label, self.draw, on=pane, spacing=8, margins=(0, 0, 0, 2))
         return pane
-
-    @property
-    def selection(self) -> Selection:
-        """What is wanted to be seen."""
-        return self._selection
 
     @property
     def nearness_value(self) -> float:
@@ -137,11 +112,11 @@ class GalleryBar(QWidget):
 
     def show_all(self) -> None:
         """Take every filter off; the order stays."""
-        self.take(self._selection.unfiltered())
+        self.take(self.selection.unfiltered())
 
     def take(self, selection: Selection) -> None:
         """Show a selection that was made elsewhere, and report it."""
-        self._selection = selection
+        self.selection = selection
         self.filters.show(selection)
         self.order.setCurrentIndex(self.order.findData(selection.order))
         self._word_difference()
@@ -173,27 +148,25 @@ class GalleryBar(QWidget):
             self.order.setCurrentIndex(0)
         self._unlike = self._chosen if order is SortOrder.UNLIKE else None
         unlike = None if self._unlike is None else self._unlike[0]
-        self._selection = replace(self._selection, order=order, unlike=unlike)
+        self.selection = replace(self.selection, order=order, unlike=unlike)
         self._word_difference()
         self._emit_selection()
 
     def _word_difference(self) -> None:
         """Name the design that others are compared with in the list of orders."""
-        if self._selection.unlike is None:
+        if self.selection.unlike is None:
             self._unlike = None
         text = tr("By difference") if self._unlike is None else tr("Unlike design {name}", name=self._unlike[1])
         self.order.setItemText(self.order.findData(SortOrder.UNLIKE), text)
 
     def _emit_selection(self) -> None:
-        self._selection = self.filters.apply(self._selection)
-        self.selection_changed.emit(self._selection)
+        self.selection = self.filters.apply(self.selection)
+        self.selection_changed.emit(self.selection)
 
     def _fold(self) -> None:
         """One pane at a time: cards need the room."""
-        sender = self.sender()
-        pairs: tuple[tuple[QToolButton, QToolButton], ...] = ((self.filter, self.alike), (self.alike, self.filter))
-        for button, other in pairs:
-            if sender is button and button.isChecked():
+        for button, other in ((self.filter, self.alike), (self.alike, self.filter)):
+            if self.sender() is button and button.isChecked():
                 other.setChecked(False)
         self.filter_pane.setVisible(self.filter.isChecked())
         self.alike_pane.setVisible(self.alike.isChecked())

@@ -32,10 +32,8 @@ class GalleryPresenter(QObject):
 
     Parameters
     ----------
-    panel : GalleryPanel
     balance : SettingsPanel
         Moves the balance of match and regularity, which the cards follow.
-    session : Session
     generation, marks, alikes, estimates, regularity, hand
         The parts that make designs, mark them, and find out what is known of them.
     choose, change : callable

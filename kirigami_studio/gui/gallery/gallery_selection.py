@@ -31,38 +31,19 @@ class SortOrder(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What the user wants to see.
-
-    Attributes
-    ----------
-    order : SortOrder
-    pinned_first : bool
-    pinned_only : bool
-    works_only : bool
-        Whether designs are left out whose verdict is that they will not work.
-    show_rejected : bool
-    least_match : float, 0..1
-        Exact IoU that a design has at least.
-    most_variation : float
-        Coefficient of variation of panel areas that a design has at most; 0 for any.
-    least_feature_mm : float
-        Smallest panel edge or neck that a design has at least.
-    grouped : bool
-        Whether designs that look the same are one card.
-    unlike : Sheet or None
-        Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
-        cards stay in their places.
-    """
+    """What the user wants to see."""
 
     order: SortOrder = SortOrder.RANK
     pinned_first: bool = False
     pinned_only: bool = False
-    works_only: bool = False
+    works_only: bool = False  #: whether designs are left out whose verdict is that they will not work
     show_rejected: bool = False
-    least_match: float = 0.0
-    most_variation: float = 0.0
-    least_feature_mm: float = 0.0
-    grouped: bool = True
+    least_match: float = 0.0  #: 0..1; exact IoU that a design has at least
+    most_variation: float = 0.0  #: coefficient of variation of panel areas that a design has at most; 0 for any
+    least_feature_mm: float = 0.0  #: smallest panel edge or neck that a design has at least
+    grouped: bool = True  #: whether designs that look the same are one card
+    #: Design that :attr:`SortOrder.UNLIKE` measures from; it stays while the user looks from card to card, so that the
+    #: cards stay in their places.
     unlike: Sheet | None = None
 
     @property

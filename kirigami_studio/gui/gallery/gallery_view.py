@@ -4,84 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from PySide6.QtCore import QEvent, QModelIndex, QPoint, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QColor,
-    QContextMenuEvent,
-    QHideEvent,
-    QKeyEvent,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QResizeEvent,
-)
-from PySide6.QtWidgets import QListView, QWidget
+from PySide6.QtCore import QModelIndex, Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.gallery.card_delegate import (
-    GAP,
-    SCROLL_BAR,
-    SMALLEST_CARD,
-    CardButton,
-    CardDelegate,
-    alike_box,
-    button_at,
-    card_size,
-    lay_out_cards,
-)
+from kirigami_studio.gui.gallery.card_delegate import SMALLEST_CARD, CardDelegate
+from kirigami_studio.gui.gallery.cards import CardList
 from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, CANDIDATE_ROLE, GalleryModel
 from kirigami_studio.gui.gallery.gallery_selection import Selection
 from kirigami_studio.gui.session.session import Entry
-from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 
 
-class GalleryView(QListView):
+class GalleryView(CardList):
     """Cards in a grid that fills the width; the current card is the chosen design."""
 
     chosen = Signal(Candidate)
-    pin_wanted = Signal(Candidate)  #: pin it, or unpin it
-    reject_wanted = Signal(Candidate)  #: reject it, or take it back
     compare_wanted = Signal(Candidate)  #: compare it with the chosen one
-    menu_wanted = Signal(Candidate, QPoint)  #: place on the screen
-    clear_wanted = Signal()  #: the filter leaves nothing; show everything
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.model_ = GalleryModel(self)
         self.cards = CardDelegate(self)
-        lay_out_cards(self, self.model_, self.cards)
-        self.setAccessibleName(tr("Design gallery"))
-        # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
-        self._later = QTimer(self, singleShot=True, interval=0)
-        self._later.timeout.connect(self.viewport().update)
+        self.lay_out(self.model_, self.cards, SMALLEST_CARD, tr("Design gallery"))
         self._reporting = True
         self._marked: Candidate | None = None
         self._hint = (tr("No designs yet"), tr("Designs appear here, best first, as they are generated."))
         self.selectionModel().currentChanged.connect(self._emit_chosen)
-
-    def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
-        self.cards.palette_ = palette
-        self.viewport().update()
+        self.alike_toggled.connect(self.toggle_alike)
 
     def set_hint(self, headline: str, hint: str) -> None:
         """Say in the empty gallery what to do next."""
         self._hint = (headline, hint)
         self.viewport().update()
 
-    @property
-    def hint(self) -> tuple[str, str]:
-        """Headline and hint of the empty gallery: what to do next, or that the filter leaves nothing."""
-        hidden = len(self.model_.all_entries)
-        if not hidden:
-            return self._hint
-        if not self.model_.selection.filters:
-            return tr("All designs are rejected"), tr("Click here to show all designs.")
-        return tr("No design matches the filter"), tr("Click here to show all designs.")
+    def empty_text(self) -> str:
+        """What to do next, or that the filter leaves nothing."""
+        if not self.model_.all_entries:
+            return "\n\n".join(self._hint)
+        filters = self.model_.selection.filters
+        headline = tr("No design matches the filter") if filters else tr("All designs are rejected")
+        return f"{headline}\n\n{tr('Click here to show all designs.')}"
+
+    def compare(self, candidate: Candidate) -> None:
+        self.compare_wanted.emit(candidate)
 
     def show_entries(self, entries: list[Entry], target: Outline | None) -> None:
         """Show other candidates; those that were there keep their pictures, unless the target is another one."""
@@ -89,32 +59,24 @@ class GalleryView(QListView):
         self.cards.target = target
         self.model_.set_target(target)
         self.cards.forget_pictures([entry.design for entry in entries] if same else ())
-        self._reporting = False
-        self.model_.replace(entries)
-        self._reporting = True
+        self._quietly(lambda: self.model_.replace(entries))
 
     def add(self, entry: Entry) -> None:
         """Add one candidate at its rank."""
-        self._reporting = False
-        self.model_.insert(entry)
-        self._reporting = True
+        self._quietly(lambda: self.model_.insert(entry))
         self.mark(self._marked)
 
     def select(self, selection: Selection) -> None:
         """Show another part of the candidates, or in another order."""
         sorted_anew = selection.order is not self.model_.selection.order
-        self._reporting = False
-        self.model_.select(selection)
-        self._reporting = True
+        self._quietly(lambda: self.model_.select(selection))
         self.mark(self._marked)
         if sorted_anew:
             self.scrollToTop()
 
     def rank_by(self, ranking: Ranking) -> None:
         """Put the cards into the order of another ranking."""
-        self._reporting = False
-        self.model_.rank_by(ranking)
-        self._reporting = True
+        self._quietly(lambda: self.model_.rank_by(ranking))
         self.mark(self._marked)
 
     def set_measure(self, width_mm: float, ranking: Ranking | None) -> None:
@@ -126,10 +88,8 @@ class GalleryView(QListView):
 
     def show_marks(self, marks: Mapping[Candidate, Mark], fresh: frozenset[Candidate]) -> None:
         """Show which candidates are pinned or rejected, and which the last further run has added."""
-        self._reporting = False
-        self.model_.set_marks(marks)
-        self.model_.set_fresh(fresh)
-        self._reporting = True
+        self._quietly(lambda: self.model_.set_marks(marks))
+        self._quietly(lambda: self.model_.set_fresh(fresh))
         self.mark(self._marked)
 
     def show_compared(self, candidate: Candidate | None) -> None:
@@ -188,50 +148,6 @@ class GalleryView(QListView):
         if self._reporting and current.isValid():
             self.chosen.emit(current.data(CANDIDATE_ROLE))
 
-    def _candidate_at(self, place: QPoint) -> tuple[Candidate | None, CardButton | None]:
-        index = self.indexAt(place)
-        if not index.isValid():
-            return None, None
-        candidate: Candidate = index.data(CANDIDATE_ROLE)
-        return candidate, button_at(self.visualRect(index), place)
-
-    def _on_alike(self, place: QPoint) -> bool:
-        """Whether a place is on the mark of look-alikes."""
-        index = self.indexAt(place)
-        return bool(index.data(ALIKE_ROLE)) and alike_box(self.visualRect(index)).contains(place)
-
-    # events --------------------------------------------------------------------------------------------------------
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        candidate, button = self._candidate_at(event.position().toPoint())
-        if event.button() != Qt.MouseButton.LeftButton:
-            event.accept()  # the menu comes with its own event and leaves the choice alone
-        elif candidate is None and self.model_.rowCount() == 0 and self.model_.all_entries:
-            self.clear_wanted.emit()
-        elif candidate is not None and button is None and self._on_alike(event.position().toPoint()):
-            self.toggle_alike(candidate)
-        elif candidate is not None and button is not None:
-            (self.pin_wanted if button is CardButton.PIN else self.reject_wanted).emit(candidate)
-        elif candidate is not None and event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.compare_wanted.emit(candidate)
-        else:
-            super().mousePressEvent(event)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        self._hover(*self._candidate_at(event.position().toPoint()))
-        if event.buttons() == Qt.MouseButton.NoButton:  # a drag over the cards chooses nothing
-            super().mouseMoveEvent(event)
-
-    def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
-        self._hover(None, None)
-        super().leaveEvent(event)
-
-    def _hover(self, candidate: Candidate | None, button: CardButton | None) -> None:
-        """Show the buttons of the card under the mouse, and which of them is meant."""
-        if (candidate, button) != (self.cards.under_mouse, self.cards.hovered_button):
-            self.cards.under_mouse, self.cards.hovered_button = candidate, button
-            self.viewport().update()
-
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
         candidate = self.currentIndex().data(CANDIDATE_ROLE) if self.currentIndex().isValid() else None
         if event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace) and candidate is not None:
@@ -240,43 +156,3 @@ class GalleryView(QListView):
             self.toggle_alike(self.currentIndex().data(CANDIDATE_ROLE))
         else:
             super().keyPressEvent(event)
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:  # noqa: N802 - Qt's name
-        candidate, _ = self._candidate_at(event.pos())
-        place = event.globalPos()
-        if candidate is None and event.reason() == QContextMenuEvent.Reason.Keyboard and self.currentIndex().isValid():
-            candidate = self.currentIndex().data(CANDIDATE_ROLE)
-            place = self.viewport().mapToGlobal(self.visualRect(self.currentIndex()).center())
-        if candidate is not None:
-            self.menu_wanted.emit(candidate, place)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        width = self.width() - SCROLL_BAR
-        columns = max(1, width // (SMALLEST_CARD + GAP))
-        card = width // columns - GAP
-        wanted = card_size(card)
-        if wanted != self.cards.card:
-            self.cards.card = wanted
-            self.cards.forget_pictures()
-            self.scheduleDelayedItemsLayout()
-        super().resizeEvent(event)
-
-    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
-        """Cards that were to be drawn in the next turn are drawn when the gallery is seen again."""
-        self._later.stop()
-        super().hideEvent(event)
-
-    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        self.cards.begin()
-        super().paintEvent(event)
-        if self.cards.pending:
-            self._later.start()
-        if self.model_.rowCount() > 0:
-            return
-        painter = QPainter(self.viewport())
-        flags = int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap)
-        box = self.viewport().rect().adjusted(20, 0, -20, 0)
-        painter.setPen(QColor(self.cards.palette_.muted))
-        headline, hint = self.hint
-        painter.drawText(box, flags, f"{headline}\n\n{hint}")
-        painter.end()

@@ -6,9 +6,11 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QGuiApplication, QHideEvent, QKeyEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QLineEdit, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLineEdit, QPlainTextEdit, QPushButton, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.layouts import column, row
+from kirigami_studio.gui.widgets.layouts import label as label_of
 from kirigami_studio.project.labels import LONGEST_NAME, Label
 
 #: Takes name and note; the sentence why it does not, "" where it does.
@@ -22,7 +24,7 @@ class LabelEditor(QFrame):
         super().__init__(parent, Qt.WindowType.Popup)
         self.setObjectName("popup")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._label, self._take = label, take
+        self._take = take
         self._over = False
         self.name = QLineEdit(label.text)
         self.name.setObjectName("designName")
@@ -35,27 +37,14 @@ class LabelEditor(QFrame):
         self.note.setTabChangesFocus(True)
         self.note.setAccessibleName(tr("Note on the design"))
         self.note.setPlaceholderText(tr("What you want to remember of this design"))
-        self.problem = QLabel()
-        self.problem.setObjectName("warning")
-        self.problem.setWordWrap(True)
+        self.problem = label_of(name="warning", wraps=True)
         self.problem.hide()
         self.done = QPushButton(tr("Done"))
         self.done.setToolTip(tr("Keep name and note (Enter; in the note Ctrl+Enter). Esc cancels."))
         self.done.clicked.connect(self._finish)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 10, 12, 12)
-        column.setSpacing(6)
-        for text, field in ((tr("Name"), self.name), (tr("Note"), self.note)):
-            caption = QLabel(text)
-            caption.setObjectName("muted")
-            caption.setBuddy(field)
-            column.addWidget(caption)
-            column.addWidget(field)
-        column.addWidget(self.problem)
-        row = QHBoxLayout()
-        row.addStretch(1)
-        row.addWidget(self.done)
-        column.addLayout(row)
+        name, note = label_of(tr("Name"), self.name), label_of(tr("Note"), self.note)
+        parts = (name, self.name, note, self.note, self.problem, row(..., self.done))
+        column(*parts, on=self, spacing=6, margins=(12, 10, 12, 12))
         self.resize(QSize(280, 220))
 
     def show_beside(self, place: QRect) -> None:

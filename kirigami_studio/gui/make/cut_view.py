@@ -33,6 +33,7 @@ from kirigami_studio.gui.widgets.legends import (
     paint_legend,
     paint_scale_bar,
 )
+from kirigami_studio.gui.widgets.paths import blank, painter_on
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 #: Layer names for the legend.
@@ -78,7 +79,7 @@ class CutView(Canvas):
         self._problems: tuple[Problem, ...] = ()
         self._problem = -1
         self._step = 0
-        self._overlays: frozenset[CutOverlay] = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
+        self.overlays: frozenset[CutOverlay] = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
         self._caption = ""
         self._markers: tuple[tuple[object, ...], QPixmap] | None = None
         self.gestures = HingeGestures(self)
@@ -93,10 +94,6 @@ class CutView(Canvas):
     def step(self) -> int:
         """How many cuts are shown as made."""
         return self._step
-
-    @property
-    def overlays(self) -> frozenset[CutOverlay]:
-        return self._overlays
 
     @property
     def selected(self) -> frozenset[int]:
@@ -124,7 +121,7 @@ class CutView(Canvas):
 
     def set_overlays(self, overlays: frozenset[CutOverlay]) -> None:
         """Choose what is drawn over the cuts."""
-        self._overlays = overlays
+        self.overlays = overlays
         if CutOverlay.CONNECTORS not in overlays:
             self.gestures.select(frozenset())
         self.update()
@@ -156,14 +153,14 @@ class CutView(Canvas):
         paint_cut_sheet(painter, self._drawing, transform, self.palette_)
         paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
         paint_name(painter, self._drawing, transform, self.palette_)
-        if CutOverlay.TRAVEL in self._overlays:
+        if CutOverlay.TRAVEL in self.overlays:
             paint_travel(painter, self._drawing, transform, self.palette_, self._step)
-        if CutOverlay.CONNECTORS in self._overlays and self.rendering:
+        if CutOverlay.CONNECTORS in self.overlays and self.rendering:
             paint_connectors(painter, self._connectors, transform, self.palette_, self.selected)
-        elif CutOverlay.CONNECTORS in self._overlays:
+        elif CutOverlay.CONNECTORS in self.overlays:
             painter.drawPixmap(0, 0, self._connector_picture(self._connectors, transform))
         paint_start(painter, self._drawing, transform, self.palette_)
-        if CutOverlay.PROBLEMS in self._overlays:
+        if CutOverlay.PROBLEMS in self.overlays:
             self._paint_problems(painter, transform)
         if self.gestures.band is not None:
             painter.setPen(QPen(QColor(self.palette_.accent), 1.2, Qt.PenStyle.DashLine))
@@ -175,11 +172,8 @@ class CutView(Canvas):
         ratio = self.devicePixelRatioF()
         key = (connectors, transform, self.selected, self.palette_.name, self.width(), self.height(), ratio)
         if self._markers is None or self._markers[0] != key:
-            picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
-            picture.setDevicePixelRatio(ratio)
-            picture.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(picture)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            picture = blank(self.size(), ratio)
+            painter = painter_on(picture)
             paint_connectors(painter, connectors, transform, self.palette_, self.selected)
             painter.end()
             self._markers = (key, picture)
@@ -230,7 +224,7 @@ class CutView(Canvas):
         chips = [Chip((layer_colour(layer, self.palette_),), tr(LAYER_NAMES[layer])) for layer in layers]
         if self.shows_name:
             chips.append(Chip((self.palette_.engraved,), tr("engraved name")))
-        if CutOverlay.CONNECTORS in self._overlays and len(self._connectors):
+        if CutOverlay.CONNECTORS in self.overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             if self._connectors.varied:
                 text = tr("connectors {low:.2f}\N{EN DASH}{high:.2f} mm", low=low, high=high)
@@ -246,7 +240,7 @@ class CutView(Canvas):
         self.selection_changed.emit(self.selected)
 
     def _problem_at(self, place: QPointF, transform: ViewTransform) -> int | None:
-        if CutOverlay.PROBLEMS not in self._overlays:
+        if CutOverlay.PROBLEMS not in self.overlays:
             return None
         for number, problem in enumerate(self._problems):
             if problem.where is not None:
@@ -262,7 +256,7 @@ class CutView(Canvas):
             if problem is not None and not adds(event.modifiers()):
                 self.problem_picked.emit(problem)
                 return
-            shown = CutOverlay.CONNECTORS in self._overlays
+            shown = CutOverlay.CONNECTORS in self.overlays
             if shown and self.gestures.press(event.position(), transform, adds(event.modifiers())):
                 return
         super().mousePressEvent(event)
@@ -274,7 +268,7 @@ class CutView(Canvas):
             super().mouseMoveEvent(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        transform, shown = self.transform(), CutOverlay.CONNECTORS in self._overlays
+        transform, shown = self.transform(), CutOverlay.CONNECTORS in self.overlays
         if not (shown and transform is not None and self.gestures.double_click(event.position(), transform)):
             super().mouseDoubleClickEvent(event)
 
@@ -301,7 +295,7 @@ class CutView(Canvas):
         problem = self._problem_at(place, transform)
         if problem is not None:
             return self._problems[problem].text
-        hinge = self._connectors.nearest(place, transform) if CutOverlay.CONNECTORS in self._overlays else None
+        hinge = self._connectors.nearest(place, transform) if CutOverlay.CONNECTORS in self.overlays else None
         return tr(HINT) if hinge is None else self._connectors.described(hinge)
 
     def _wants(self, event: QKeyEvent) -> bool:
@@ -315,7 +309,7 @@ class CutView(Canvas):
         if key in (Qt.Key.Key_Left, Qt.Key.Key_Right) and self._connectors is not None:
             self.gestures.walk(1 if key == Qt.Key.Key_Right else -1)
         elif event.matches(QKeySequence.StandardKey.SelectAll):
-            if self._connectors is not None and CutOverlay.CONNECTORS in self._overlays:
+            if self._connectors is not None and CutOverlay.CONNECTORS in self.overlays:
                 self.gestures.select(frozenset(range(len(self._connectors))))
         elif not self.selected:
             super().keyPressEvent(event)

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Unpack
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from kirigami_studio.fabricate.material import Material, library
-from kirigami_studio.fabricate.material_copies import save_copy
+from kirigami_studio.fabricate.machine import SHELF as MACHINES
+from kirigami_studio.fabricate.machine import Machine
+from kirigami_studio.fabricate.material import SHELF as MATERIALS
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Cancel, Steps
 from kirigami_studio.foundation.words import mark, number, tr, tr_n
@@ -26,7 +28,7 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.sheet_size import set_opened_size
-from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_material
+from kirigami_studio.settings.fabrication import FabricationChange, OptionsChange, stored_values, unlike
 from kirigami_studio.studio.file_kinds import kind_of
 from kirigami_studio.studio.making import (
     ANIMATION,
@@ -48,6 +50,13 @@ if TYPE_CHECKING:
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
+#: What is said of a machine or a material that a project carries and the user does not have.
+NOT_KNOWN = {
+    Machine: mark("You don't have the machine {name}; the project's own values are used."),
+    Material: mark("You don't have the material {name}; the project's own values are used."),
+}
+KEEP = {Machine: mark("Add to my machines"), Material: mark("Add to my materials")}
+ADDED = {Machine: mark("Added {name} to your machines."), Material: mark("Added {name} to your materials.")}
 TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
 
 
@@ -348,49 +357,45 @@ class FabricationEditor:
             self._session.apply(edit)
 
 
-class MaterialStore(QObject):
-    """Compares the material that a project carries with the user's own."""
+class ProjectStock(QObject):
+    """Compares machine and material that a project carries with the user's own."""
 
-    material_added = Signal(str)  #: its key
+    added = Signal(str)  #: key of one that the user's own have by now
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
 
     def compare(self, document: Document) -> None:
-        """A project was opened: say where its material is unknown or differs."""
-        material = stored_material(document.fabrication)
-        if material is None:
-            return
-        known = library().items.get(material.key)
-        if known is None:
-            sentence = tr(
-                "You don't have the material {name}; the project's own values are used.",
-                name=tr(material.name),
-            )
-            keep = (tr("Add to my materials"), partial(self.keep, material))
-            self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
-        elif known != replace(material, name=known.name, note=known.note):  # words do not cut
-            sentence = tr("Your material {name} differs from the project's; yours is used.", name=tr(known.name))
-            self._session.post(Message(sentence, Tone.WARNING, differences(material, known)))
+        """A project was opened: say where its machine or material is unknown or differs."""
+        for stored, used in stored_values(document.fabrication):
+            if used is None:
+                keep = (tr(KEEP[type(stored)]), partial(self.keep, stored))
+                sentence = tr(NOT_KNOWN[type(stored)], name=tr(stored.name))
+                self._session.post(Message(sentence, Tone.WARNING, actions=(keep,)))
+            elif (note := unlike(stored, used)) is not None:
+                self._session.post(Message(note.text, Tone.WARNING, differences(stored, used)))
 
-    def keep(self, material: Material) -> None:
-        """Save what a project carries among the own materials."""
+    def keep(self, stored: Machine | Material) -> None:
+        """Save what a project carries among the user's own."""
         try:
-            save_copy(material)
+            if isinstance(stored, Machine):
+                MACHINES.save(stored)
+            else:
+                MATERIALS.save(stored)
         except KirigamiError as error:
             self._session.post(Message(str(error), Tone.ERROR))
             return
-        self._session.set_status(tr("Added {name} to your materials.", name=material.name))
-        self.material_added.emit(material.key)
+        self._session.set_status(tr(ADDED[type(stored)], name=stored.name))
+        self.added.emit(stored.key)
 
 
-def differences(carried: Material, known: Material) -> str:
-    """One line for every entry in which two materials differ."""
-    theirs, ours = asdict(carried), asdict(known)
+def differences(stored: Machine | Material, used: Machine | Material) -> str:
+    """One line for every entry in which two machines or materials differ."""
+    theirs, ours = asdict(stored), asdict(used)
     return "\n".join(
         tr(
-            "{entry}: {theirs} in the project, {ours} in your materials",
+            "{entry}: {theirs} in the project, {ours} in yours",
             entry=name,
             theirs=_text(value),
             ours=_text(ours[name]),

@@ -14,6 +14,7 @@ from kirigami_studio.settings.fabrication import (
     machine_changes,
     machine_for,
     material_changes,
+    stored_machine,
     stored_material,
 )
 
@@ -55,13 +56,13 @@ class MachineChooser(QObject):
     def show_settings(self, settings: FabricationSettings) -> Material | None:
         """Show machine and material of settings, and return the material, None if unknown."""
         self._settings = settings
-        machine = self._machines.get(settings.machine)
+        machine = self._machine(settings.machine)
         offered = self._offer_materials(machine)
         stored = stored_material(settings)
         material = offered.get(settings.material) or self._library.get(settings.material) or stored
         with QSignalBlocker(self.machine), QSignalBlocker(self.material):
             if self.machine.findData(settings.machine) < 0:
-                self.machine.addItem(settings.machine, settings.machine)
+                self.machine.addItem(tr(machine.name) if machine else settings.machine, settings.machine)
             self.machine.setCurrentIndex(self.machine.findData(settings.machine))
             if self.material.findData(settings.material) < 0:
                 self.material.addItem(tr(material.name) if material else settings.material, settings.material)
@@ -82,8 +83,13 @@ class MachineChooser(QObject):
     @property
     def wanted_file(self) -> str:
         """Extension of the file that the chosen machine's program takes best; "" without one."""
-        machine = self._machines.get(self._settings.machine)
+        machine = self._machine(self._settings.machine)
         return "" if machine is None else machine.file
+
+    def _machine(self, key: str) -> Machine | None:
+        """The machine of a key, or else the one that the project carries."""
+        stored = stored_machine(self._settings)
+        return self._machines.get(key, stored if stored is not None and stored.key == key else None)
 
     def _offer_materials(self, machine: Machine | None) -> dict[str, Material]:
         """Offer what a machine cuts, or everything; the order is that of the shown names."""
@@ -102,7 +108,7 @@ class MachineChooser(QObject):
 
     def _take_machine(self, index: int) -> None:
         """A machine brings its profile and, where it does not cut the material, one that it cuts."""
-        machine = self._machines.get(self.machine.itemData(index))
+        machine = self._machine(self.machine.itemData(index))
         self.changed.emit({"machine": ""} if machine is None else dict(machine_changes(self._settings, machine)))
         self.edited.emit()
 

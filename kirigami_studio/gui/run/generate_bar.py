@@ -1,13 +1,24 @@
-"""Generate, see how far it is, stop it."""
+"""The run: the Generate button, how far it is, Cancel; and the presenter of it and of its settings."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSize, Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject, QSize
+from PySide6.QtWidgets import QProgressBar, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.run.generation import Generation
+from kirigami_studio.gui.run.regularity import Regularity
+from kirigami_studio.gui.run.settings_editor import SettingsEditor
+from kirigami_studio.gui.run.settings_panel import SettingsPanel
+from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.gui.widgets.theme import Palette
+from kirigami_studio.project.document import Document
+from kirigami_studio.studio import importing
 
 
 class GenerateBar(QWidget):
@@ -15,30 +26,16 @@ class GenerateBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.generate = QPushButton(tr("Generate"))
-        self.generate.setObjectName("primary")
-        self.generate.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.generate.setToolTip(tr("Design sheets for this target (Ctrl+G)"))
+        self.generate = push_button(tr("Generate"), tr("Design sheets for this target (Ctrl+G)"), "primary")
         self.generate.setIconSize(QSize(18, 18))
-        self.stop = QPushButton(tr("Cancel"))
-        self.stop.setObjectName("cancel")
-        self.stop.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.stop.setToolTip(tr("Stop generating; the project stays unchanged (Esc)"))
+        tip = tr("Stop generating; the project stays unchanged (Esc)")
+        self.stop = push_button(tr("Cancel"), tip, "cancel")
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)
         self.progress.setAccessibleName(tr("Run progress"))
-        self.progress_text = QLabel()
-        self.progress_text.setObjectName("muted")
-        buttons = QHBoxLayout()
-        buttons.setSpacing(8)
-        buttons.addWidget(self.generate, 1)
-        buttons.addWidget(self.stop)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(6)
-        column.addLayout(buttons)
-        column.addWidget(self.progress)
-        column.addWidget(self.progress_text)
+        self.progress_text = label()
+        buttons = row((self.generate, 1), self.stop, spacing=8)
+        column(buttons, self.progress, self.progress_text, on=self, spacing=6)
         self.show_idle()
 
     def show_ready(self, ready: bool) -> None:
@@ -50,15 +47,12 @@ class GenerateBar(QWidget):
         """A run has begun."""
         self.generate.setEnabled(False)
         self.generate.setText(tr("Generating …"))
-        self.progress.setRange(0, 0)
-        self.progress_text.setText(tr("Starting (0 of {total})", total=total))
-        for part in (self.stop, self.progress, self.progress_text):
-            part.show()
+        self.show_work(tr("Starting (0 of {total})", total=total))
 
-    def show_fitting(self) -> None:
-        """Designs are being fitted again."""
+    def show_work(self, sentence: str) -> None:
+        """Something goes on that can be stopped."""
         self.progress.setRange(0, 0)
-        self.progress_text.setText(tr("Fitting the designs again …"))
+        self.progress_text.setText(sentence)
         for part in (self.stop, self.progress, self.progress_text):
             part.show()
 
@@ -79,6 +73,72 @@ class GenerateBar(QWidget):
             part.hide()
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.generate.setIcon(icons.icon("generate", palette, palette.on_accent))
         self.stop.setIcon(icons.icon("stop", palette))
+
+
+class RunPresenter(QObject):
+    """Shows the settings of the next run and the progress of the present one.
+
+    Parameters
+    ----------
+    cancel : callable
+        Stops the run, or the work on designs.
+    """
+
+    def __init__(
+        self,
+        panel: SettingsPanel,
+        bar: GenerateBar,
+        session: Session,
+        generation: Generation,
+        regularity: Regularity,
+        *,
+        editor: SettingsEditor,
+        cancel: Callable[[], None],
+    ) -> None:
+        super().__init__(panel)
+        self._panel, self._bar, self._session, self._generation = panel, bar, session, generation
+        panel.changed.connect(lambda changes: editor.change(**changes))
+        panel.edited.connect(session.history.end_drag)
+        panel.keep_changed.connect(self._keep_seed)
+        bar.generate.clicked.connect(generation.generate)
+        bar.stop.clicked.connect(cancel)
+        generation.run.progressed.connect(bar.show_progress)
+        regularity.busy_changed.connect(self._show_fitting)
+        regularity.progressed.connect(bar.show_progress)
+        self.show_idle()
+        self.show_document(session.document)
+
+    def warm_up(self) -> None:
+        """Import in the worker what the first run needs, and learn which generators there are."""
+        callbacks = JobCallbacks(self._show_variants, on_failed=self._session.report_failure)
+        self._session.queue.start(tr("loading the generator"), importing.warming, callbacks)
+
+    def _show_variants(self, variants: tuple[str, ...]) -> None:
+        if variants:
+            self._panel.set_variants(variants)
+
+    def show_document(self, document: Document) -> None:
+        """Show the settings of the next run, and whether there is a target for it."""
+        self._panel.show_settings(document.settings)
+        self._bar.show_ready(document.target is not None)
+
+    def show_run(self, total: int) -> None:
+        """A run for so many designs has begun."""
+        self._bar.show_running(total)
+
+    def show_idle(self) -> None:
+        """No run is in progress."""
+        self._bar.show_idle()
+        self._bar.show_ready(self._session.document.target is not None)
+
+    def _show_fitting(self, busy: bool) -> None:
+        """Designs are being fitted again, or no longer."""
+        if busy:
+            self._bar.show_work(tr("Fitting the designs again …"))
+        elif not self._generation.run.running:
+            self.show_idle()
+
+    def _keep_seed(self, keeps: bool) -> None:
+        self._generation.planner.keeps_seed = keeps

@@ -90,7 +90,7 @@ class Generation(QObject):
         if self.run.running:
             return
         if target is None:
-            session.post(Message(tr("Choose or draw a target first, then press Generate."), Tone.HINT))
+            session.hint(tr("Choose or draw a target first, then press Generate."))
             return
         try:
             plan = plan_for(target)
@@ -122,46 +122,23 @@ class Generation(QObject):
 
 @dataclass(frozen=True, slots=True)
 class RunPlan:
-    """A run that is to start.
-
-    Attributes
-    ----------
-    request : Request
-    kept : tuple of Candidate
-        Designs of the document that stay in sight, best first.
-    joins : bool
-        Whether what it brings joins those there are, and the choice stays.
-    seed : int or None
-        Seed that the settings show afterwards.
-    status : str
-        What the status line says at its start.
-    """
+    """A run that is to start."""
 
     request: Request
-    kept: tuple[Candidate, ...]
-    joins: bool
-    seed: int | None
-    status: str
+    kept: tuple[Candidate, ...]  #: designs of the document that stay in sight, best first
+    joins: bool  #: whether what it brings joins those there are, and the choice stays
+    seed: int | None  #: seed that the settings show afterwards
+    status: str  #: what the status line says at its start
 
 
 class RunPlanner:
-    """Plans runs for the present document and turns their results into edits.
-
-    Attributes
-    ----------
-    plan : RunPlan or None
-        The run that was planned last.
-    added : frozenset of Candidate
-        What the last run has added to designs that were there.
-    keeps_seed : bool
-        Whether Generate draws from the seed that is shown.
-    """
+    """Plans runs for the present document and turns their results into edits."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self.plan: RunPlan | None = None
-        self.added: frozenset[Candidate] = frozenset()
-        self.keeps_seed = True
+        self.plan: RunPlan | None = None  #: the run that was planned last
+        self.added: frozenset[Candidate] = frozenset()  #: by the last run to designs that were there
+        self.keeps_seed = True  #: whether Generate draws from the seed that is shown
         self._drawn: set[tuple[int, int]] = set()  # project and seed of every run so far, also of those undone
 
     def _next_seed(self, document: Document) -> int:
@@ -265,8 +242,7 @@ class RunPlanner:
         self.added = frozenset()
         staying = _staying(document, result.request)
         if not staying and Mark.PINNED in document.marks:
-            sentence = tr("Pinned designs for another grid or angle were removed. Undo restores them.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("Pinned designs for another grid or angle were removed. Undo restores them."))
             document = replace(document, marks=())
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)

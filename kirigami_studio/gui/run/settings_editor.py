@@ -16,7 +16,6 @@ class SettingsEditor:
 
     Parameters
     ----------
-    session : Session
     readers : mapping of str to callable
         Stops reading the value of a field, by its name: another value was chosen.
     """

@@ -1,31 +1,145 @@
-"""The form of the next run: grid, symmetry, balance, angle, number; under More the search."""
+"""The form of the next run: grid, symmetry, balance, angle, number; under More the second target and the search."""
 
 from __future__ import annotations
 
+import math
 import secrets
 from dataclasses import replace
+from typing import Any
 
-from PySide6.QtCore import QSettings, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
-    QSlider,
-    QSpinBox,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QRectF, QSettings, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QIcon, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QLabel, QSpinBox, QToolButton, QWidget
 
+from kirigami_studio.evaluate.second_target import USUAL_PHI, SecondTarget
+from kirigami_studio.evaluate.second_target import USUAL_WEIGHT as USUAL_SECOND_WEIGHT
 from kirigami_studio.foundation.settings import Choice
 from kirigami_studio.foundation.words import mark, tr, tr_n
-from kirigami_studio.gui.run.second_target_row import SecondTargetRow
 from kirigami_studio.gui.run.start_tile import OTHER_STARTS, STARTS, listed_start
+from kirigami_studio.gui.stage.layout_items import target_pixmap
 from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton, captioned, compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
+from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row, slider
+from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
 from kirigami_studio.settings.design import DesignSettings
+
+#: Values of the entries for no second target, and for the present one.
+NONE, PRESENT = "none", "present"
+#: The angle (degrees) is above that of the first target by this at least.
+ANGLE_STEP = 0.1
+PICTURE = QSize(20, 20)
+ABOUT_SECOND = mark(
+    "Second target: a shape that the sheet should also show on its way, in any size and rotation. Choose it here, or "
+    "drop a file with a shape."
+)
+
+
+class SecondTargetRow(QWidget):
+    """A box with the shape, a button that does without it, and two numbers."""
+
+    changed = Signal(object)  #: SecondTarget, or None
+    edited = Signal()  #: a change is complete
+    other_wanted = Signal(str)  #: one of OTHER_STARTS
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("plain")
+        self._second: SecondTarget | None = None
+        self._palette: Palette = LIGHT
+        self.shape = ChoiceBox(
+            "secondTarget", tr("Second target"), ((NONE, tr("None"), tr("The sheet shows the target alone.")),)
+        )
+        self.shape.insertSeparator(1)
+        self.shape.add_choices(OTHER_STARTS)
+        self.shape.setIconSize(PICTURE)
+        self.remove = ToolButton("removeSecond", "close", tr("Do without the second target."))
+        self.form = Form(SecondTarget, 50, parent=self)
+        self.angle, self.weight = self.form.decimal("phi"), self.form.decimal("weight")
+        self.drops = FileDrops(self)
+        self._lay_out()
+        self._connect()
+        self.show_second(None, 0.0)
+
+    def _lay_out(self) -> None:
+        caption = label(tr("Sec&ond target"), self.shape)
+        self.remove.setFixedSize(caption.sizeHint().height(), caption.sizeHint().height())
+        self.remove.setIconSize(self.remove.size() * 0.8)
+        shape = column(row((caption, 1), self.remove), self.shape, spacing=3)
+        row((shape, 14), (self.form.captioned("phi"), 9), (self.form.captioned("weight"), 7), on=self, spacing=8)
+
+    def _connect(self) -> None:
+        self.shape.activated.connect(self._choose)
+        self.remove.clicked.connect(self._remove)
+        self.form.changed.connect(self._take)
+        self.form.edited.connect(self.edited)
+        self.weight.lineEdit().setTextMargins(2, 0, 0, 0)  # its column is narrow
+
+    def show_second(self, second: SecondTarget | None, phi: float) -> None:
+        """Show a second target; ``phi`` (radians) is the angle of the first."""
+        outline_before = None if self._second is None else self._second.outline
+        self._second = second
+        low = math.degrees(phi) + ANGLE_STEP
+        with QSignalBlocker(self.angle):
+            self.angle.setRange(low, 180.0 - ANGLE_STEP)
+        usual = {"phi": USUAL_PHI, "weight": USUAL_SECOND_WEIGHT}
+        self.form.show(usual if second is None else {name: getattr(second, name) for name in usual})
+        self.angle.setToolTip(
+            tr("Angle at which the sheet should show it, in degrees; 180° is flat ({low:.1f} to 179.9).", low=low)
+        )
+        for part in (self.angle, self.weight):
+            part.setEnabled(second is not None)
+        self.remove.setVisible(second is not None)
+        if second is None or second.outline is not outline_before:
+            self._show_shape()
+
+    def set_palette(self, palette: Palette) -> None:
+        self._palette = palette
+        self._show_shape()
+
+    def _show_shape(self) -> None:
+        """Choose the present shape; it has an entry with its own name and picture."""
+        second = self._second
+        with QSignalBlocker(self.shape):
+            row = self.shape.row_of(PRESENT)
+            if row >= 0:
+                self.shape.removeItem(row)
+            if second is not None:
+                picture = target_pixmap(second.outline, PICTURE, self.devicePixelRatioF(), self._palette, 1.5, 1.4)
+                self.shape.insert_choice(1, PRESENT, second.outline.name, "")
+                self.shape.setItemIcon(1, QIcon(picture))
+            self.shape.choose(NONE if second is None else PRESENT)
+        self.shape.setToolTip(tr(ABOUT_SECOND) if second is None else f"{second.outline.name}\n{tr(ABOUT_SECOND)}")
+
+    def _choose(self) -> None:
+        """Report what was chosen; the box keeps the present shape until another one was read."""
+        chosen = self.shape.currentData()
+        self._show_shape()
+        if chosen == NONE:
+            self._remove()
+        elif chosen != PRESENT:
+            self.other_wanted.emit(chosen)
+
+    def _remove(self) -> None:
+        if self._second is not None:
+            self.changed.emit(None)
+            self.edited.emit()
+
+    def _take(self, change: dict[str, Any]) -> None:
+        if self._second is not None:
+            self.changed.emit(replace(self._second, **change))
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
+        super().paintEvent(event)
+        if self.drops.here:
+            painter = QPainter(self)
+            painter.setPen(QPen(QColor(self._palette.accent), 2.0, Qt.PenStyle.DashLine))
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0), 6.0, 6.0)
+            painter.end()
+
 
 ROWS = mark(
     "Rows of voids, from top to bottom. More voids match the target more closely but are smaller ({low} to {high})."
@@ -88,14 +202,9 @@ class SettingsPanel(Card):
         self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)
         self.start.insertSeparator(self.start.count())
         self.start.add_choices(OTHER_STARTS)
-        self.regular = QSlider(Qt.Orientation.Horizontal)
-        self.regular.setObjectName("regular")
-        self.regular.setRange(0, POSITIONS)
+        self.regular = slider("regular", tr(regular.spoken), tr(regular.about), POSITIONS, POSITIONS // 4)
         self.regular.setSingleStep(POSITIONS // 20)
-        self.regular.setPageStep(POSITIONS // 4)
         self.regular.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.regular.setAccessibleName(tr(regular.spoken))
-        self.regular.setToolTip(tr(regular.about))
         self._let_go = QTimer(self, singleShot=True, interval=LET_GO_MS)
         self.more = ToolButton(
             "moreSettings",
@@ -118,63 +227,35 @@ class SettingsPanel(Card):
         self._connect()
 
     def _lay_out(self) -> None:
-        grid = _side_by_side(self.auto, self.rows, QLabel("\N{MULTIPLICATION SIGN}"), self.columns)
-        seed = _side_by_side(self.seed, self.dice, self.keep)
-        match, even = QLabel(tr("Mat&ch")), QLabel(tr("Regular"))
-        match.setBuddy(self.regular)
-        for label in (match, even):
-            label.setObjectName("muted")
-        content = QWidget()
-        content.setObjectName("plain")
-        rows = QVBoxLayout(content)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(8)
-        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
-        self.header.addWidget(self.more)
-        self.hidden = QWidget()
-        self.hidden.setObjectName("plain")
-        below = QVBoxLayout(self.hidden)
-        below.setContentsMargins(0, 0, 0, 0)
-        below.setSpacing(8)
-        first, second, third, fourth, fifth, slider = (QHBoxLayout() for _ in range(6))
-        for row, place in (
-            (first, rows),
-            (slider, rows),
-            (second, rows),
-            (third, below),
-            (fourth, below),
-            (fifth, below),
-        ):
-            row.setSpacing(8)
-            place.addLayout(row)
-        rows.addWidget(self.second)
-        rows.addWidget(self.hidden)
+        grid = row(self.auto, (self.rows, 1), QLabel("\N{MULTIPLICATION SIGN}"), (self.columns, 1), spacing=4)
+        seed = row((self.seed, 1), self.dice, self.keep, spacing=4)
+        caption, content = self.form.captioned, plain_pane()
+        self.hidden = plain_pane()
         self.hidden.hide()
         self.second.hide()
-        caption = self.form.captioned
-        first.addLayout(captioned(tr("&Grid (voids)"), self.rows, grid), 12)
-        first.addLayout(caption("symmetry"), 5)
-        slider.addWidget(match)
-        slider.addWidget(self.regular, 1)
-        slider.addWidget(even)
-        second.addLayout(captioned(tr("S&tart as"), self.start, self.start), 14)
-        second.addLayout(caption("phi"), 9)
-        second.addLayout(caption("k"), 7)
-        third.addLayout(caption("seed", seed), 4)
-        third.addLayout(caption("variant"), 3)
-        fourth.addLayout(caption("polish"), 1)
-        fourth.addLayout(caption("prefer"), 1)
-        fifth.addLayout(caption("rim"), 2)
-        fifth.addLayout(self.start_form.captioned("weight"), 2)
-        fifth.addLayout(caption("search"), 3)
-        for other in self.form.remaining():
-            below.addLayout(other)
+        symmetry, phi, count = caption("symmetry"), caption("phi"), caption("k")
+        start, weight = captioned(tr("S&tart as"), self.start, self.start), self.start_form.captioned("weight")
+        column(
+            row((captioned(tr("&Grid (voids)"), self.rows, grid), 12), (symmetry, 5), spacing=8),
+            row(label(tr("Mat&ch"), self.regular), (self.regular, 1), label(tr("Regular")), spacing=8),
+            row((start, 14), (phi, 9), (count, 7), spacing=8),
+            self.second,
+            self.hidden,
+            on=content,
+            spacing=8,
+        )
+        column(
+            row((caption("seed", seed), 4), (caption("variant"), 3), spacing=8),
+            row((caption("polish"), 1), (caption("prefer"), 1), spacing=8),
+            row((caption("rim"), 2), (weight, 2), (caption("search"), 3), spacing=8),
+            *self.form.remaining(),
+            on=self.hidden,
+            spacing=8,
+        )
+        self.body.addWidget(ScrolledWhenShort(content, LEAST_HEIGHT))
+        self.header.addWidget(self.more)
 
     def _connect(self) -> None:
-        self.rows.valueChanged.connect(lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())}))
-        self.columns.valueChanged.connect(
-            lambda: self.changed.emit({"grid": (self.rows.value(), self.columns.value())})
-        )
         self.auto.clicked.connect(self._switch_auto)
         self.form.changed.connect(self.changed)
         self.form.edited.connect(self.edited)
@@ -191,12 +272,16 @@ class SettingsPanel(Card):
         for box in (self.rows, self.columns):
             box.setKeyboardTracking(False)
             compact(box, 42)  # two digits
+            box.valueChanged.connect(lambda: self.changed.emit({"grid": self._grid}))
             box.editingFinished.connect(self.edited)
 
     def _switch_auto(self, on: bool) -> None:
         """Leave the grid to the run, or keep the one that is shown."""
-        shown = (self.rows.value(), self.columns.value())
-        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": shown})
+        self.changed.emit({"auto_grid": True} if on else {"auto_grid": False, "grid": self._grid})
+
+    @property
+    def _grid(self) -> tuple[int, int]:
+        return self.rows.value(), self.columns.value()
 
     def _choose_start(self) -> None:
         """Report the start that was chosen; the box keeps the present one until a shape is loaded."""
@@ -328,11 +413,3 @@ def _voids(name: str, accessible: str, tip: str) -> QSpinBox:
     box.setToolTip(tip)
     box.setAccessibleName(accessible)
     return box
-
-
-def _side_by_side(*widgets: QWidget) -> QHBoxLayout:
-    row = QHBoxLayout()
-    row.setSpacing(4)
-    for widget in widgets:
-        row.addWidget(widget, 1 if isinstance(widget, QSpinBox) else 0)
-    return row

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 
 import numpy as np
 from PySide6.QtCore import QPoint, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import (
-    QColor,
-    QIcon,
-    QKeyEvent,
-    QPainter,
-    QPaintEvent,
-    QPen,
-    QPixmap,
-    QResizeEvent,
-)
+from PySide6.QtGui import QAction, QColor, QIcon, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -61,7 +54,6 @@ class StartTile(QAbstractButton):
 
     chosen = Signal(StartShape)
     other_wanted = Signal(str)  #: one of OTHER_STARTS, or PAIRS
-    file_dropped = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,7 +68,6 @@ class StartTile(QAbstractButton):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.drops = FileDrops(self)
-        self.drops.file_dropped.connect(self.file_dropped)
         self.back = QToolButton(self)
         self.back.setObjectName("plainStart")
         self.back.setFixedSize(BACK_EDGE, BACK_EDGE)
@@ -91,23 +82,23 @@ class StartTile(QAbstractButton):
         self.show_start(RECTANGLE, self._grid, self._width_mm)
 
     def _fill_menu(self) -> None:
-        self.entries = {}
+        self.entries: dict[str, QAction] = {}
         for name, label, about in STARTS:
-            action = self.menu.addAction(tr(label))
-            action.setToolTip(tr(about))
-            action.triggered.connect(lambda _=False, name=name: self.chosen.emit(listed_start(name)))
-            self.entries[name] = action
+            self._add(label, about, name, partial(self._choose_listed, name))
         self.menu.addSeparator()
         for name, label, about in OTHER_STARTS:
-            self._add_other(name, label, about)
+            self._add(label, about, name, partial(self.other_wanted.emit, name))
         self.menu.addSeparator()
-        self._add_other(PAIRS, tr("Examples of pairs …"), tr("Twelve finished designs from one shape to another."))
+        label, about = mark("Examples of pairs …"), mark("Twelve finished designs from one shape to another.")
+        self._add(label, about, PAIRS, partial(self.other_wanted.emit, PAIRS))
 
-    def _add_other(self, name: str, label: str, about: str) -> None:
-        action = self.menu.addAction(tr(label))
+    def _add(self, label: str, about: str, name: str, act: Callable[[], None]) -> None:
+        action = self.entries[name] = self.menu.addAction(tr(label))
         action.setToolTip(tr(about))
-        action.triggered.connect(lambda _=False: self.other_wanted.emit(name))
-        self.entries[name] = action
+        action.triggered.connect(lambda _=False: act())
+
+    def _choose_listed(self, name: str) -> None:
+        self.chosen.emit(listed_start(name))
 
     def show_start(
         self, start: StartShape, grid: tuple[int, int], width_mm: float, flat: tuple[float, float] | None = None
@@ -153,7 +144,6 @@ class StartTile(QAbstractButton):
         self.menu.popup(self.mapToGlobal(QPoint(0, min(self.height(), 150))))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.back.setIcon(icons.icon("close", palette))
         self.back.setIconSize(QSize(BACK_EDGE - 8, BACK_EDGE - 8))
@@ -164,11 +154,8 @@ class StartTile(QAbstractButton):
     def _draw_icons(self) -> None:
         ratio = self.devicePixelRatioF()
         for name, _, _ in STARTS:
-            picture = QPixmap(round(MENU_EDGE * ratio), round(MENU_EDGE * ratio))
-            picture.setDevicePixelRatio(ratio)
-            picture.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(picture)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            picture = blank(QSize(MENU_EDGE, MENU_EDGE), ratio)
+            painter = painter_on(picture)
             self._paint_shape(painter, QRectF(0, 0, MENU_EDGE, MENU_EDGE), listed_start(name), 2.0)
             painter.end()
             self.entries[name].setIcon(QIcon(picture))
@@ -203,12 +190,10 @@ class StartTile(QAbstractButton):
             super().keyPressEvent(event)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         palette, lit = self._palette, self.hasFocus() or self.underMouse() or self.drops.here
-        pen = QPen(QColor(palette.accent if lit else palette.border), 2.0 if self.drops.here else 1.0)
-        painter.setPen(pen)
-        painter.setBrush(QColor(palette.canvas))
+        colour, width = palette.accent if lit else palette.border, 2.0 if self.drops.here else 1.0
+        ink(painter, colour, width, fill=palette.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
         lines = 2 if self.height() >= 4 * LINE + 34 else 1 if self.height() >= 3 * LINE + 30 else 0
         caption = LINE + 4.0 if lines else 2.0
@@ -221,7 +206,7 @@ class StartTile(QAbstractButton):
         centred = int(Qt.AlignmentFlag.AlignCenter)
         texts, metrics = (self.name, self.size_text)[:lines], painter.fontMetrics()
         for number, text in enumerate(texts):
-            place = QRectF(6, self.height() - (lines - number) * LINE - 4.0, self.width() - 12, LINE)
+            place = QRectF(2, self.height() - (lines - number) * LINE - 4.0, self.width() - 4, LINE)
             painter.setPen(QColor(palette.text if number == 0 else palette.muted))
             versions = (text, self.brief_size) if number else (text,)
             painter.drawText(place, centred, fitted(metrics, versions, place.width()))

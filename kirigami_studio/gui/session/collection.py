@@ -31,8 +31,7 @@ class DesignMarks:
     def _toggle(self, candidate: Candidate | None, mark: Mark, beside: Candidate | None) -> None:
         document = self._session.document
         if candidate is None or candidate not in document.candidates:
-            sentence = tr("Only finished designs can be pinned or rejected. Wait for the run to finish.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("Only finished designs can be pinned or rejected. Wait for the run to finish."))
             return
         index = document.candidates.index(candidate)
         before = document.marks[index]
@@ -64,8 +63,7 @@ class DesignLabels:
         """Name and note of a design; None, after saying so, for one that the run still works on."""
         label = None if candidate is None else self._session.document.label_of(candidate)
         if label is None:
-            sentence = tr("Only finished designs can be renamed. Wait for the run to finish.")
-            self._session.post(Message(sentence, Tone.HINT))
+            self._session.hint(tr("Only finished designs can be renamed. Wait for the run to finish."))
         return label
 
     def set(self, label: Label, name: str, note: str) -> str:

@@ -18,20 +18,9 @@ class Tone(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message.
+    """One message."""
 
-    Attributes
-    ----------
-    sentence : str
-        What happened and what to try.
-    tone : Tone
-    details : str
-        Trace or list, shown when asked for.
-    actions : tuple of (label, callable)
-        What may be done about it, one button each.
-    """
-
-    sentence: str
+    sentence: str  #: what happened and what to try
     tone: Tone = Tone.HINT
-    details: str = ""
-    actions: tuple[tuple[str, Callable[[], None]], ...] = ()
+    details: str = ""  #: trace or list, shown when asked for
+    actions: tuple[tuple[str, Callable[[], None]], ...] = ()  #: what may be done about it, one button each

@@ -15,9 +15,9 @@ class Overlay(Enum):
     GRIPS = "grips"
     RATIOS = "ratios"
     OPENINGS = "openings"
+    SMALL_PARTS = "small_parts"
     PANEL_NUMBERS = "panel_numbers"
     VOID_NUMBERS = "void_numbers"
-    SMALL_PARTS = "small_parts"
 
 
 #: What is shown until something else is asked for.

@@ -28,24 +28,12 @@ log: logging.Logger = topic("gui.jobs")
 
 @dataclass(slots=True, eq=False)
 class Job:
-    """One piece of work.
+    """One piece of work."""
 
-    Attributes
-    ----------
-    number : int
-        Unique in the process.
-    name : str
-        As it follows "while": "reading heart.svg".
-    steps : callable
-        Gets the cancel flag and returns the generator that does the work.
-    flag : threading.Event
-        Set to ask the job to stop.
-    """
-
-    number: int
-    name: str
-    steps: Steps[object]
-    flag: threading.Event = field(default_factory=threading.Event)
+    number: int  #: unique in the process
+    name: str  #: as it follows "while": "reading heart.svg"
+    steps: Steps[object]  #: gets the cancel flag and returns the generator that does the work
+    flag: threading.Event = field(default_factory=threading.Event)  #: set to ask the job to stop
     iterator: Iterator[object] | None = None
 
 
@@ -53,9 +41,7 @@ class Worker(QObject):
     """Lives in the worker thread."""
 
     reported = Signal(int, object)
-    finished = Signal(int)
-    cancelled = Signal(int)
-    failed = Signal(int, str, str)  #: number, sentence, trace
+    ended = Signal(int, object)  #: number; callable that gets the callbacks
 
     def __init__(self) -> None:
         super().__init__()
@@ -89,20 +75,24 @@ class Worker(QObject):
                 job.iterator = job.steps(job.flag.is_set)
             report = next(job.iterator)
         except StopIteration:
-            self.finished.emit(job.number)
+            self.ended.emit(job.number, lambda callbacks: callbacks.on_finished())
         except Cancelled:
-            self.cancelled.emit(job.number)
+            self.ended.emit(job.number, lambda callbacks: callbacks.on_cancelled())
         except KirigamiError as error:
             log.info("job %d (%s) refused: %s", job.number, job.name, text_of(error))
-            self.failed.emit(job.number, text_of(error), traceback.format_exc())
+            self._fail(job, text_of(error))
         except BaseException as error:  # a thread's last line of defence: it must reach the user, not end the thread
             log.exception("job %d (%s) failed", job.number, job.name)
             sentence = tr("Unexpected error while {name}: {value}.", name=job.name, value=text_of(error))
-            self.failed.emit(job.number, sentence, traceback.format_exc())
+            self._fail(job, sentence)
         else:
             self.reported.emit(job.number, report)
             return True
         return False
+
+    def _fail(self, job: Job, sentence: str) -> None:
+        trace = traceback.format_exc()
+        self.ended.emit(job.number, lambda callbacks: callbacks.on_failed(sentence, trace))
 
 
 #: Seconds for which reports are delivered in one turn of the event loop: reports of many designs arrive all at once,
@@ -143,9 +133,7 @@ class JobQueue(QObject):
         self._worker = Worker()
         self._worker.moveToThread(self._thread)
         self._worker.reported.connect(self._report)
-        self._worker.finished.connect(self._finish)
-        self._worker.cancelled.connect(self._cancel)
-        self._worker.failed.connect(self._fail)
+        self._worker.ended.connect(self._end)
         self._thread.start()
 
     @property
@@ -186,19 +174,9 @@ class JobQueue(QObject):
     def _report(self, number: int, report: Any) -> None:
         self._deliver_later(number, partial(self._pass_on, number, report))
 
-    @Slot(int)
-    def _finish(self, number: int) -> None:
-        self._deliver_later(number, partial(self._close_job, number, lambda callbacks: callbacks.on_finished()))
-
-    @Slot(int)
-    def _cancel(self, number: int) -> None:
-        self._deliver_later(number, partial(self._close_job, number, lambda callbacks: callbacks.on_cancelled()))
-
-    @Slot(int, str, str)
-    def _fail(self, number: int, sentence: str, trace: str) -> None:
-        self._deliver_later(
-            number, partial(self._close_job, number, lambda callbacks: callbacks.on_failed(sentence, trace))
-        )
+    @Slot(int, object)
+    def _end(self, number: int, end: Callable[[JobCallbacks[Any]], None]) -> None:
+        self._deliver_later(number, partial(self._close_job, number, end))
 
     def _deliver_later(self, number: int, call: Callable[[], None]) -> None:
         """Keep what the worker reports until it is delivered, in the order in which it was reported."""

@@ -36,23 +36,12 @@ CAPACITY = 2048
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Entry:
-    """One card: a candidate with its decoded, posed design.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    design : PosedDesign
-        With its final field, pose and angle: trimmed if the candidate is.
-    rise : float
-        What polishing has added to its sIoU in the run that goes on.
-    kept : bool
-        Whether it was there before the run that goes on.
-    """
+    """One card: a candidate with its decoded, posed design."""
 
     candidate: Candidate
-    design: PosedDesign
-    rise: float = 0.0
-    kept: bool = False
+    design: PosedDesign  #: with its final field, pose and angle: trimmed if the candidate is
+    rise: float = 0.0  #: what polishing has added to its sIoU in the run that goes on
+    kept: bool = False  #: whether it was there before the run that goes on
 
 
 def same_sample(one: Candidate, other: Candidate) -> bool:
@@ -195,25 +184,8 @@ class Session(QObject):
 
     Parameters
     ----------
-    parent : QObject, optional
     earlier : Session, optional
         Of a closed window, whose project is the open one, with its history.
-
-    Attributes
-    ----------
-    queue : JobQueue
-        Runs all long work but the drag of a vertex.
-    history : History
-    cache : DesignCache
-    display : DesignDisplay
-    path : Path or None
-        Where the project was saved or opened.
-    on_disk : dict of Path to str
-        SHA-256 of project files as they were read or written here last.
-    project : int
-        How many projects were open before this one.
-    as_cut : KnownAsCut or None
-        What the latest run has found out about designs as cut.
     """
 
     document_changed = Signal(Document)
@@ -224,13 +196,17 @@ class Session(QObject):
 
     def __init__(self, parent: QObject | None = None, earlier: Session | None = None) -> None:
         super().__init__(parent)
-        self.queue = JobQueue(self)
+        self.queue = JobQueue(self)  #: runs all long work but the drag of a vertex
         self.history: History = History() if earlier is None else earlier.history
         self.cache: DesignCache = DesignCache() if earlier is None else earlier.cache
         self.display = DesignDisplay(self)
+        #: Where the project was saved or opened.
         self.path: Path | None = None if earlier is None else earlier.path
+        #: SHA-256 of project files as they were read or written here last.
         self.on_disk: dict[Path, str] = {} if earlier is None else earlier.on_disk
+        #: How many projects were open before this one.
         self.project: int = 0 if earlier is None else earlier.project
+        #: What the latest run has found out about designs as cut.
         self.as_cut: KnownAsCut | None = None if earlier is None else earlier.as_cut
 
     @property
@@ -285,6 +261,10 @@ class Session(QObject):
     def post(self, message: Message) -> None:
         """Show a message above the columns."""
         self.message_posted.emit(message)
+
+    def hint(self, sentence: str) -> None:
+        """Show a sentence that helps on."""
+        self.post(Message(sentence, Tone.HINT))
 
     def withdraw(self, message: Message) -> None:
         """Take a message away that no longer applies."""

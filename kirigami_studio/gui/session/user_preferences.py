@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError
@@ -11,7 +10,7 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.project import preferences
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.preferences import Preferences, Theme
+from kirigami_studio.project.preferences import Preferences
 
 #: Fields of the fabrication settings that new projects share with the last one.
 MACHINE_FIELDS = frozenset({"material", "profile", "dxf_version", "paper"})
@@ -41,7 +40,7 @@ class UserPreferences:
 
     def remember(self, document: Document) -> None:
         """A cut file of this document was written, or its machine or material was chosen."""
-        self._save(self.present.on_machine_of(document))
+        self.keep(self.present.on_machine_of(document))
 
     def note_choice(self, fields: Collection[str]) -> None:
         """These fields of the fabrication settings were chosen in the present document: new projects have the same."""
@@ -49,21 +48,10 @@ class UserPreferences:
         if MACHINE_FIELDS.intersection(fields):
             self.remember(document)
         if SIZE_FIELDS.intersection(fields):
-            self._save(self.present.with_size_of(document))
-
-    def choose_theme(self, theme: Theme) -> None:
-        """Set the look of the window from now on."""
-        self._save(replace(self.present, theme=theme))
+            self.keep(self.present.with_size_of(document))
 
     def keep(self, wanted: Preferences) -> None:
-        """These hold from now on."""
-        self._save(wanted)
-
-    def choose_language(self, language: str) -> None:
-        """The window is to speak this language from now on: "system" or a code such as "de"."""
-        self._save(replace(self.present, language=language))
-
-    def _save(self, wanted: Preferences) -> None:
+        """Start new projects, and the next window, with these from now on."""
         if wanted == self.present:
             return
         self.present = wanted

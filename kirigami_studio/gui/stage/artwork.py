@@ -16,8 +16,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
-from kirigami_studio.gui.stage.artwork_items import ShownArtwork
-from kirigami_studio.gui.stage.artwork_jobs import painting_artwork, reading_artwork
+from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, painting_artwork, reading_artwork
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.edits import LaidChange

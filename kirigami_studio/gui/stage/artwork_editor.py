@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFormLayout, QPushButton, QWidget
 
 from kirigami_studio.export.artwork import (
     FEWEST_STRIPES,
@@ -20,7 +21,8 @@ from kirigami_studio.export.artwork import (
 )
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets.card import muted_label
-from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
+from kirigami_studio.gui.widgets.layouts import column, label, row
+from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 
 #: Pixels.
 WIDTH = 330
@@ -40,21 +42,15 @@ NO_PICTURE = mark("No picture yet. Choose a photo, a PNG or an SVG: it is printe
 class ArtworkEditor(QWidget):
     """A small window beside the stage, which shows every change at once."""
 
-    picture_wanted = Signal()
-    removed = Signal()
-    second_wanted = Signal()
-    second_removed = Signal()
     stripes_wanted = Signal(int)
     changed = Signal(dict)  #: fields of Laid with their new values
     edited = Signal()  #: the next change is an undo step of its own
-    export_wanted = Signal()
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Tool)
         self.setWindowTitle(tr("Artwork"))
         self.setObjectName("artworkEditor")
-        self.about = QLabel(tr(NO_PICTURE))
-        self.about.setWordWrap(True)
+        self.about = label(tr(NO_PICTURE), name="", wraps=True)
         self.choose = QPushButton(tr("&Choose picture …"))
         self.choose.setToolTip(tr("Lay a picture on the sheet: PNG, JPG, BMP, TIFF, WebP or SVG"))
         self.remove = QPushButton(tr("&Remove"))
@@ -74,12 +70,14 @@ class ArtworkEditor(QWidget):
         )
         self.state = self._choices(STATES)
         self.fitting = self._choices(FITTINGS)
-        self.scale = self._field(100.0 * SMALLEST_SCALE, 100.0 * LARGEST_SCALE, tr(" %"), 5.0)
-        self.turn = self._field(-360.0, 360.0, "°", 5.0)
-        self.right = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
-        self.up = self._field(-100.0 * FARTHEST, 100.0 * FARTHEST, tr(" %"), 1.0)
-        self.stripes = self._field(FEWEST_STRIPES, MOST_STRIPES, "", 10.0)
-        self.stripes.setDecimals(0)
+        number = partial(decimal_field, DecimalField, "")
+        self.scale = number(100.0 * SMALLEST_SCALE, 100.0 * LARGEST_SCALE, step=5.0, suffix=tr(" %"))
+        self.turn = number(-360.0, 360.0, step=5.0, suffix="°")
+        self.right, self.up = (number(-100.0 * FARTHEST, 100.0 * FARTHEST, suffix=tr(" %")) for _ in range(2))
+        self.stripes = number(FEWEST_STRIPES, MOST_STRIPES, decimals=0, step=10.0)
+        self._numbers = (self.scale, self.turn, self.right, self.up, self.stripes)
+        for field in self._numbers:
+            field.setKeyboardTracking(True)  # each digit is seen on the sheet
         self._fields = (self.state, self.fitting, self.scale, self.turn, self.right, self.up)
         self._lay_out()
         self._connect()
@@ -90,81 +88,46 @@ class ArtworkEditor(QWidget):
     @staticmethod
     def _choices(table: tuple[tuple[SheetState | PictureFit, str, str], ...]) -> QComboBox:
         box = QComboBox()
-        for row, (value, text, tip) in enumerate(table):
+        for place, (value, text, tip) in enumerate(table):
             box.addItem(tr(text), value)
-            box.setItemData(row, tr(tip), Qt.ItemDataRole.ToolTipRole)
+            box.setItemData(place, tr(tip), Qt.ItemDataRole.ToolTipRole)
         return box
 
-    @staticmethod
-    def _field(least: float, most: float, suffix: str, step: float) -> DecimalField:
-        field = DecimalField()
-        field.setRange(least, most)
-        field.setDecimals(1)
-        field.setSingleStep(step)
-        field.setSuffix(suffix)
-        number_field(field)
-        return field
-
     def _lay_out(self) -> None:
-        column, form, above, below = QVBoxLayout(self), QFormLayout(), QHBoxLayout(), QHBoxLayout()
-        column.setContentsMargins(14, 14, 14, 14)
-        column.setSpacing(10)
-        column.addWidget(self.about)
-        above.addWidget(self.choose, 1)
-        above.addWidget(self.remove)
-        column.addLayout(above)
-        for caption, tip, field in (
-            (tr("&Whole on"), tr("The state in which the picture is seen as it is"), self.state),
-            (tr("&Size"), tr("How the picture lies in the box around that state"), self.fitting),
-            (tr("Sca&le"), tr("Times that size"), self.scale),
-            (tr("&Turn"), tr("Counter-clockwise, about the picture's middle"), self.turn),
-            (tr("To the r&ight"), tr("In widths of the box"), self.right),
-            (tr("&Up"), tr("In heights of the box"), self.up),
+        form, stripes = QFormLayout(), QFormLayout()
+        for place, caption, tip, field in (
+            (form, tr("&Whole on"), tr("The state in which the picture is seen as it is"), self.state),
+            (form, tr("&Size"), tr("How the picture lies in the box around that state"), self.fitting),
+            (form, tr("Sca&le"), tr("Times that size"), self.scale),
+            (form, tr("&Turn"), tr("Counter-clockwise, about the picture's middle"), self.turn),
+            (form, tr("To the r&ight"), tr("In widths of the box"), self.right),
+            (form, tr("&Up"), tr("In heights of the box"), self.up),
+            (stripes, tr("Stri&pes"), tr("Stripes of both pictures across the flat sheet"), self.stripes),
         ):
             field.setToolTip(tip)
-            label = QLabel(caption)
-            label.setBuddy(field)
-            form.addRow(label, field)
-        column.addLayout(form)
-        sharing, stripes = QHBoxLayout(), QFormLayout()
-        sharing.addWidget(self.second, 1)
-        sharing.addWidget(self.remove_second)
-        column.addLayout(sharing)
-        column.addWidget(self.about_second)
-        self.stripes.setToolTip(tr("Stripes of both pictures across the flat sheet"))
-        label = QLabel(tr("Stri&pes"))
-        label.setBuddy(self.stripes)
-        stripes.addRow(label, self.stripes)
-        column.addLayout(stripes)
-        below.addStretch(1)
-        below.addWidget(self.export)
-        column.addLayout(below)
+            place.addRow(label(caption, field, name=""), field)
+        above, sharing = row((self.choose, 1), self.remove), row((self.second, 1), self.remove_second)
+        parts = (self.about, above, form, sharing, self.about_second, stripes, row(..., self.export))
+        column(*parts, on=self, spacing=10, margins=(14, 14, 14, 14))
         self.setFixedWidth(WIDTH)
 
     def _connect(self) -> None:
-        self.choose.clicked.connect(lambda: self.picture_wanted.emit())
-        self.remove.clicked.connect(lambda: self.removed.emit())
-        self.export.clicked.connect(lambda: self.export_wanted.emit())
-        self.second.clicked.connect(lambda: self.second_wanted.emit())
-        self.remove_second.clicked.connect(lambda: self.second_removed.emit())
         self.stripes.valueChanged.connect(lambda value: self.stripes_wanted.emit(round(value)))
-        self.stripes.editingFinished.connect(self.edited)
-        self.state.activated.connect(lambda: self._change({"state": self.state.currentData()}, whole=True))
-        self.fitting.activated.connect(lambda: self._change({"fitting": self.fitting.currentData()}, whole=True))
-        self.scale.valueChanged.connect(lambda value: self._change({"scale": value / 100.0}))
-        self.turn.valueChanged.connect(lambda value: self._change({"turn": math.radians(value)}))
+        for name, box in (("state", self.state), ("fitting", self.fitting)):
+            box.activated.connect(partial(self._choose, name, box))
+        self.scale.valueChanged.connect(lambda value: self.changed.emit({"scale": value / 100.0}))
+        self.turn.valueChanged.connect(lambda value: self.changed.emit({"turn": math.radians(value)}))
         for field in (self.right, self.up):
             field.valueChanged.connect(self._shift)
-        for field in (self.scale, self.turn, self.right, self.up):
+        for field in self._numbers:
             field.editingFinished.connect(self.edited)
 
     def _shift(self) -> None:
-        self._change({"shift": (self.right.value() / 100.0, self.up.value() / 100.0)})
+        self.changed.emit({"shift": (self.right.value() / 100.0, self.up.value() / 100.0)})
 
-    def _change(self, changes: dict[str, object], whole: bool = False) -> None:
-        self.changed.emit(changes)
-        if whole:
-            self.edited.emit()
+    def _choose(self, name: str, box: QComboBox, _: int) -> None:
+        self.changed.emit({name: box.currentData()})
+        self.edited.emit()
 
     def show_artwork(self, artwork: Artwork | None, exportable: bool) -> None:
         """Show what is printed now, and whether there is a design to print it on."""

@@ -34,20 +34,11 @@ Key = tuple[Candidate, FabricationSettings, Outline | None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsCutState:
-    """What is known of the design on the stage.
-
-    Attributes
-    ----------
-    sheet : SimulatedSheet or None
-    busy : bool
-        Whether it is being found out.
-    problem : str
-        Why it cannot be found out, "" if it can.
-    """
+    """What is known of the design on the stage."""
 
     sheet: SimulatedSheet | None = None
-    busy: bool = False
-    problem: str = ""
+    busy: bool = False  #: whether it is being found out
+    problem: str = ""  #: why it cannot be found out, "" if it can
 
 
 UNKNOWN, BUSY = AsCutState(), AsCutState(busy=True)

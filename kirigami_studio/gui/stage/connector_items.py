@@ -161,14 +161,11 @@ def paint_stretch(
 
     Parameters
     ----------
-    painter : QPainter
     pixels : (H, 2) float
     stretch : (H,) float
         In widths of the connectors.
     tolerated : float
         Those above it get a larger dot in the colour of faults with a dark rim.
-    scale : ColourScale
-    palette : Palette
     """
     if not len(pixels):
         return

@@ -7,13 +7,14 @@ from enum import Enum
 
 from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QActionGroup
-from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.phi_slider import PhiSlider
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import TOOL_ICON, SwitchButton, ToolButton
-from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
+from kirigami_studio.gui.widgets.layouts import row
+from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Seconds from the flat sheet to fully turned while playing at the usual speed.
@@ -81,25 +82,21 @@ class DeploymentBar(QWidget):
         self.ideal.setToolTip(tr("Ideal: go on beyond the jam, as connectors of no width would (Shift+J)."))
         self.ideal.setAccessibleName(tr("Ideal motion beyond the jam"))
         self.ideal.hide()
-        self.number = DecimalField()
-        self.number.setObjectName("phiNumber")
-        self.number.setRange(0.0, 180.0)
-        self.number.setDecimals(1)
-        self.number.setSuffix("°")
-        self.number.setFixedWidth(82)
-        number_field(self.number)
-        self.number.setKeyboardTracking(False)
-        self.number.setAccessibleName(tr("Deployment angle in degrees"))
-        self.number.setToolTip(tr("Deployment angle φ in degrees: 180° flat, 0° fully turned"))
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(4)
-        row.addWidget(self.play)
-        row.addWidget(self.options)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.as_cut_button)
-        row.addWidget(self.ideal)
-        row.addWidget(self.number)
+        self.number = decimal_field(
+            DecimalField,
+            "phiNumber",
+            0.0,
+            180.0,
+            suffix="°",
+            accessible=tr("Deployment angle in degrees"),
+            tip=tr("Deployment angle φ in degrees: 180° flat, 0° fully turned"),
+            width=82,
+        )
+        row(
+            *(self.play, self.options, (self.slider, 1), self.as_cut_button, self.ideal, self.number),
+            on=self,
+            spacing=4,
+        )
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._advance)
@@ -200,9 +197,19 @@ class PlayOptions(QToolButton):
         menu.setToolTipsVisible(True)
         self.modes: dict[PlayMode, QAction] = {}
         self.speeds: dict[float, QAction] = {}
-        self._add_modes(menu)
+        words = {
+            PlayMode.SWING: (tr("Back and for&th"), tr("Open and close repeatedly")),
+            PlayMode.LOOP: (tr("&Loop"), tr("Open repeatedly from flat")),
+            PlayMode.ONCE: (tr("O&nce"), tr("Open once and stop")),
+        }
+        modes, speeds = QActionGroup(self), QActionGroup(self)
+        for mode, (text, tip) in words.items():
+            self.modes[mode] = self._add(menu, modes, text, tip, mode is PlayMode.SWING)
         menu.addSeparator()
-        self._add_speeds(menu)
+        for speed in SPEEDS:
+            text = tr("{speed:g}\N{MULTIPLICATION SIGN}", speed=speed)
+            tip = tr("{speed:g}\N{MULTIPLICATION SIGN} normal speed", speed=speed)
+            self.speeds[speed] = self._add(menu, speeds, text, tip, speed == 1.0)
         menu.addSeparator()
         self.to_target = menu.addAction(tr("&Only to the target angle"))
         self.to_target.setCheckable(True)
@@ -210,32 +217,15 @@ class PlayOptions(QToolButton):
         self.setMenu(menu)
         self._on_choice()
 
-    def _add_modes(self, menu: QMenu) -> None:
-        words = {
-            PlayMode.SWING: (tr("Back and for&th"), tr("Open and close repeatedly")),
-            PlayMode.LOOP: (tr("&Loop"), tr("Open repeatedly from flat")),
-            PlayMode.ONCE: (tr("O&nce"), tr("Open once and stop")),
-        }
-        group = QActionGroup(self)
-        for mode, (text, tip) in words.items():
-            action = menu.addAction(text)
-            action.setToolTip(tip)
-            action.setCheckable(True)
-            action.setActionGroup(group)
-            action.setChecked(mode is PlayMode.SWING)
-            action.toggled.connect(self._on_choice)
-            self.modes[mode] = action
-
-    def _add_speeds(self, menu: QMenu) -> None:
-        group = QActionGroup(self)
-        for speed in SPEEDS:
-            action = menu.addAction(tr("{speed:g}\N{MULTIPLICATION SIGN}", speed=speed))
-            action.setToolTip(tr("{speed:g}\N{MULTIPLICATION SIGN} normal speed", speed=speed))
-            action.setCheckable(True)
-            action.setActionGroup(group)
-            action.setChecked(speed == 1.0)
-            action.toggled.connect(self._on_choice)
-            self.speeds[speed] = action
+    def _add(self, menu: QMenu, group: QActionGroup, text: str, tip: str, checked: bool) -> QAction:
+        """Offer one of several choices."""
+        action = menu.addAction(text)
+        action.setToolTip(tip)
+        action.setCheckable(True)
+        action.setActionGroup(group)
+        action.setChecked(checked)
+        action.toggled.connect(self._on_choice)
+        return action
 
     @property
     def mode(self) -> PlayMode:
@@ -257,7 +247,6 @@ class PlayOptions(QToolButton):
         self.speeds[SPEEDS[place]].setChecked(True)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         for mode, action in self.modes.items():
             action.setIcon(icons.icon(MODE_ICONS[mode], palette))

@@ -12,6 +12,7 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Panels below this part of the median panel area count as collapsed; far below what any cutter can hold.
@@ -82,8 +83,7 @@ def crossing_place(design: PosedDesign, phi: float) -> FloatArray | None:
 def paint_fault(painter: QPainter, where: FloatArray, kind: FaultKind, palette: Palette, size: float = 9.0) -> None:
     """Draw one marker at ``where`` (2,) pixels: a diamond for a bad panel, a disc for a contact."""
     middle = QPointF(float(where[0]), float(where[1]))
-    painter.setPen(QPen(QColor(palette.fault_line), 1.8))
-    painter.setBrush(QColor(palette.fault))
+    ink(painter, palette.fault_line, 1.8, fill=palette.fault)
     if kind is not FaultKind.INVERTED:
         painter.drawEllipse(middle, size, size)
     else:

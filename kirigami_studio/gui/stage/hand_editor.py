@@ -2,7 +2,7 @@
 
 A gesture makes a draft: another sheet, decoded exactly and shown instead of the design.  A dragged void slides
 one of its corners along its slit (:class:`VoidDrag`), a dragged edge cut slides along its side of the sheet
-(:class:`~kirigami_studio.gui.stage.rim_drag.MouthDrag`).  When the gesture ends, the worker scores the draft, and the
+(:class:`~kirigami_studio.gui.stage.edge_cuts.MouthDrag`).  When the gesture ends, the worker scores the draft, and the
 score makes one named edit.  Gestures that follow meanwhile start from the draft and wait for their turn, so that each
 becomes an undo step of its own.  Undo, save and the like wait for the last score.
 
@@ -31,10 +31,8 @@ from kirigami_studio.foundation.steps import Cancel, single
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
-from kirigami_studio.gui.stage.outline_drag import OutlineDrag
-from kirigami_studio.gui.stage.rim_drag import MouthDrag, holds_corner, moved, with_sheet
-from kirigami_studio.gui.stage.rim_items import MouthFacts
-from kirigami_studio.gui.stage.vertex_drag import DragStart, DragStep
+from kirigami_studio.gui.stage.edge_cuts import MouthDrag, MouthFacts, holds_corner, moved, with_sheet
+from kirigami_studio.gui.stage.outline_drag import DragStart, DragStep, OutlineDrag
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet
@@ -107,25 +105,13 @@ class VoidDrag:
 
     Its corner slides along its slit with the share s = x / (1 + x), so a motion of the mouse along the slit is a
     change of s.
-
-    Attributes
-    ----------
-    void : Void
-    place : (x, y) float, world
-        Where the drag began.
-    share : float
-        s at that time.
-    motion : (2,) float, world
-        How far the dragged corner moves when s goes from 0 to 1, to first order.
-    corner : int
-        Which corner, 0..3, is dragged.
     """
 
     void: Void
-    place: tuple[float, float]
-    share: float
-    motion: FloatArray
-    corner: int
+    place: tuple[float, float]  #: (x, y), world; where the drag began
+    share: float  #: s at that time
+    motion: FloatArray  #: (2,), world; how far the dragged corner moves when s goes from 0 to 1, to first order
+    corner: int  #: which corner, 0..3, is dragged
 
     @classmethod
     def of(cls, design: PosedDesign, void: Void, place: tuple[float, float], phi: float) -> VoidDrag:
@@ -287,9 +273,13 @@ class HandEditor(QObject):
 
     @_after_arrival
     def drag(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the void follows."""
+        """The pointer has moved to a place in the world; what is held follows."""
         if self._drag is not None:
             self._change({self._drag.void: self._drag.ratio_at(place)})
+        elif self._mouth is not None:
+            self._place_mouth(self._mouth.mouth, self._mouth.position_at(place))
+        else:
+            self._outline.move(place)
 
     def _free(self, voids: frozenset[Void]) -> list[Void]:
         """Those that may be changed; when none may, the status line says why."""
@@ -323,12 +313,6 @@ class HandEditor(QObject):
         design = self._design()
         if design is not None:
             self._mouth = MouthDrag.of(design, mouth, place, phi)
-
-    @_after_arrival
-    def drag_mouth(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the edge cut follows."""
-        if self._mouth is not None:
-            self._place_mouth(self._mouth.mouth, self._mouth.position_at(place))
 
     @_after_arrival
     def nudge_mouth(self, mouth: int, step: float) -> None:
@@ -387,11 +371,6 @@ class HandEditor(QObject):
         self._dragged_from = document.candidate
         self._outline.begin(DragStart(design, phi, vertex, locked))
         self._session.set_status(tr("Preparing the outline …"))
-
-    @_after_arrival
-    def move_vertex(self, place: tuple[float, float]) -> None:
-        """The pointer has moved to a place in the world; the newest place wins."""
-        self._outline.move(place)
 
     def _follow(self, found: DragStep) -> None:
         """The outline has come a step nearer to the pointer."""

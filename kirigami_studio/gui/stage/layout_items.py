@@ -14,7 +14,16 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.gui.widgets.paths import DOZEN, line_path, paths_of_lines, paths_of_quads, round_pen
+from kirigami_studio.gui.widgets.paths import (
+    DOZEN,
+    blank,
+    ink,
+    line_path,
+    painter_on,
+    paths_of_lines,
+    paths_of_quads,
+    round_pen,
+)
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -57,8 +66,7 @@ def paint_panels(
     together = _together(painter)
     for chosen, colour in ((~turns_left, palette.panel_even), (turns_left, palette.panel_odd)):
         # A pen in the fill's colour keeps hairline gaps of antialiasing from showing between closed panels.
-        painter.setPen(line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5))
-        painter.setBrush(QColor(colour))
+        ink(painter, line if line.style() != Qt.PenStyle.NoPen else QPen(QColor(colour), 0.5), fill=colour)
         for path in paths_of_quads(panels[chosen & whole], together):
             painter.drawPath(path)
         for row, part in trimmed.items():
@@ -78,25 +86,19 @@ def paint_cut_panels(
 
     Parameters
     ----------
-    painter : QPainter
-    pose : CutPose
-    transform : ViewTransform
     quads : (K, 4, 2) float, pixels
         The ideal panels, whose size decides how wide lines are.
     turns_left : (K,) bool
         As for :func:`paint_panels`.
-    palette : Palette
     """
     together = _together(painter)
     panels = _in_pixels(pose.panels, transform)
     for left, colour in ((False, palette.panel_even), (True, palette.panel_odd)):
-        painter.setPen(QPen(QColor(colour), 0.5))
-        painter.setBrush(QColor(colour))
+        ink(painter, colour, 0.5, fill=colour)
         chosen = np.flatnonzero(turns_left[pose.numbers] == left).tolist()
         for path in paths_of_lines([panels[place] for place in chosen], True, together):
             painter.drawPath(path)
-    painter.setPen(_panel_pen(quads, palette))
-    painter.setBrush(Qt.BrushStyle.NoBrush)
+    ink(painter, _panel_pen(quads, palette))
     for path in paths_of_lines(_in_pixels(pose.cuts, transform), False, together):
         painter.drawPath(path)
 
@@ -159,8 +161,8 @@ def candidate_pixmap(
     design: PosedDesign, target: Outline | None, size: QSize, ratio: float, palette: Palette
 ) -> QPixmap:
     """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat."""
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     width, height = TARGET_SHARE * size.width(), float(size.height())
     paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
     paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
@@ -181,8 +183,8 @@ def states_pixmap(
 
     ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck.
     """
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     angles = (math.pi, 0.5 * (math.pi + design.phi_target), design.phi_target)
     upright = PosedDesign(design.deployment, Similarity(design.pose.scale), math.pi, design.trim)
     poses = (upright if as_cut else design, design, design)
@@ -225,22 +227,9 @@ def target_pixmap(
     target: Outline, size: QSize, ratio: float, palette: Palette, margin: float = MARGIN, line: float = 2.0
 ) -> QPixmap:
     """Return a target's picture for lists; ``size``, ``margin`` and width of the ``line`` in logical pixels."""
-    pixmap = _blank(size, ratio)
-    painter = _painter(pixmap)
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
     transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), margin)
     paint_target_shape(painter, transform.to_pixels(target.points), palette, line)
     painter.end()
     return pixmap
-
-
-def _blank(size: QSize, ratio: float) -> QPixmap:
-    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
-    pixmap.setDevicePixelRatio(ratio)
-    pixmap.fill(Qt.GlobalColor.transparent)
-    return pixmap
-
-
-def _painter(pixmap: QPixmap) -> QPainter:
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    return painter

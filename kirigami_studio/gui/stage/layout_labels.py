@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.colour_scale import ColourScale
-from kirigami_studio.gui.widgets.paths import quad_paths
+from kirigami_studio.gui.widgets.paths import ink, quad_paths
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Opacity of the panels' edges on the heat map.
@@ -101,8 +101,7 @@ def paint_numbers(
         if not seen.intersects(box):
             continue
         if framed:
-            painter.setPen(QPen(QColor(palette.accent), 1.0))
-            painter.setBrush(back)
+            ink(painter, palette.accent, fill=back)
             painter.drawRoundedRect(box, 0.5 * height, 0.5 * height)
         painter.setPen(QColor(palette.text))
         painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), f"{row},{column}")
@@ -129,23 +128,12 @@ class PartKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SmallPart:
-    """An edge or a neck of one panel; panels are rigid, so it stays the same at every angle.
-
-    Attributes
-    ----------
-    kind : PartKind
-    panel : int
-        Row by row.
-    which : int
-        Number of the edge or neck in the panel.
-    size : float
-        In the unit of the corners that it was found in.
-    """
+    """An edge or a neck of one panel; panels are rigid, so it stays the same at every angle."""
 
     kind: PartKind
-    panel: int
-    which: int
-    size: float
+    panel: int  #: row by row
+    which: int  #: number of the edge or neck in the panel
+    size: float  #: in the unit of the corners that it was found in
 
     def ends(self, panels: FloatArray) -> FloatArray:
         """Both ends (2, 2) of it in panels (K, 4, 2) in any coordinates that keep angles."""
@@ -200,8 +188,7 @@ def paint_dimension(
         left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
         box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
         if not any(box.intersects(other) for other in occupied) and QRectF(painter.window()).contains(box):
-            painter.setPen(QPen(QColor(palette.text), 1.0))
-            painter.setBrush(QColor(palette.surface))
+            ink(painter, palette.text, fill=palette.surface)
             painter.drawRoundedRect(box, 4.0, 4.0)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
             occupied.append(box)

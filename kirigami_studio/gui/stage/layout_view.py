@@ -18,7 +18,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
-from kirigami_studio.gui.stage.artwork_items import ShownArtwork, paint_artwork
+from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, paint_artwork
 from kirigami_studio.gui.stage.connector_items import STRETCH_TITLE, paint_stretch, stretch_scale
 from kirigami_studio.gui.stage.fault_items import (
     Fault,
@@ -29,9 +29,8 @@ from kirigami_studio.gui.stage.fault_items import (
     inverted_panels,
     paint_fault,
 )
-from kirigami_studio.gui.stage.grip_items import GripPlaces, grip_places, paint_grips
 from kirigami_studio.gui.stage.gripping import UNKNOWN as GRIPS_UNKNOWN
-from kirigami_studio.gui.stage.gripping import GripState
+from kirigami_studio.gui.stage.gripping import GripState, grip_places, paint_grips
 from kirigami_studio.gui.stage.layout_items import paint_cut_panels, paint_panels, turning_left
 from kirigami_studio.gui.stage.layout_labels import (
     SmallPart,
@@ -115,21 +114,11 @@ BAR_TITLES = {Overlay.RATIOS: RATIO_TITLE, Overlay.OPENINGS: OPENING_TITLE, Over
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigidFacts:
-    """What is the same of a design at every angle, because its panels are rigid.
+    """What is the same of a design at every angle, because its panels are rigid."""
 
-    Attributes
-    ----------
-    inverted : (K,) bool
-        Panels that are inverted or collapsed.
-    small : tuple of SmallPart
-        Its smallest parts; panels that were trimmed are left out.
-    largest_opening : float, world
-        Area of the void that opens widest.
-    """
-
-    inverted: BoolArray
-    small: tuple[SmallPart, ...]
-    largest_opening: float
+    inverted: BoolArray  #: (K,); panels that are inverted or collapsed
+    small: tuple[SmallPart, ...]  #: its smallest parts; panels that were trimmed are left out
+    largest_opening: float  #: world; area of the void that opens widest
 
     @classmethod
     @lru_cache(maxsize=KEPT_FACTS)
@@ -153,68 +142,34 @@ class LayoutView(Canvas):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._design: PosedDesign | None = None
+        self.design: PosedDesign | None = None
         self._rigid = RigidFacts(np.zeros(0, dtype=np.bool_), (), 0.0)
         self._contact: FloatArray | None = None
         self._contact_phi: float | None = None
         self._target: Outline | None = None
-        self._second: tuple[float, FloatArray] | None = None
+        self.second: tuple[float, FloatArray] | None = None  #: angle of the second target, its outline (P, 2) there
         self._bounds: Bounds | None = None
-        self._phi = math.pi
-        self._overlays: frozenset[Overlay] = USUAL
+        self.phi = math.pi  #: angle that is shown, radians
+        self.overlays: frozenset[Overlay] = USUAL
         self._wanted = USUAL  #: what was asked for, also while a plain picture is taken
         self._width_mm = USUAL_WIDTH_MM
-        self._scales: list[ColourScale] = []
+        self.scales: list[ColourScale] = []  #: colour bars of the last painted picture
         self._cut: SimulatedSheet | None = None
         self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
-        self._artwork: ShownArtwork | None = None
+        self.artwork: ShownArtwork | None = None
         self._grips = GRIPS_UNKNOWN
-        self._overstretched = 0
-        self._areas: Mismatch | None = None
+        self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
+        self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
         self._ideal_areas: tuple[float, Mismatch] | None = None  #: angle, and areas of the ideal motion there
-        self._faults: tuple[Fault, ...] = ()
+        self.faults: tuple[Fault, ...] = ()  #: marked places of the last painted picture
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
-        self._caption = ""
+        self.caption = ""  #: text of the upper left corner
         self._box: tuple[tuple[object, ...], QRectF] | None = None  #: what it depends on, and the scene's box
         self.voids = VoidGestures(self, self._void_shapes)
         self.setObjectName("layoutView")
         self.setAccessibleName(tr("Layout of the chosen design"))
         self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
-
-    @property
-    def phi(self) -> float:
-        """Angle that is shown, radians."""
-        return self._phi
-
-    @property
-    def design(self) -> PosedDesign | None:
-        """The design that is drawn."""
-        return self._design
-
-    @property
-    def second(self) -> tuple[float, FloatArray] | None:
-        """Angle (radians) of the second target, and its outline (P, 2) over the sheet there; None without one."""
-        return self._second
-
-    @property
-    def artwork(self) -> ShownArtwork | None:
-        """The printed sheet of the last design that was painted."""
-        return self._artwork
-
-    @property
-    def areas(self) -> Mismatch | None:
-        """Missing and extra area of the last painted picture, when that overlay is on."""
-        return self._areas
-
-    @property
-    def faults(self) -> tuple[Fault, ...]:
-        """Marked places of the last painted picture."""
-        return self._faults
-
-    @property
-    def overlays(self) -> frozenset[Overlay]:
-        return self._overlays
 
     def show_design(
         self,
@@ -227,8 +182,8 @@ class LayoutView(Canvas):
 
         ``second`` is how this very sheet shows a second target.
         """
-        self._design, self._target, self._cut, self._second = design, target, None, None
-        self._areas, self._ideal_areas, self._faults = None, None, ()
+        self.design, self._target, self._cut, self.second = design, target, None, None
+        self.areas, self._ideal_areas, self.faults = None, None, ()
         before, self._bounds = self._bounds, None
         if design is not None:
             self._rigid = RigidFacts.of(design)
@@ -239,8 +194,8 @@ class LayoutView(Canvas):
                 self._bounds = self._bounds.united(Bounds.of(target.points))
             if second is not None:
                 line = second.match.transform.inverse().apply(second.target.outline.points)
-                self._second = second.target.phi, design.to_world(line, second.target.phi)
-                self._bounds = self._bounds.united(Bounds.of(self._second[1]))
+                self.second = second.target.phi, design.to_world(line, second.target.phi)
+                self._bounds = self._bounds.united(Bounds.of(self.second[1]))
             if self.voids.on and before is not None:
                 self._bounds = steady(before, self._bounds)
         elif target is not None:
@@ -250,8 +205,8 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self._design, self._cut, self._second = design, None, None
-        self._areas, self._ideal_areas, self._faults, self._contact = None, None, (), None
+        self.design, self._cut, self.second = design, None, None
+        self.areas, self._ideal_areas, self.faults, self._contact = None, None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
 
@@ -274,18 +229,18 @@ class LayoutView(Canvas):
     @property
     def shown_as_cut(self) -> CutPose | None:
         """The pose that is drawn, at the jam for angles beyond it; None where the ideal motion is drawn."""
-        sheet, design = self._cut, self._design
+        sheet, design = self._cut, self.design
         if not self._as_cut or sheet is None or design is None:
             return None
-        if self._ideal and self._phi < sheet.as_cut.reached - SAME_ANGLE:
+        if self._ideal and self.phi < sheet.as_cut.reached - SAME_ANGLE:
             return None
         if self._made is None or self._made[0] is not sheet:
             self._made = (sheet, design if sheet.made is None else design.laid_over(sheet.made))
-        return sheet.motion.pose(self._made[1], self._phi)
+        return sheet.motion.pose(self._made[1], self.phi)
 
     def show_artwork(self, shown: ShownArtwork | None) -> None:
         """Show the printed sheet of a design on its panels; None where nothing is printed."""
-        self._artwork = shown
+        self.artwork = shown
         self.update()
 
     def show_grips(self, state: GripState) -> None:
@@ -295,17 +250,17 @@ class LayoutView(Canvas):
 
     def _void_shapes(self) -> VoidShapes | None:
         transform = self.transform()
-        return None if self._design is None or transform is None else VoidShapes.of(self._design, self._phi, transform)
+        return None if self.design is None or transform is None else VoidShapes.of(self.design, self.phi, transform)
 
     def set_phi(self, phi: float) -> None:
         """Show another angle, radians."""
-        self._phi = phi
+        self.phi = phi
         self.voids.follow()
         self.update()
 
     def set_overlays(self, overlays: frozenset[Overlay]) -> None:
         """Choose what is drawn over the panels."""
-        self._overlays = self._wanted = overlays
+        self.overlays = self._wanted = overlays
         self.update()
 
     def set_sheet_width(self, width_mm: float) -> None:
@@ -317,23 +272,18 @@ class LayoutView(Canvas):
     @property
     def mm_per_unit(self) -> float:
         """Millimetres of one world unit; 0 while there is no design."""
-        return 0.0 if self._design is None else self._design.mm_per_world(self._width_mm)
-
-    @property
-    def scales(self) -> list[ColourScale]:
-        """Colour bars of the last painted picture."""
-        return self._scales
+        return 0.0 if self.design is None else self.design.mm_per_world(self._width_mm)
 
     def find_faults(self) -> tuple[Fault, ...]:
         """All faults of the design at the angle that is shown, whether they are marked or not."""
-        design = self._design
+        design = self.design
         if design is None:
             return ()
-        found = list(faults(design.panels(design.nodes(self._phi)), self._rigid.inverted, self._contact))
+        found = list(faults(design.panels(design.nodes(self.phi)), self._rigid.inverted, self._contact))
         found = [replace(one, phi=self._contact_phi) if one.kind is FaultKind.CONTACT else one for one in found]
         beyond = self._contact_phi if self._contact_phi is not None else design.phi_target
-        if self._phi < beyond - NEAR_CONTACT:  # the way there is known to be free
-            place = crossing_place(design, self._phi)
+        if self.phi < beyond - NEAR_CONTACT:  # the way there is known to be free
+            place = crossing_place(design, self.phi)
             if place is not None:
                 found.append(Fault(FaultKind.CROSSING, (float(place[0]), float(place[1]))))
         return tuple(found)
@@ -343,7 +293,7 @@ class LayoutView(Canvas):
         transform = self.transform()
         if transform is None:
             return None
-        for fault in self._faults:
+        for fault in self.faults:
             x, y = transform.to_pixels(np.array(fault.where)).tolist()
             if math.hypot(x - pixel.x(), y - pixel.y()) <= FAULT_REACH:
                 return fault
@@ -354,14 +304,9 @@ class LayoutView(Canvas):
         self._hint = (icon, headline, hint)
         self.update()
 
-    @property
-    def caption(self) -> str:
-        """What the upper left corner says."""
-        return self._caption
-
     def set_caption(self, text: str) -> None:
         """Show in the upper left corner what does not fit into the header."""
-        self._caption = text
+        self.caption = text
         self.update()
 
     def empty_state(self) -> tuple[str, str, str]:
@@ -374,7 +319,7 @@ class LayoutView(Canvas):
         """Beside the legends that are on, at every angle alike, so that the picture rests while the sheet moves."""
         legend = Overlay.MISMATCH in self._wanted and self._target is not None
         size, font = (self.width(), self.height()), self.font().key()
-        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top(), self._design is None)
+        key = (self.scene_bounds(), size, font, self._wanted, legend, self._bars_top(), self.design is None)
         if self._box is None or self._box[0] != key:  # asked for several times in every paint event
             self._box = (key, self._find_box(legend))
         return self._box[1]
@@ -383,7 +328,7 @@ class LayoutView(Canvas):
         view, bounds = QRectF(self.rect()), self.scene_bounds()
         if bounds is None:
             return view
-        if self._design is None:  # the target alone, below what is said of it
+        if self.design is None:  # the target alone, below what is said of it
             return view.adjusted(0, CAPTION_HEIGHT, 0, 0)
         metrics = self.fontMetrics()
         titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
@@ -393,13 +338,8 @@ class LayoutView(Canvas):
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
 
-    @property
-    def overstretched(self) -> int:
-        """How many connectors of the last painted picture are stretched by more than they tolerate."""
-        return self._overstretched
-
     def _bars_top(self) -> float:
-        return CAPTION_HEIGHT if self._caption else 10.0
+        return CAPTION_HEIGHT if self.caption else 10.0
 
     def _fitting(self, versions: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
         """The first of these legends that fits into one row, else the last."""
@@ -412,8 +352,8 @@ class LayoutView(Canvas):
     def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
         """What the labels at the bottom say, and where (pixels)."""
         found = []
-        if self._faults:
-            count = len(self._faults)
+        if self.faults:
+            count = len(self.faults)
             found = [Chip((self.palette_.fault,), tr_n("{count} fault", "{count} faults", count))]
         if self.overstretched:
             words = tr_n(
@@ -422,24 +362,24 @@ class LayoutView(Canvas):
             found.append(Chip((self.palette_.fault,), words))
         found += [*self._jam_chips(), *self._grip_chips()]
         chips = found
-        if self._areas is not None:
-            areas, mm = self._areas, self.mm_per_unit
+        if self.areas is not None:
+            areas, mm = self.areas, self.mm_per_unit
             versions = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
             chips = self._fitting(versions, metrics)
         return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
-        if self._design is None:
+        if self.design is None:
             if self._target is not None:
                 paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
         pose = self.shown_as_cut
-        nodes = self._design.nodes(self._phi) if pose is None else pose.nodes
-        field = self._design.deployment.field
-        panels = transform.to_pixels(self._design.panels(nodes))
-        trimmed = {row: transform.to_pixels(part) for row, part in self._design.kept(nodes, self._phi).items()}
+        nodes = self.design.nodes(self.phi) if pose is None else pose.nodes
+        field = self.design.deployment.field
+        panels = transform.to_pixels(self.design.panels(nodes))
+        trimmed = {row: transform.to_pixels(part) for row, part in self.design.kept(nodes, self.phi).items()}
         palette = self.palette_
-        if Overlay.RATIOS in self._overlays:  # blue means a ratio there, not a panel
+        if Overlay.RATIOS in self.overlays:  # blue means a ratio there, not a panel
             palette = replace(palette, panel_even=palette.border, panel_odd=palette.grid, panel_line=palette.muted)
         artwork = self._painted_artwork(painter)
         if artwork is not None:
@@ -450,7 +390,7 @@ class LayoutView(Canvas):
         else:
             paint_cut_panels(painter, pose, transform, panels, turning, palette)
         if artwork is not None:
-            paint_artwork(painter, artwork, self._phi, panels, trimmed, transform)
+            paint_artwork(painter, artwork, self.phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
         if self._target is not None:
             self._paint_comparison(painter, transform, pose)
@@ -462,51 +402,51 @@ class LayoutView(Canvas):
 
     def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
         """The artwork, unless it belongs to another design, hides an overlay, or cannot be drawn as lines."""
-        shown = self._artwork
-        if shown is None or shown.sheet.design is not self._design or Overlay.RATIOS in self._overlays:
+        shown = self.artwork
+        if shown is None or shown.sheet.design is not self.design or Overlay.RATIOS in self.overlays:
             return None
         return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
 
     def _paint_voids(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Colours of voids: by their ratio, by their area."""
-        self._scales = []
-        design = self._design
+        self.scales = []
+        design = self.design
         if design is None:
             return
         field = design.deployment.field
-        if Overlay.RATIOS in self._overlays:
-            self._scales.append(ratio_scale(field.ratio, self.palette_))
-            paint_heat(painter, transform.to_pixels(design.panels(nodes)), field.ratio, self._scales[-1], self.palette_)
-        if Overlay.OPENINGS in self._overlays:
+        if Overlay.RATIOS in self.overlays:
+            self.scales.append(ratio_scale(field.ratio, self.palette_))
+            paint_heat(painter, transform.to_pixels(design.panels(nodes)), field.ratio, self.scales[-1], self.palette_)
+        if Overlay.OPENINGS in self.overlays:
             voids, mm2 = design.voids(nodes), self.mm_per_unit**2
-            self._scales.append(opening_scale(self._rigid.largest_opening * mm2, self.palette_))
+            self.scales.append(opening_scale(self._rigid.largest_opening * mm2, self.palette_))
             areas = quad_areas(voids).ravel() * mm2
-            paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self._scales[-1])
+            paint_shaded(painter, transform.to_pixels(voids).reshape(-1, 4, 2), areas, self.scales[-1])
 
     def _paint_stretch(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Connectors by how much they are stretched at this angle."""
-        self._overstretched = 0
-        if Overlay.STRETCH not in self._overlays or self._cut is None or self._design is None:
+        self.overstretched = 0
+        if Overlay.STRETCH not in self.overlays or self._cut is None or self.design is None:
             return
         from kirigami_studio.mechanics.closing import TOLERATED_STRETCH
 
-        self._scales.append(stretch_scale(TOLERATED_STRETCH, self.palette_))
+        self.scales.append(stretch_scale(TOLERATED_STRETCH, self.palette_))
         pixels = transform.to_pixels(nodes[self._cut.node])
-        stretch = self._cut.stretch_at(self._phi)
-        self._overstretched = int(np.sum(stretch > TOLERATED_STRETCH))
-        paint_stretch(painter, pixels, stretch, TOLERATED_STRETCH, self._scales[-1], self.palette_)
+        stretch = self._cut.stretch_at(self.phi)
+        self.overstretched = int(np.sum(stretch > TOLERATED_STRETCH))
+        paint_stretch(painter, pixels, stretch, TOLERATED_STRETCH, self.scales[-1], self.palette_)
 
     @property
     def grips(self) -> Gripping | None:
         """The grips that are drawn, if any: those of the design as cut that is shown."""
         state = self._grips
-        shown = Overlay.GRIPS in self._overlays and self._cut is not None and state.sheet is self._cut
+        shown = Overlay.GRIPS in self.overlays and self._cut is not None and state.sheet is self._cut
         return state.found if shown else None
 
     def _jam_chips(self) -> list[Chip]:
         """Where the sheet as cut stays, at angles that it does not come to."""
         sheet = self._cut
-        if not self._as_cut or self._ideal or sheet is None or self._phi >= sheet.as_cut.reached - SAME_ANGLE:
+        if not self._as_cut or self._ideal or sheet is None or self.phi >= sheet.as_cut.reached - SAME_ANGLE:
             return []
         words = tr("as cut, stopped at {angle:.0f}°", angle=math.degrees(sheet.as_cut.reached))
         return [Chip((self.palette_.fault,), words)]
@@ -514,7 +454,7 @@ class LayoutView(Canvas):
     def _grip_chips(self) -> list[Chip]:
         """What the legend says of grips: how many panels to hold and to pull, or why none are marked."""
         state, palette, found = self._grips, self.palette_, self.grips
-        if Overlay.GRIPS not in self._overlays:
+        if Overlay.GRIPS not in self.overlays:
             return []
         if found is None:
             if state.busy:
@@ -528,33 +468,31 @@ class LayoutView(Canvas):
 
     def _paint_grips(self, painter: QPainter, transform: ViewTransform) -> None:
         """Pins on the panels to hold and to pull, and the way that the latter go next."""
-        found, design, cut = self.grips, self._design, self._cut
+        found, design, cut = self.grips, self.design, self._cut
         if found is None or design is None or cut is None:
             return
-        places = grip_places(design, found.held, found.moved, self._phi, cut.as_cut.reached)
-        shown = GripPlaces(transform.to_pixels(places.held), transform.to_pixels(places.moved), places.way)
-        # Pixels count downwards.
-        paint_grips(painter, shown, places.way * (transform.scale, -transform.scale), self.palette_)
+        places = grip_places(design, found.held, found.moved, self.phi, cut.as_cut.reached)
+        paint_grips(painter, places, transform, self.palette_)
 
     def _paint_labels(self, painter: QPainter, transform: ViewTransform, nodes: FloatArray) -> None:
         """Numbers of panels and voids where they fit, and sizes of the smallest parts."""
-        design = self._design
+        design = self.design
         if design is None:
             return
         field, panels, voids = design.deployment.field, design.panels(nodes), design.voids(nodes)
         rows, columns = field.rows, field.columns
-        if Overlay.PANEL_NUMBERS in self._overlays:
+        if Overlay.PANEL_NUMBERS in self.overlays:
             grid = transform.to_pixels(panels).reshape(rows + 1, columns + 1, 4, 2)
             paint_numbers(painter, grid.mean(axis=2), room_in(grid), self.palette_, framed=False)
-        if Overlay.VOID_NUMBERS in self._overlays:
+        if Overlay.VOID_NUMBERS in self.overlays:
             tiles = transform.to_pixels(heat_tiles(panels, rows, columns))
             paint_numbers(painter, transform.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
         lengths: list[tuple[float, FloatArray]] = []
-        if self._areas is not None:
-            gap = transform.to_pixels(self._areas.gap.ends)
+        if self.areas is not None:
+            gap = transform.to_pixels(self.areas.gap.ends)
             if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
-                lengths.append((self._areas.gap.greatest, gap))
-        if Overlay.SMALL_PARTS in self._overlays:
+                lengths.append((self.areas.gap.greatest, gap))
+        if Overlay.SMALL_PARTS in self.overlays:
             lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._rigid.small]
         occupied: list[QRectF] = []
         for length, ends in lengths:
@@ -569,34 +507,34 @@ class LayoutView(Canvas):
     @property
     def _nearness(self) -> float:
         """Opacity of the comparison with the target: 1 at the target's angle, none far from it."""
-        return 0.0 if self._design is None else 1.0 - abs(self._phi - self._design.phi_target) / COMPARED_WITHIN
+        return 0.0 if self.design is None else 1.0 - abs(self.phi - self.design.phi_target) / COMPARED_WITHIN
 
     def compare_ideal(self) -> Mismatch | None:
         """Find the areas of the ideal motion at this angle, once for a design and an angle."""
-        if self._design is None or self._target is None or Overlay.MISMATCH not in self._overlays:
+        if self.design is None or self._target is None or Overlay.MISMATCH not in self.overlays:
             return None
         if self._nearness <= 0.0:
             return None
-        if self._ideal_areas is None or self._ideal_areas[0] != self._phi:
-            self._ideal_areas = self._phi, design_mismatch(self._design, self._target, self._phi)
+        if self._ideal_areas is None or self._ideal_areas[0] != self.phi:
+            self._ideal_areas = self.phi, design_mismatch(self.design, self._target, self.phi)
         return self._ideal_areas[1]
 
     def _paint_comparison(self, painter: QPainter, transform: ViewTransform, pose: CutPose | None) -> None:
         """Sheet against target, as it is cut or in its ideal motion."""
-        self._areas = None
-        if self._design is None or self._target is None:
+        self.areas = None
+        if self.design is None or self._target is None:
             return
         nearness = self._nearness
-        if Overlay.MISMATCH in self._overlays and nearness > 0.0:
+        if Overlay.MISMATCH in self.overlays and nearness > 0.0:
             if pose is None:
-                self._areas = self.compare_ideal()
+                self.areas = self.compare_ideal()
             else:
-                self._areas = mismatch_of_nodes(self._design, self._target, pose.phi, pose.nodes)
-            if self._areas is not None:
+                self.areas = mismatch_of_nodes(self.design, self._target, pose.phi, pose.nodes)
+            if self.areas is not None:
                 painter.setOpacity(min(1.0, 2.0 * nearness))
-                paint_mismatch(painter, self._areas, transform, self.palette_)
+                paint_mismatch(painter, self.areas, transform, self.palette_)
             painter.setOpacity(1.0)
-        if Overlay.TARGET in self._overlays:
+        if Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
             paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
             painter.setOpacity(1.0)
@@ -604,22 +542,22 @@ class LayoutView(Canvas):
 
     def _paint_second(self, painter: QPainter, transform: ViewTransform) -> None:
         """The second target near its angle."""
-        nearness = 0.0 if self._second is None else 1.0 - abs(self._phi - self._second[0]) / COMPARED_WITHIN
-        if self._second is not None and nearness > 0.0:
+        nearness = 0.0 if self.second is None else 1.0 - abs(self.phi - self.second[0]) / COMPARED_WITHIN
+        if self.second is not None and nearness > 0.0:
             painter.setOpacity(min(1.0, 2.0 * nearness))
-            paint_target_line(painter, transform.to_pixels(self._second[1]), self.palette_, dashed=True)
+            paint_target_line(painter, transform.to_pixels(self.second[1]), self.palette_, dashed=True)
             painter.setOpacity(1.0)
 
     def _paint_faults(self, painter: QPainter, transform: ViewTransform) -> None:
-        self._faults = ()
-        if Overlay.FAULTS not in self._overlays:
+        self.faults = ()
+        if Overlay.FAULTS not in self.overlays:
             return
-        self._faults = self.find_faults()
-        for fault in self._faults:
+        self.faults = self.find_faults()
+        for fault in self.faults:
             paint_fault(painter, transform.to_pixels(np.array(fault.where)), fault.kind, self.palette_)
 
     def paint_notes(self, painter: QPainter) -> None:
-        if self._design is None:
+        if self.design is None:
             if self._target is not None:
                 _, headline, hint = self._hint
                 said = fitted(painter.fontMetrics(), (f"{headline}  {hint}", headline), self.width() - 40.0)
@@ -627,9 +565,9 @@ class LayoutView(Canvas):
             return
         labels = self.legend(painter.fontMetrics())
         paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)
-        if self._caption:
-            paint_caption(painter, self._caption, self.width(), self.palette_)
-        paint_colour_bars(painter, self._scales, self.width() - 10.0, self._bars_top(), self.palette_)
+        if self.caption:
+            paint_caption(painter, self.caption, self.width(), self.palette_)
+        paint_colour_bars(painter, self.scales, self.width() - 10.0, self._bars_top(), self.palette_)
         self.voids.paint_label(painter, self.palette_)
 
 

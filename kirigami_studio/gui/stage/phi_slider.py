@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPainterPath
 from PySide6.QtWidgets import QSlider, QWidget
 
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.paths import ink, painter_on
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Slider steps per degree.
@@ -40,7 +41,7 @@ class PhiSlider(QSlider):
         self._target = 0.0
         self._contact: float | None = None
         self._second: float | None = None
-        self._jam: float | None = None
+        self.jam: float | None = None  #: angle (radians) at which the sheet jams as cut
         self._ideal = False
         self.setRange(0, LAST)
         self.setSingleStep(RESOLUTION)
@@ -74,7 +75,7 @@ class PhiSlider(QSlider):
 
     def set_jam(self, jam: float | None) -> None:
         """Mark the angle (radians) at which the sheet jams as cut; None where it closes or nothing is known."""
-        self._jam = jam
+        self.jam = jam
         self._update_tooltip()
         self.update()
 
@@ -83,38 +84,32 @@ class PhiSlider(QSlider):
         self._ideal = ideal
         self.update()
 
-    @property
-    def jam(self) -> float | None:
-        """The angle (radians) at which the sheet jams, if it does."""
-        return self._jam
-
     def stopped(self, value: int) -> int:
         """Where the handle stops on its way to a value: at the jam, unless it is beyond it already."""
-        if self._jam is None or self._ideal or self.value() > value_at(self._jam):
+        if self.jam is None or self._ideal or self.value() > value_at(self.jam):
             return value
-        return min(value, value_at(self._jam))
+        return min(value, value_at(self.jam))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 
     def marks(self) -> tuple[TrackMark, ...]:
         """All marks, the most important first."""
-        degrees = f"{math.degrees(self._target):.0f}°"
-        marks = [TrackMark(MarkKind.TARGET, self._target, tr("{angle} target", angle=degrees), degrees)]
-        if self._second is not None:
-            degrees = f"{math.degrees(self._second):.0f}°"
-            marks.append(TrackMark(MarkKind.SECOND, self._second, tr("{angle} second", angle=degrees), degrees))
-        if self._contact is not None:
-            degrees = f"{math.degrees(self._contact):.0f}°"
-            marks.append(TrackMark(MarkKind.CONTACT, self._contact, tr("{angle} contact", angle=degrees), degrees))
-        if self._jam is not None:
-            degrees = f"{math.degrees(self._jam):.0f}°"
-            marks.insert(0, TrackMark(MarkKind.JAM, self._jam, tr("{angle} jams", angle=degrees), degrees))
-        marks.append(TrackMark(MarkKind.FLAT, math.pi, tr("180° flat"), "180°"))
-        marks.append(TrackMark(MarkKind.TURNED, 0.0, "0°", "0°"))
-        return tuple(marks[:-1] if self._target == 0.0 else marks)
+        found = (
+            (MarkKind.JAM, self.jam, tr("{angle} jams")),
+            (MarkKind.TARGET, self._target, tr("{angle} target")),
+            (MarkKind.SECOND, self._second, tr("{angle} second")),
+            (MarkKind.CONTACT, self._contact, tr("{angle} contact")),
+            (MarkKind.FLAT, math.pi, tr("180° flat")),
+            (MarkKind.TURNED, None if self._target == 0.0 else 0.0, "0°"),
+        )
+        degrees = {kind: f"{math.degrees(phi):.0f}°" for kind, phi, _ in found if phi is not None}
+        return tuple(
+            TrackMark(kind, phi, words.format(angle=degrees[kind]), degrees[kind])
+            for kind, phi, words in found
+            if phi is not None
+        )
 
     def _update_tooltip(self) -> None:
         lines = [
@@ -123,11 +118,11 @@ class PhiSlider(QSlider):
         ]
         if self._contact is not None:
             lines.append(tr("First contact at {angle:.1f}°.", angle=math.degrees(self._contact)))
-        if self._jam is not None:
+        if self.jam is not None:
             lines.append(
                 tr(
                     "Jams at {angle:.1f}° as cut: the handle stops there. Ideal lets it go on.",
-                    angle=math.degrees(self._jam),
+                    angle=math.degrees(self.jam),
                 )
             )
         if self._second is not None:
@@ -175,8 +170,8 @@ class PhiSlider(QSlider):
 
     def _stop_after(self, before: int) -> None:
         """Go back to the jam where a step has led past it."""
-        if self._jam is not None and not self._ideal and before <= value_at(self._jam) < self.value():
-            self.setValue(value_at(self._jam))
+        if self.jam is not None and not self._ideal and before <= value_at(self.jam) < self.value():
+            self.setValue(value_at(self.jam))
 
     def mark_at(self, place: QPointF) -> TrackMark | None:
         """The mark whose sign or label lies under a pixel, if any."""
@@ -201,24 +196,24 @@ class PhiSlider(QSlider):
     # drawing -------------------------------------------------------------------------------------------------------
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         self._paint_track(painter)
         self._paint_marks(painter)
         x = self._x(self.phi)
         if self.hasFocus():
-            halo = QColor(self.palette_.accent)
-            halo.setAlpha(60)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(halo)
+            ink(painter, None, fill=self.palette_.accent, alpha=60)
             painter.drawEllipse(QPointF(x, MIDDLE), HANDLE + 4, HANDLE + 4)
-        painter.setPen(QPen(QColor(self.palette_.surface), 2.0))
-        painter.setBrush(QColor(self.palette_.accent if self.isEnabled() else self.palette_.disabled))
+        ink(
+            painter,
+            self.palette_.surface,
+            2.0,
+            fill=self.palette_.accent if self.isEnabled() else self.palette_.disabled,
+        )
         painter.drawEllipse(QPointF(x, MIDDLE), HANDLE, HANDLE)
         painter.end()
 
     def _paint_track(self, painter: QPainter) -> None:
-        parts = track_parts(self._target, self._contact, self._jam)
+        parts = track_parts(self._target, self._contact, self.jam)
         for kind, first, last in parts:
             left, right = self._x(first), self._x(last)
             box = QRectF(left, MIDDLE - 5.0, right - left, 10.0)
@@ -226,8 +221,7 @@ class PhiSlider(QSlider):
         free_until = next((last for kind, _, last in parts if kind is TrackPart.FREE), math.pi)
         if self.isEnabled():
             left, right = self._x(math.pi), self._x(max(self.phi, free_until))
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(self.palette_.accent))
+            ink(painter, None, fill=self.palette_.accent)
             painter.drawRoundedRect(QRectF(left, MIDDLE - 2.5, right - left, 5.0), 2.5, 2.5)
 
     def _paint_marks(self, painter: QPainter) -> None:
@@ -283,18 +277,11 @@ class MarkKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TrackMark:
-    """An angle on the track that a click goes to.
-
-    Attributes
-    ----------
-    kind : MarkKind
-    phi : float, radians
-    words, short : str
-        Label where there is room, and where there is not.
-    """
+    """An angle on the track that a click goes to."""
 
     kind: MarkKind
-    phi: float
+    phi: float  #: radians
+    #: words, short: label where there is room, and where there is not.
     words: str
     short: str
 
@@ -323,13 +310,11 @@ def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: P
     """Draw one part: a plain bar when free, thick and striped in contact, thin dashes past the target."""
     middle = box.center().y()
     if kind is TrackPart.FREE or not enabled:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.strong_border))
+        ink(painter, None, fill=palette.strong_border)
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
     elif kind is TrackPart.JAMMED:
-        painter.setPen(QPen(QColor(palette.warning), 1.2))
-        painter.setBrush(QColor(palette.warning_soft))
+        ink(painter, palette.warning, 1.2, fill=palette.warning_soft)
         bar = QRectF(box.left(), middle - 0.5 * FREE_HEIGHT, box.width(), FREE_HEIGHT)
         painter.drawRoundedRect(bar, 2.5, 2.5)
     elif kind is TrackPart.CONTACT:
@@ -343,8 +328,7 @@ def paint_track_part(painter: QPainter, kind: TrackPart, box: QRectF, palette: P
 
 def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
     painter.save()
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(palette.fault))
+    ink(painter, None, fill=palette.fault)
     painter.drawRoundedRect(bar, 2.0, 2.0)
     painter.setClipRect(bar)
     painter.setPen(QPen(QColor(palette.fault_line), 1.8))
@@ -353,8 +337,7 @@ def _paint_striped(painter: QPainter, bar: QRectF, palette: Palette) -> None:
     starts = [bar.left() - height + STRIPE * number for number in range(count + 1)]
     painter.drawLines([QLineF(x, bar.bottom(), x + height, bar.top()) for x in starts])
     painter.setClipping(False)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(QPen(QColor(palette.strong_border), 1.0))
+    ink(painter, palette.strong_border)
     painter.drawRoundedRect(bar, 2.0, 2.0)
     painter.restore()
 
@@ -363,8 +346,7 @@ def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette
     """Draw the sign of a mark below the track: an arrow to the target, a hollow one to a second target, a diamond at a
     contact, a bar at a jam, a tick at the ends."""
     if kind is MarkKind.JAM:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.warning))
+        ink(painter, None, fill=palette.warning)
         painter.drawRoundedRect(QRectF(tip.x() - 1.75, tip.y() - 13.0, 3.5, 21.0), 1.5, 1.5)
         return
     path = QPainterPath(tip)
@@ -381,12 +363,9 @@ def paint_mark(painter: QPainter, kind: MarkKind, tip: QPointF, palette: Palette
     path.closeSubpath()
     match kind:
         case MarkKind.CONTACT:
-            painter.setPen(QPen(QColor(palette.fault_line), 1.2))
-            painter.setBrush(QColor(palette.fault))
+            ink(painter, palette.fault_line, 1.2, fill=palette.fault)
         case MarkKind.SECOND:
-            painter.setPen(QPen(QColor(palette.target), 1.4))
-            painter.setBrush(QColor(palette.surface))
+            ink(painter, palette.target, 1.4, fill=palette.surface)
         case _:
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(palette.target))
+            ink(painter, None, fill=palette.target)
     painter.drawPath(path)

@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QButtonGroup, QSizePolicy, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.stage.curves import Curves
-from kirigami_studio.gui.stage.plot_jobs import ANGLES, Reading
+from kirigami_studio.gui.stage.curves import ANGLES, Curves
+from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
-    from kirigami_studio.foundation.arrays import FloatArray
     from kirigami_studio.gui.widgets.chart import Chart
     from kirigami_studio.mechanics.closing import Closing
     from kirigami_studio.studio.as_cut import SimulatedSheet
@@ -29,16 +28,23 @@ CHART_HEIGHT, ALL_CHARTS_HEIGHT = 132, 528
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """One chart: its button's text, its tooltip, its unit, and what it draws of a reading and the mm of a cell."""
+    """One chart: its button's text, its tooltip, its unit, and what it draws.
+
+    Of the ideal motion that is a number of each reading and the mm of a cell, of the sheet as cut an array of its
+    closing.
+    """
 
     text: str
     tip: str
     unit: str
-    series: tuple[tuple[str, Callable[[Reading, float], float]], ...]
+    series: tuple[tuple[str, Callable[[Any, float], Any]], ...]
     from_zero: bool = False
+    as_cut: bool = False
 
 
 def _rows() -> tuple[_Row, ...]:
+    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
+    force = tr("Force at the edge of a panel that holds the sheet at each angle as cut, N")
     return (
         _Row(tr("Match"), tr("Match of the whole sheet with the target at each angle, in its best pose, %"), "%", (
             ("sIoU", lambda reading, mm: 100.0 * reading.siou),
@@ -57,33 +63,13 @@ def _rows() -> tuple[_Row, ...]:
         _Row(tr("Gap"), tr("Narrowest gap between parts of the outline, mm; 0 means contact"), "mm", (
             (tr("gap"), lambda reading, mm: reading.gap * mm),
         ), True),
+        _Row(tr("Force"), force, "N", (
+            (tr("force"), lambda found, _: found.path.force / found.sheet.network.panel_size),
+        ), as_cut=True),
+        _Row(tr("Energy"), tr("Energy in the connectors at each angle as cut, mJ"), "mJ", (
+            (tr("energy"), lambda found, _: found.path.energy),
+        ), as_cut=True),
     )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class _CutRow:
-    """One chart of the sheet as cut: its button's text, name and tooltip, its unit, and what it draws of a closing."""
-
-    text: str
-    name: str
-    tip: str
-    unit: str
-    take: Callable[[Closing], FloatArray]
-
-
-def _cut_rows() -> tuple[_CutRow, ...]:
-    # Against an angle the slope of the energy is a moment: what a lever of one panel's size needs at its end.
-    force = tr("Force at the edge of a panel that holds the sheet at each angle as cut, N")
-    return (
-        _CutRow(tr("Force"), tr("force"), force, "N", lambda found: found.path.force / found.sheet.network.panel_size),
-        _CutRow(
-            tr("Energy"),
-            tr("energy"),
-            tr("Energy in the connectors at each angle as cut, mJ"),
-            "mJ",
-            lambda found: found.path.energy,
-        ),
-    )
 
 
 class PlotsPanel(QWidget):
@@ -101,48 +87,36 @@ class PlotsPanel(QWidget):
         self._curves: Curves | None = None
         self._width_mm = 100.0
         self._phi, self._target, self._pointed = math.pi, 0.0, -1.0
-        self._rows, self._cut_rows = _rows(), _cut_rows()
+        self._rows = _rows()
         self._closing: Closing | None = None
-        self.charts: list[Chart] = []
-        self.cut_charts: list[Chart] = []  #: of the sheet as cut
+        self._made: list[Chart] = []
         self._stale: list[int] = []  # charts whose curves are to be drawn
         self._turn = QTimer(self, singleShot=True, interval=0)
         self._turn.timeout.connect(self._go_on)
         self.setObjectName("plain")
         self.setAccessibleName(tr("Plots by deployment angle"))
-        self.empty_message = QLabel()
-        self.empty_message.setObjectName("muted")
-        self.empty_message.setWordWrap(True)
+        self.empty_message = label(wraps=True)
         self.empty_message.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(2)
         self._add_choice()
-        self._column.addWidget(self.empty_message, 1)
+        self._column = column(self.choice, (self.empty_message, 1), on=self, spacing=2)
         self.setMinimumSize(200, CHART_HEIGHT + 34)
         self.show_curves(None)
 
     def _add_choice(self) -> None:
-        self.choice = QWidget()
-        self.choice.setObjectName("plain")
-        row = QHBoxLayout(self.choice)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(2)
+        self.choice = plain_pane()
         self.buttons = QButtonGroup(self)
-        rows = [*((row.text, row.tip) for row in self._rows), *((row.text, row.tip) for row in self._cut_rows)]
-        for number, (text, tip) in enumerate(rows):
+        for number, shown in enumerate(self._rows):
             button = QToolButton()
-            button.setText(text)
-            button.setToolTip(tip)
-            button.setAccessibleName(tip)
+            button.setText(shown.text)
+            button.setToolTip(shown.tip)
+            button.setAccessibleName(shown.tip)
             button.setCheckable(True)
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             self.buttons.addButton(button, number)
-            row.addWidget(button)
         self.buttons.button(0).setChecked(True)
         self.buttons.idToggled.connect(lambda _number, _on: self._share_room())
-        self._column.addWidget(self.choice)
+        row(*self.buttons.buttons(), on=self.choice, spacing=2)
 
     @property
     def complete(self) -> bool:
@@ -155,7 +129,8 @@ class PlotsPanel(QWidget):
         self._curves = curves
         known = bool(curves is not None and curves.readings)
         if known and (growing or not self._built):
-            self._stale = [*self._stale, *(row for row in range(len(self._rows)) if row not in self._stale)]
+            ideal = [number for number, shown in enumerate(self._rows) if not shown.as_cut]
+            self._stale = [*self._stale, *(number for number in ideal if number not in self._stale)]
             self._turn.start()
         else:
             self._stale.clear()
@@ -176,17 +151,24 @@ class PlotsPanel(QWidget):
         found = self._closing
         if found is None:
             return
-        for row, chart in zip(self._cut_rows, self.cut_charts, strict=True):
-            chart.set_series(Series(np.degrees(found.phi), (row.take(found),)))
-            chart.read_out(self._angle)
+        for shown, chart in zip(self._rows, self._made, strict=True):
+            if shown.as_cut:
+                chart.set_series(Series(np.degrees(found.phi), tuple(take(found, 1.0) for _, take in shown.series)))
+                chart.read_out(self._angle)
 
     @property
-    def _all_charts(self) -> list[Chart]:
-        return [*self.charts, *self.cut_charts]
+    def charts(self) -> list[Chart]:
+        """Those of the ideal motion."""
+        return [chart for shown, chart in zip(self._rows, self._made, strict=False) if not shown.as_cut]
+
+    @property
+    def cut_charts(self) -> list[Chart]:
+        """Those of the sheet as cut."""
+        return [chart for shown, chart in zip(self._rows, self._made, strict=False) if shown.as_cut]
 
     @property
     def _built(self) -> bool:
-        return len(self._all_charts) == len(self._rows) + len(self._cut_rows)
+        return len(self._made) == len(self._rows)
 
     def _go_on(self) -> None:
         """Make one chart, or redraw one."""
@@ -199,7 +181,7 @@ class PlotsPanel(QWidget):
         if self._stale:
             number = self._stale.pop(0)
             self._draw_chart(number)
-            self.charts[number].read_out(self._angle)
+            self._made[number].read_out(self._angle)
         if self._stale:
             self._turn.start()
         else:
@@ -223,14 +205,14 @@ class PlotsPanel(QWidget):
     def set_phi(self, phi: float) -> None:
         """Another angle is shown, radians."""
         self._phi = phi
-        for chart in self._all_charts:
+        for chart in self._made:
             chart.set_phi(phi)
         self._read_out()
 
     def set_target(self, phi: float) -> None:
         """Mark the target angle, radians."""
         self._target = phi
-        for chart in self._all_charts:
+        for chart in self._made:
             chart.set_target(phi)
 
     def set_palette(self, palette: Palette) -> None:
@@ -244,19 +226,9 @@ class PlotsPanel(QWidget):
     def _build(self) -> None:
         from kirigami_studio.gui.widgets.chart import Chart  # the worker has imported what it draws with
 
-        if len(self.charts) < len(self._rows):
-            row = self._rows[len(self.charts)]
-            chart = Chart(row.text, row.unit, tuple(name for name, _ in row.series), row.from_zero)
-            self._add(chart, row.tip)
-            self.charts.append(chart)
-        else:
-            line = self._cut_rows[len(self.cut_charts)]
-            chart = Chart(line.text, line.unit, (line.name,))
-            self._add(chart, line.tip)
-            self.cut_charts.append(chart)
-
-    def _add(self, chart: Chart, tip: str) -> None:
-        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=tip))
+        shown = self._rows[len(self._made)]
+        chart = Chart(shown.text, shown.unit, tuple(name for name, _ in shown.series), shown.from_zero)
+        chart.setToolTip(tr("{what}\nDrag the line or click to jump to an angle.", what=shown.tip))
         chart.set_palette(self._palette)
         chart.phi_wanted.connect(self.phi_wanted)
         chart.pointed.connect(self._point)
@@ -264,6 +236,7 @@ class PlotsPanel(QWidget):
         chart.set_target(self._target)
         chart.hide()
         self._column.addWidget(chart, 1)
+        self._made.append(chart)
 
     def _share_room(self) -> None:
         """All charts where they fit; one of them, and the choice, where they do not."""
@@ -271,20 +244,22 @@ class PlotsPanel(QWidget):
         self.choice.setVisible(not everything)
         known = self._built and self._curves is not None and bool(self._curves.readings)
         closed = self._closing is not None
-        for number in range(len(self._rows), len(self._rows) + len(self._cut_rows)):
-            self.buttons.button(number).setEnabled(closed)
-            if not closed and number == self.buttons.checkedId():
-                self.buttons.button(0).setChecked(True)
-        last = len(self.charts) - 1 + (len(self.cut_charts) if closed else 0)
-        for number, chart in enumerate(self._all_charts):
-            there = known and (closed or number < len(self._rows))
+        for number, shown in enumerate(self._rows):
+            if shown.as_cut:
+                self.buttons.button(number).setEnabled(closed)
+                if not closed and number == self.buttons.checkedId():
+                    self.buttons.button(0).setChecked(True)
+        last = max(number for number, shown in enumerate(self._rows) if closed or not shown.as_cut)
+        for number, (shown, chart) in enumerate(zip(self._rows, self._made, strict=False)):
+            there = known and (closed or not shown.as_cut)
             chart.setVisible(there and (everything or number == self.buttons.checkedId()))
             chart.show_angles(not everything or number == last)
 
     def _draw(self) -> None:
         if self._curves is not None and self._built:
-            for number in range(len(self.charts)):
-                self._draw_chart(number)
+            for number, shown in enumerate(self._rows):
+                if not shown.as_cut:
+                    self._draw_chart(number)
             self._read_out()
 
     def _draw_chart(self, number: int) -> None:
@@ -295,7 +270,7 @@ class PlotsPanel(QWidget):
         readings, mm = self._curves.readings, self._curves.cell_share * self._width_mm
         degrees = np.degrees([reading.phi for reading in readings])
         values = [np.array([take(reading, mm) for reading in readings]) for _, take in self._rows[number].series]
-        self.charts[number].set_series(Series(degrees, tuple(values)))
+        self._made[number].set_series(Series(degrees, tuple(values)))
 
     def _point(self, phi: float) -> None:
         self._pointed = phi
@@ -303,7 +278,7 @@ class PlotsPanel(QWidget):
 
     def _read_out(self) -> None:
         """Say the numbers where the mouse points, or where the sheet is, at the nearest angle that was read."""
-        for chart in self.charts if self._closing is None else self._all_charts:
+        for chart in self.charts if self._closing is None else self._made:
             chart.read_out(self._angle)
 
     @property

@@ -9,10 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal, SignalInstance
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
-from kirigami_studio.gui.stage.rim_gestures import ARROWS, RimHandles
+from kirigami_studio.gui.stage.edge_cuts import ARROWS, RimHandles
 from kirigami_studio.gui.stage.void_items import (
     VoidShapes,
     paint_band,
@@ -55,9 +55,8 @@ class VoidGestures(QObject):
     selection_changed = Signal(frozenset)  #: of Void
     nudged = Signal(frozenset, float)  #: of Void; change of log10 of their ratios
     pull_begun = Signal(tuple, tuple, float)  #: Void; place in the world; angle (radians)
-    pulled = Signal(tuple)  #: place in the world
     vertex_begun = Signal(int, float)  #: vertex of the outline; angle (radians)
-    vertex_moved = Signal(tuple)  #: place in the world
+    dragged = Signal(tuple)  #: place in the world that a void, a vertex or an edge cut is dragged to
     drag_ended = Signal()  #: of a void, a vertex or an edge cut
     drag_cancelled = Signal()  #: Esc while a void, a vertex or an edge cut is held
     lock_wanted = Signal(frozenset, bool)  #: of Void; whether they are to be locked
@@ -70,43 +69,22 @@ class VoidGestures(QObject):
         self.on, self.enabled = False, True
         self.locked: frozenset[Void] = frozenset()
         self.lines: tuple[str, ...] = ()  # of the label at the pointer
-        self._selected: frozenset[Void] = frozenset()
-        self._hovered: Void | None = None
-        self._vertex: int | None = None
+        self.selected: frozenset[Void] = frozenset()  #: acted on by the keyboard and the bar
+        self.void: Void | None = None  #: pointed at
+        self.vertex: int | None = None  #: of the outline, pointed at or held
         self._pointer = QPointF()
         self._pressed: QPointF | None = None
         self._grasp: Callable[[float], None] | None = None  # begins, at an angle, the drag that a press may become
-        self._moves: SignalInstance = self.pulled  # emitted with each place of the drag
-        self._dragging = False
+        self.dragging = False  #: whether a void, a vertex or an edge cut is held
         self._band: QRectF | None = None
         canvas.setMouseTracking(True)
         canvas.installEventFilter(self)
-
-    @property
-    def selected(self) -> frozenset[Void]:
-        """Voids that the keyboard and the bar act on."""
-        return self._selected
-
-    @property
-    def void(self) -> Void | None:
-        """The void that is pointed at."""
-        return self._hovered
-
-    @property
-    def vertex(self) -> int | None:
-        """The vertex of the outline that is pointed at or held."""
-        return self._vertex
-
-    @property
-    def dragging(self) -> bool:
-        """Whether a void, a vertex or an edge cut is being held."""
-        return self._dragging
 
     def switch(self, on: bool) -> None:
         """Begin or end editing by hand."""
         self.on = on
         self.drop()
-        self._vertex = None
+        self.vertex = None
         if not on:
             self.select(frozenset())
             self.rim.select(None)
@@ -136,8 +114,8 @@ class VoidGestures(QObject):
         """Select these and no others."""
         if voids:
             self.rim.select(None)
-        if voids != self._selected:
-            self._selected = voids
+        if voids != self.selected:
+            self.selected = voids
             self.selection_changed.emit(voids)
             self._canvas.update()
 
@@ -151,7 +129,7 @@ class VoidGestures(QObject):
         """Another design is shown: forget voids that it does not have, and look again what is under the pointer."""
         shapes = self._shapes()
         rows, columns = (0, 0) if shapes is None else shapes.corners.shape[:2]
-        self.select(frozenset(void for void in self._selected if void[0] < rows and void[1] < columns))
+        self.select(frozenset(void for void in self.selected if void[0] < rows and void[1] < columns))
         self.rim.follow(shapes)
         if shapes is None:
             self.drop()
@@ -164,7 +142,7 @@ class VoidGestures(QObject):
         """End the gesture under way."""
         dragging = self.dragging
         self._pressed = self._grasp = self._band = None
-        self._dragging = False
+        self.dragging = False
         if dragging:
             self.drag_ended.emit()
 
@@ -178,19 +156,19 @@ class VoidGestures(QObject):
         rows, columns = shapes.corners.shape[:2]
         paint_locks(painter, shapes, [void for void in self.locked if void[0] < rows and void[1] < columns], palette)
         if self.active and shapes.movable:
-            paint_handles(painter, shapes, self._vertex, palette)
+            paint_handles(painter, shapes, self.vertex, palette)
         if self.active:
             self.rim.paint(painter, shapes, palette)
         if self.active:
-            paint_marked(painter, shapes, sorted(self._selected), palette, 3.0)
-        if self._hovered is not None and self._hovered not in self._selected:
-            paint_marked(painter, shapes, [self._hovered], palette, 2.0 if self.active else 1.4)
+            paint_marked(painter, shapes, sorted(self.selected), palette, 3.0)
+        if self.void is not None and self.void not in self.selected:
+            paint_marked(painter, shapes, [self.void], palette, 2.0 if self.active else 1.4)
         if self._band is not None:
             paint_band(painter, self._band, palette)
 
     def paint_label(self, painter: QPainter, palette: Palette) -> None:
         """Draw the label at the pointer."""
-        if self.lines and (self._hovered is not None or self.rim.meant is not None or self.dragging):
+        if self.lines and (self.void is not None or self.rim.meant is not None or self.dragging):
             paint_label(painter, self.lines, self._pointer, QRectF(self._canvas.rect()), palette)
 
     # events --------------------------------------------------------------------------------------------------------
@@ -204,7 +182,7 @@ class VoidGestures(QObject):
         if isinstance(event, QContextMenuEvent):
             return self._request_menu(event)
         if kind == QEvent.Type.ToolTip:
-            return self._hovered is not None or self.rim.meant is not None  # the label at the pointer tells
+            return self.void is not None or self.rim.meant is not None  # the label at the pointer tells
         if kind == QEvent.Type.Leave:
             self._leave()
         elif isinstance(event, QMouseEvent):
@@ -225,7 +203,7 @@ class VoidGestures(QObject):
             return False
         self._canvas.setFocus(Qt.FocusReason.MouseFocusReason)
         adding = bool(event.modifiers() & (Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.ControlModifier))
-        void, vertex, mouth = self._hovered, self._vertex, self.rim.meant
+        void, vertex, mouth = self.void, self.vertex, self.rim.meant
         if event.modifiers() & Qt.KeyboardModifier.AltModifier and void is not None:
             self.lock_wanted.emit(frozenset({void}), void not in self.locked)
             return True
@@ -236,13 +214,11 @@ class VoidGestures(QObject):
             self.select(frozenset())
             self.rim.select(mouth)
             self._grasp = partial(self.rim.grasped.emit, mouth, shapes.transform.to_world(place))
-            self._moves = self.rim.pulled
         elif vertex is not None:
-            self._grasp, self._moves = partial(self.vertex_begun.emit, vertex), self.vertex_moved
+            self._grasp = partial(self.vertex_begun.emit, vertex)
         elif void is not None:
             self.select(frozenset({void}))
             self._grasp = partial(self.pull_begun.emit, void, shapes.transform.to_world(place))
-            self._moves = self.pulled
         else:
             return False
         self._pressed = place
@@ -258,12 +234,12 @@ class VoidGestures(QObject):
         far = (place - self._pressed).manhattanLength() >= CLICK
         if self._grasp is None and far:
             self._band = QRectF(self._pressed, place).normalized()
-        elif self._grasp is not None and not self._dragging and far and shapes is not None:
+        elif self._grasp is not None and not self.dragging and far and shapes is not None:
             self._canvas.setCursor(Qt.CursorShape.ClosedHandCursor)
-            self._dragging = True
+            self.dragging = True
             self._grasp(shapes.phi)
-        if self._dragging and shapes is not None:
-            self._moves.emit(shapes.transform.to_world(place))
+        if self.dragging and shapes is not None:
+            self.dragged.emit(shapes.transform.to_world(place))
         self._canvas.update()
         return True
 
@@ -271,33 +247,33 @@ class VoidGestures(QObject):
         if self._pressed is None or event.button() != LEFT:
             return False
         shapes, band, grasped = self._shapes(), self._band, self._grasp is not None
-        void = self._hovered
+        void = self.void
         self.drop()
         self._canvas.unsetCursor()
         if band is not None and shapes is not None:
-            self.select(self._selected | shapes.voids_within(band.left(), band.top(), band.right(), band.bottom()))
+            self.select(self.selected | shapes.voids_within(band.left(), band.top(), band.right(), band.bottom()))
         elif not grasped and void is not None:  # a click that adds
-            self.select(self._selected ^ {void})
+            self.select(self.selected ^ {void})
         self._point(event.position())
         return True
 
     def _on_wheel(self, event: QWheelEvent) -> bool:
         self._point(event.position())
-        if not self.active or self._hovered is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+        if not self.active or self.void is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             return False
         delta = event.angleDelta()
         notches = (delta.y() or delta.x()) / 120.0
         fine = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if notches:
-            if self._hovered not in self._selected:
-                self.select(frozenset({self._hovered}))
-            self.nudged.emit(self._selected, notches * (FINE_NOTCH if fine else NOTCH))
+            if self.void not in self.selected:
+                self.select(frozenset({self.void}))
+            self.nudged.emit(self.selected, notches * (FINE_NOTCH if fine else NOTCH))
         event.accept()
         return True
 
     def _on_key(self, event: QKeyEvent) -> bool:
         """Arrows walk from void to void or move an edge cut, + and - change the ratio; the window has other keys."""
-        if self._dragging and event.key() == Qt.Key.Key_Escape:
+        if self.dragging and event.key() == Qt.Key.Key_Escape:
             self._cancel_drag(event)
             return True
         shapes = self._shapes()
@@ -313,7 +289,7 @@ class VoidGestures(QObject):
         if event.type() != QEvent.Type.KeyPress:
             return False
         if step.direction:
-            self.nudged.emit(self._selected, step.direction * (FINE_NOTCH if step.fine else NOTCH))
+            self.nudged.emit(self.selected, step.direction * (FINE_NOTCH if step.fine else NOTCH))
         else:
             self._walk(step, shapes)
         return True
@@ -323,7 +299,7 @@ class VoidGestures(QObject):
         event.accept()
         if event.type() == QEvent.Type.KeyPress:
             self._pressed = self._grasp = None
-            self._dragging = False
+            self.dragging = False
             self._canvas.unsetCursor()
             self.drag_cancelled.emit()
 
@@ -336,7 +312,7 @@ class VoidGestures(QObject):
 
     def _walk(self, step: KeyStep, shapes: VoidShapes) -> None:
         rows, columns = shapes.corners.shape[:2]
-        start = min(self._selected) if self._selected else self._hovered
+        start = min(self.selected) if self.selected else self.void
         if start is not None and self.rim.enter(shapes, start, step.down, step.right):
             self.select(frozenset())
             return
@@ -345,18 +321,18 @@ class VoidGestures(QObject):
 
     def _request_menu(self, event: QContextMenuEvent) -> bool:
         self._point(QPointF(event.pos()))
-        if not self.active or self._hovered is None:
+        if not self.active or self.void is None:
             return False
-        if self._hovered not in self._selected:
-            self.select(frozenset({self._hovered}))
-        self.menu_wanted.emit(self._hovered, event.globalPos())
+        if self.void not in self.selected:
+            self.select(frozenset({self.void}))
+        self.menu_wanted.emit(self.void, event.globalPos())
         return True
 
     # pointing ------------------------------------------------------------------------------------------------------
 
     def _hits(self, place: QPointF) -> bool:
         self._point(place)
-        return self._hovered is not None or self._vertex is not None or self.rim.meant is not None
+        return self.void is not None or self.vertex is not None or self.rim.meant is not None
 
     def _point(self, place: QPointF) -> None:
         """Find what is under the pointer."""
@@ -368,17 +344,17 @@ class VoidGestures(QObject):
         if self.active and self._grasp is None:
             draggable = void is not None or vertex is not None or on_rim
             self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if draggable else Qt.CursorShape.ArrowCursor)
-        if vertex != self._vertex or void != self._hovered or void is not None:
-            self._vertex, self._hovered = vertex, void
+        if vertex != self.vertex or void != self.void or void is not None:
+            self.vertex, self.void = vertex, void
             self.hovered.emit(void)
             self._canvas.update()
 
     def _leave(self) -> None:
         if not self.dragging:
             self.rim.point(None, self._pointer)
-        self._vertex = None if not self.dragging else self._vertex
-        if self._hovered is not None:
-            self._hovered = None
+        self.vertex = None if not self.dragging else self.vertex
+        if self.void is not None:
+            self.void = None
             self.hovered.emit(None)
         self._canvas.update()
 
@@ -391,20 +367,12 @@ def _moves_mouth(event: QKeyEvent) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class KeyStep:
-    """A walk to another void, or a change of the ratio.
+    """A walk to another void, or a change of the ratio."""
 
-    Attributes
-    ----------
-    down, right : int
-        Rows and columns to walk.
-    direction : int
-        1 for a larger ratio, -1 for a smaller one, 0 for a walk.
-    fine : bool
-    """
-
+    #: down, right: rows and columns to walk.
     down: int = 0
     right: int = 0
-    direction: int = 0
+    direction: int = 0  #: 1 for a larger ratio, -1 for a smaller one, 0 for a walk
     fine: bool = False
 
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
-from PySide6.QtGui import QBrush, QColor, QPainter, QPen
+from PySide6.QtGui import QBrush, QColor, QPainter
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.widgets.legends import paint_chip
 from kirigami_studio.gui.widgets.mismatch_items import stripes
-from kirigami_studio.gui.widgets.paths import line_path, round_pen
+from kirigami_studio.gui.widgets.paths import ink, line_path, round_pen
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import Deployment
@@ -41,25 +41,13 @@ BESIDE = QPointF(16.0, 18.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VoidShapes:
-    """One design at one angle, in pixels.
-
-    Attributes
-    ----------
-    design : PosedDesign
-    phi : float, radians
-    transform : ViewTransform
-        World -> pixels.
-    corners : (m, n, 4, 2) float, pixels
-        p0..p3 of every void.
-    vertices : (L, 2) float, pixels
-        The outline, as :meth:`PosedDesign.outline` goes round.
-    """
+    """One design at one angle, in pixels."""
 
     design: PosedDesign
-    phi: float
-    transform: ViewTransform
-    corners: FloatArray
-    vertices: FloatArray
+    phi: float  #: radians
+    transform: ViewTransform  #: world -> pixels
+    corners: FloatArray  #: (m, n, 4, 2), pixels; p0..p3 of every void
+    vertices: FloatArray  #: (L, 2), pixels; the outline, as :meth:`PosedDesign.outline` goes round
 
     @classmethod
     def of(cls, design: PosedDesign, phi: float, transform: ViewTransform) -> VoidShapes:
@@ -130,24 +118,13 @@ def steady(before: Bounds, now: Bounds) -> Bounds:
 
 @dataclass(frozen=True, slots=True)
 class VoidFacts:
-    """One void at one angle of the motion.
-
-    Attributes
-    ----------
-    void : (row, column)
-    ratio : float
-        x = |p1 - p0| / |p3 - p0|.
-    angle : float, radians
-        Interior angle at the left corner p0 (paper, Eq. 1); the one at the bottom is its supplement.
-    edges_mm : four floats, mm
-        Lengths p0p1, p1p2, p2p3, p3p0 on the sheet as it is cut.
-    locked : bool
-    """
+    """One void at one angle of the motion."""
 
     void: Void
-    ratio: float
+    ratio: float  #: x = |p1 - p0| / |p3 - p0|
+    #: radians; interior angle at the left corner p0 (paper, Eq. 1); the one at the bottom is its supplement.
     angle: float
-    edges_mm: tuple[float, float, float, float]
+    edges_mm: tuple[float, float, float, float]  #: mm; lengths p0p1, p1p2, p2p3, p3p0 on the sheet as it is cut
     locked: bool
 
     @classmethod
@@ -201,13 +178,9 @@ def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], p
     """Outline voids in the accent's colour over a rim that sets it off from the panels."""
     for void in voids:
         path = line_path(shapes.corners[void], closed=True)
-        tint = QColor(palette.accent)
-        tint.setAlpha(60)
-        painter.setBrush(tint)
-        painter.setPen(round_pen(palette.canvas, width + 3.5))
+        ink(painter, round_pen(palette.canvas, width + 3.5), fill=palette.accent, alpha=60)
         painter.drawPath(path)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(round_pen(palette.accent_hover, width))
+        ink(painter, round_pen(palette.accent_hover, width))
         painter.drawPath(path)
 
 
@@ -216,8 +189,7 @@ def paint_locks(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], pa
     ratio = painter.device().devicePixelRatio()
     for void in voids:
         corners = shapes.corners[void]
-        painter.setPen(round_pen(palette.text, 1.6))
-        painter.setBrush(QBrush(stripes(palette.text, True, ratio)))
+        ink(painter, round_pen(palette.text, 1.6), fill=QBrush(stripes(palette.text, True, ratio)))
         painter.drawPath(line_path(corners, closed=True))
         room = max(float(np.hypot(*(corners[2] - corners[0]))), float(np.hypot(*(corners[3] - corners[1]))))
         if room >= ROOM_FOR_SIGN:
@@ -233,8 +205,7 @@ def _paint_padlock(painter: QPainter, middle: QPointF, palette: Palette) -> None
         painter.setPen(round_pen(colour, width))
         painter.drawArc(arch, 0, 180 * 16)
         painter.drawRoundedRect(body, 1.5, 1.5)
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(palette.text))
+    ink(painter, None, fill=palette.text)
     painter.drawRoundedRect(body, 1.5, 1.5)
 
 
@@ -242,14 +213,12 @@ def paint_handles(painter: QPainter, shapes: VoidShapes, meant: int | None, pale
     """Small squares on the outline's vertices, and a large one on the vertex that is meant."""
     steps = np.hypot(*(np.roll(shapes.vertices, -1, axis=0) - shapes.vertices).T)
     size = HANDLE if float(np.median(steps)) >= CROWDED else 0.6 * HANDLE
-    painter.setPen(QPen(QColor(palette.accent), 1.2))
-    painter.setBrush(QColor(palette.surface))
+    ink(painter, palette.accent, 1.2, fill=palette.surface)
     for x, y in shapes.vertices.tolist():
         painter.drawRect(QRectF(QPointF(x, y) - QPointF(size, size) / 2, QSizeF(size, size)))
     if meant is not None and meant < len(shapes.vertices):
         x, y = shapes.vertices[meant].tolist()
-        painter.setBrush(QColor(palette.accent))
-        painter.setPen(QPen(QColor(palette.canvas), 1.5))
+        ink(painter, palette.canvas, 1.5, fill=palette.accent)
         painter.drawRect(QRectF(QPointF(x, y) - QPointF(HELD, HELD) / 2, QSizeF(HELD, HELD)))
 
 
@@ -272,6 +241,5 @@ def paint_label(painter: QPainter, lines: tuple[str, ...], pointer: QPointF, are
 
 def paint_band(painter: QPainter, band: QRectF, palette: Palette) -> None:
     """The band that is drawn around many voids."""
-    painter.setPen(QPen(QColor(palette.accent), 1.2, Qt.PenStyle.DashLine))
-    painter.setBrush(Qt.BrushStyle.NoBrush)
+    ink(painter, palette.accent, 1.2, dashed=True)
     painter.drawRect(band)

@@ -1,24 +1,30 @@
-"""A drawing board in a dialog of its own, with the tools of the target's board: for outlines beside the target."""
+"""A drawing board in a dialog of its own, with the tools of the target's board: for the start, or a second target."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QPoint, QPointF, QSize, Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
-from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtGui import QKeySequence, QPainter, QShortcut
+from PySide6.QtWidgets import QDialog, QPushButton, QWidget
 
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.errors import KirigamiError, SheetError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.target.arrangements import ARRANGEMENTS
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import ToolButton, muted_label
+from kirigami_studio.gui.widgets.layouts import column, label, row
+from kirigami_studio.gui.widgets.target_items import paint_reach, paint_start_shape
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.drawing import Drawing
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import Placed
+from kirigami_studio.outlines.starts import check_hollows, hollows
 
 SIZE = QSize(680, 560)
 #: Keys of the tools, as on the target's board.
@@ -37,21 +43,13 @@ MOST_POINTS = 200
 
 @dataclass(frozen=True, slots=True)
 class BoardWords:
-    """What a board says.
+    """What a board says."""
 
-    Attributes
-    ----------
-    title : str
-        Of the dialog.
-    empty, ready : str
-        While nothing is drawn, and of a shape that can be taken.
-    take, taken : str
-        The button that takes the shape, and what that means.
-    """
-
-    title: str
+    title: str  #: of the dialog
+    #: empty, ready: while nothing is drawn, and of a shape that can be taken.
     empty: str
     ready: str
+    #: take, taken: the button that takes the shape, and what that means.
     take: str
     taken: str
 
@@ -86,41 +84,22 @@ class OutlineBoard(QDialog):
             part.hide()
         self.undo = ToolButton("undoBoard", "undo", tr("Undo on this board (Ctrl+Z)."))
         self.redo = ToolButton("redoBoard", "redo", tr("Redo on this board (Ctrl+Shift+Z)."))
-        self.about = QLabel(tr(words.empty))
-        self.about.setWordWrap(True)
+        self.about = label(tr(words.empty), wraps=True)
         self.loose = LooseRow(self.view.context)
         self.hint = muted_label()
-        self.take = QPushButton(tr(words.take))
+        self.take, self.cancel = QPushButton(tr(words.take)), QPushButton(tr("Cancel"))
         self.take.setObjectName("primary")
         self.take.setToolTip(tr(words.taken))
-        self.take.setAutoDefault(False)
-        self.cancel = QPushButton(tr("Cancel"))
         self.cancel.setToolTip(tr("Leave everything as it is (Esc)."))
-        self.cancel.setAutoDefault(False)
-        self._lay_out()
+        for button in (self.take, self.cancel):
+            button.setAutoDefault(False)
+        tools, below = row((self.tools, 1), self.undo, self.redo, spacing=2), row(..., self.cancel, self.take)
+        parts = ((self.view, 1), self.hint, self.about, self.loose, below)
+        column(tools, row(self.tools.options, ...), *parts, on=self, spacing=10, margins=(14, 14, 14, 14))
         self._connect()
         self.set_tool(Tool.POSE)
         self.view.set_editing(True)
         self._show()
-
-    def _lay_out(self) -> None:
-        column, tools, below = QVBoxLayout(self), QHBoxLayout(), QHBoxLayout()
-        column.setContentsMargins(14, 14, 14, 14)
-        column.setSpacing(10)
-        tools.setSpacing(2)
-        tools.addWidget(self.tools, 1)
-        tools.addWidget(self.undo)
-        tools.addWidget(self.redo)
-        column.addLayout(tools)
-        column.addWidget(self.tools.options, 0, Qt.AlignmentFlag.AlignLeft)
-        column.addWidget(self.view, 1)
-        column.addWidget(self.hint)
-        column.addWidget(self.about)
-        column.addWidget(self.loose)
-        below.addStretch(1)
-        below.addWidget(self.cancel)
-        below.addWidget(self.take)
-        column.addLayout(below)
 
     def _connect(self) -> None:
         context = self.view.context
@@ -128,9 +107,6 @@ class OutlineBoard(QDialog):
         context.selection_changed.connect(self._show_selection)
         self.view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.view.customContextMenuRequested.connect(self._open_menu)
-        for one in ARRANGEMENTS:
-            if one.key:
-                QShortcut(QKeySequence(one.key), self).activated.connect(partial(context.arrange, one.id))
         self.view.hint.connect(self.hint.setText)
         self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(self.reject)
@@ -140,10 +116,14 @@ class OutlineBoard(QDialog):
         self.redo.clicked.connect(lambda: self._step(1))
         self.take.clicked.connect(self._on_accept)
         self.cancel.clicked.connect(self.reject)
-        for key, tool in KEYS.items():
-            QShortcut(QKeySequence(key), self).activated.connect(partial(self._on_tool, tool))
-        QShortcut(QKeySequence(QKeySequence.StandardKey.Undo), self).activated.connect(lambda: self._step(-1))
-        QShortcut(QKeySequence("Ctrl+Shift+Z"), self).activated.connect(lambda: self._step(1))
+        keys: dict[str | QKeySequence.StandardKey, Callable[[], object]] = {
+            QKeySequence.StandardKey.Undo: lambda: self._step(-1),
+            "Ctrl+Shift+Z": lambda: self._step(1),
+            **{key: partial(self._on_tool, tool) for key, tool in KEYS.items()},
+            **{one.key: partial(context.arrange, one.id) for one in ARRANGEMENTS if one.key},
+        }
+        for key, act in keys.items():
+            QShortcut(QKeySequence(key), self).activated.connect(act)
 
     def begin(self, outline: Outline | None) -> None:
         """Open with an outline where its points can be dragged, else with the empty board."""
@@ -243,3 +223,73 @@ class OutlineBoard(QDialog):
         if self.placed is not None:
             self.taken.emit(self.placed.outline)
             self.accept()
+
+
+#: Tools whose shapes have large hollows.
+LEFT_OUT = (Tool.STAR, Tool.TEXT)
+START_WORDS = BoardWords(
+    mark("Draw the start"),
+    mark("Draw what the sheet looks like while it is flat. Its size is the sheet's width."),
+    mark("It can be the start; its size is the sheet's width."),
+    mark("&Use as start"),
+    mark("Sheets start as this shape from now on."),
+)
+
+
+class StartBoard(OutlineBoard):
+    """Refuses shapes that are too hollow, warns of those that the next run would refuse, and marks what is missing."""
+
+    check_wanted = Signal(Outline)  #: a shape with hollows, which :meth:`show_check` is to be told about
+    view: StartView
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, START_WORDS, StartView())
+        self.setObjectName("startBoard")
+        for tool in LEFT_OUT:
+            self.tools.buttons[tool].hide()
+
+    def refusal(self, outline: Outline) -> str | None:
+        try:
+            check_hollows(outline)
+        except SheetError as error:
+            self.view.show_hollows(hollows(outline))
+            return str(error)
+        self.view.show_hollows(())
+        return None
+
+    def ready(self, outline: Outline) -> str:
+        if not hollows(outline):
+            return super().ready(outline)
+        self.check_wanted.emit(outline)
+        return tr("Checking whether a sheet unfolds around the hollow …")
+
+    def show_check(self, outline: Outline, refusal: str) -> None:
+        """Say why the next run would refuse what is on the board, one sentence, or that it would not."""
+        if self.placed is None or self.placed.outline != outline:
+            return
+        self.view.show_hollows(hollows(outline) if refusal else ())
+        self.say(refusal or super().ready(outline), wrong=bool(refusal))
+
+
+class StartView(TargetView):
+    """The target's board with another outline on it, and its hollows marked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.hollows: tuple[FloatArray, ...] = ()
+        self.setAccessibleName(tr("Start outline"))
+
+    def show_hollows(self, rings: tuple[FloatArray, ...]) -> None:
+        """Mark what is missing to a shape without hollows: (P, 2) each, of unit area."""
+        self.hollows = rings
+        self.update()
+
+    def paint_outline(self, painter: QPainter, points: FloatArray) -> None:
+        paint_start_shape(painter, points, self.palette_)
+
+    def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
+        super().paint_scene(painter, transform)
+        placed = self.context.placed
+        if placed is not None and self.hollows:
+            rings = [transform.to_pixels(ring * placed.scale + placed.centre) for ring in self.hollows]
+            paint_reach(painter, rings, [], self.palette_)

@@ -4,29 +4,27 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtCore import QItemSelectionModel, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QItemSelectionModel, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
     QDialog,
-    QHBoxLayout,
     QLabel,
     QPushButton,
     QSizePolicy,
     QTreeWidget,
     QTreeWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.foundation import words
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue, LatestJob
-from kirigami_studio.gui.target.part_items import part_pixmap
-from kirigami_studio.gui.target.part_view import PartView
+from kirigami_studio.gui.target.part_view import PartView, part_pixmap
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
-from kirigami_studio.gui.widgets.number_field import DecimalField, number_field
+from kirigami_studio.gui.widgets.layouts import column, label, row
+from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, Merged, Merging
 from kirigami_studio.outlines.outline import Outline
@@ -110,8 +108,7 @@ class PartPicker(QDialog):
         self._undrawn: list[int] = []
         self._drawing = QTimer(self, singleShot=True, interval=0)
         self._accepts = False  # Enter was pressed before the outline was there
-        self.about = QLabel()
-        self.about.setWordWrap(True)
+        self.about = label(name="", wraps=True)
         self.list = QTreeWidget()
         self.list.setObjectName("partList")
         self.list.setAccessibleName(tr("Parts of the drawing"))
@@ -121,8 +118,8 @@ class PartPicker(QDialog):
         self.list.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.list.setMinimumWidth(LIST_WIDTH)
         self.list.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
-        self.all = self._small_button("allParts", tr("&All"), tr("Choose every part."))
-        self.largest = self._small_button("largestPart", tr("&Largest"), tr("Choose the largest part alone."))
+        self.all = self._button("allParts", tr("&All"), tr("Choose every part."))
+        self.largest = self._button("largestPart", tr("&Largest"), tr("Choose the largest part alone."))
         self.view = PartView()
         self.join = ChoiceBox("joinParts", tr("How parts are joined"), JOINS)
         self.join.setMinimumWidth(150)
@@ -132,21 +129,17 @@ class PartPicker(QDialog):
         self.painted.setToolTip(tr("Lines count with their width; otherwise only what they enclose counts."))
         self.stroke = self._width_field("strokeWidth", tr("Width of lines that have none"))
         self.size_ = QLabel()
-        self.notes = QLabel()
-        self.notes.setWordWrap(True)
-        self.notes.setObjectName("muted")
+        self.notes = label(wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
-        self.take = QPushButton(tr(TAKE[Purpose.TARGET][0]))
-        self.take.setObjectName("primary")
+        self.take = self._button("primary", tr(TAKE[Purpose.TARGET][0]), "")
+        self.take.setAutoDefault(True)
         self.take.setDefault(True)
-        self.cancel = QPushButton(tr("Cancel"))
-        self.cancel.setToolTip(tr("Leave everything as it is (Esc)."))
-        self.cancel.setAutoDefault(False)
+        self.cancel = self._button("", tr("Cancel"), tr("Leave everything as it is (Esc)."))
         self._lay_out()
         self._connect()
 
     @staticmethod
-    def _small_button(name: str, text: str, tip: str) -> QPushButton:
+    def _button(name: str, text: str, tip: str) -> QPushButton:
         button = QPushButton(text)
         button.setObjectName(name)
         button.setToolTip(tip)
@@ -155,49 +148,18 @@ class PartPicker(QDialog):
 
     @staticmethod
     def _width_field(name: str, accessible: str) -> DecimalField:
-        field = DecimalField()
-        field.setObjectName(name)
-        field.setAccessibleName(accessible)
-        field.setToolTip(f"{accessible}.")
-        field.setKeyboardTracking(False)
+        field = decimal_field(DecimalField, name, 0.0, 1.0, accessible=accessible, tip=f"{accessible}.")
         field.setMinimumWidth(96)
-        number_field(field)
         return field
 
     def _lay_out(self) -> None:
-        column, middle, left, right = QVBoxLayout(self), QHBoxLayout(), QVBoxLayout(), QVBoxLayout()
-        column.setContentsMargins(14, 14, 14, 14)
-        column.setSpacing(10)
-        column.addWidget(self.about)
-        column.addLayout(middle, 1)
-        middle.setSpacing(12)
-        middle.addLayout(left)
-        middle.addLayout(right, 1)
-        left.addWidget(self.list, 1)
-        below_list = QHBoxLayout()
-        below_list.addWidget(self.all)
-        below_list.addWidget(self.largest)
-        below_list.addStretch(1)
-        left.addLayout(below_list)
-        right.addWidget(self.view, 1)
-        controls = QHBoxLayout()
-        controls.setSpacing(8)
-        label = QLabel(tr("&Join by"))
-        label.setBuddy(self.join)
-        for widget in (label, self.join, self.bridge):
-            controls.addWidget(widget)
-        controls.addSpacing(12)
-        controls.addWidget(self.painted)
-        controls.addWidget(self.stroke)
-        controls.addStretch(1)
-        right.addLayout(controls)
-        right.addWidget(self.size_)
-        right.addWidget(self.notes)
-        below = QHBoxLayout()
-        below.addStretch(1)
-        below.addWidget(self.cancel)
-        below.addWidget(self.take)
-        column.addLayout(below)
+        left = column((self.list, 1), row(self.all, self.largest, ...))
+        join = label(tr("&Join by"), self.join, name="")
+        controls = row(join, self.join, self.bridge, 12, self.painted, self.stroke, ..., spacing=8)
+        right = column((self.view, 1), controls, self.size_, self.notes)
+        middle = row(left, (right, 1), spacing=12)
+        below = row(..., self.cancel, self.take)
+        column(self.about, (middle, 1), below, on=self, spacing=10, margins=(14, 14, 14, 14))
 
     def _connect(self) -> None:
         self._drawing.timeout.connect(self._draw_next)
@@ -225,12 +187,9 @@ class PartPicker(QDialog):
         self.take.setText(tr(TAKE[purpose][0]))
         for field, share in ((self.bridge, USUAL_BRIDGE), (self.stroke, USUAL_STROKE)):
             self._set_range(field, share)
-        self.join.blockSignals(True)
-        self.join.choose(Join.BRIDGE)
-        self.join.blockSignals(False)
-        self.painted.blockSignals(True)
-        self.painted.setChecked(not closed)
-        self.painted.blockSignals(False)
+        with QSignalBlocker(self.join), QSignalBlocker(self.painted):
+            self.join.choose(Join.BRIDGE)
+            self.painted.setChecked(not closed)
         self.painted.setVisible(any(part.lines for part in source.parts))
         self._fill(frozenset(source.usual) if closed else frozenset(part.number for part in source.parts))
         self.view.show_drawing(read)
@@ -241,13 +200,12 @@ class PartPicker(QDialog):
         assert self._read is not None
         size, unit = self._read.source.size, self._read.source.unit
         digits = 2 if size >= 10.0 else 4
-        field.blockSignals(True)
-        field.setDecimals(digits)
-        field.setRange(10.0**-digits, max(0.5 * size, 10.0**-digits))
-        field.setSuffix(f" {unit}" if unit else "")
-        field.setSingleStep(max(round(0.01 * size, digits), 10.0**-digits))
-        field.setValue(share * size)
-        field.blockSignals(False)
+        with QSignalBlocker(field):
+            field.setDecimals(digits)
+            field.setRange(10.0**-digits, max(0.5 * size, 10.0**-digits))
+            field.setSuffix(f" {unit}" if unit else "")
+            field.setSingleStep(max(round(0.01 * size, digits), 10.0**-digits))
+            field.setValue(share * size)
 
     def _fill(self, chosen: frozenset[int]) -> None:
         """List all parts below their layers."""
@@ -314,10 +272,9 @@ class PartPicker(QDialog):
         return 0 if item is None else int(item.data(0, NUMBER) or 0)
 
     def _choose(self, numbers: frozenset[int]) -> None:
-        self.list.blockSignals(True)
-        for number, item in self._items.items():
-            item.setCheckState(0, _state(number in numbers))
-        self.list.blockSignals(False)
+        with QSignalBlocker(self.list):
+            for number, item in self._items.items():
+                item.setCheckState(0, _state(number in numbers))
         self._remake()
 
     def _choose_largest(self) -> None:
@@ -405,7 +362,6 @@ class PartPicker(QDialog):
     # pictures --------------------------------------------------------------------------------------------------------
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         if palette is not self._palette:
             self._palette = palette
             self._draw_all()

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPainterPath, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.target.part_items import paint_part, paint_result, part_path
-from kirigami_studio.gui.widgets.paths import area_path
+from kirigami_studio.gui.widgets.paths import area_path, blank, ink, line_path, painter_on, round_pen
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.merging import Merged
@@ -46,7 +48,6 @@ class PartView(QWidget):
         return QSize(240, 160)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 
@@ -81,10 +82,8 @@ class PartView(QWidget):
         return ViewTransform.fitting(Bounds(left, bottom, right, top), QRectF(self.rect()), MARGIN)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(QColor(self.palette_.border))
-        painter.setBrush(QColor(self.palette_.canvas))
+        painter = painter_on(self)
+        ink(painter, self.palette_.border, fill=self.palette_.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0)
         if self._read is None:
             return
@@ -120,3 +119,59 @@ class PartView(QWidget):
         number = self._part_below(event.position())
         if event.button() == Qt.MouseButton.LeftButton and number:
             self.clicked.emit(number)
+
+
+def part_path(sketch: Sequence[FloatArray], transform: ViewTransform, closed: bool) -> QPainterPath:
+    """The rings of a part with its holes, or its lines, pixels."""
+    path = QPainterPath()
+    path.setFillRule(Qt.FillRule.OddEvenFill)
+    for line in sketch:
+        path.addPath(line_path(transform.to_pixels(line), closed=closed))
+    return path
+
+
+def paint_part(
+    painter: QPainter, path: QPainterPath, palette: Palette, *, closed: bool, chosen: bool, current: bool, pen: float
+) -> None:
+    """Draw one part; ``pen`` is the width of its lines in pixels, where they are taken as painted."""
+    line = QColor(palette.panel_line if chosen else palette.strong_border)
+    fill = QColor(palette.panel_odd)
+    if pen > 1.0 and not closed:
+        wide = QPen(fill if chosen else QColor(palette.grid), pen, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
+        wide.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        painter.strokePath(path, wide)
+    if closed:
+        fill.setAlpha(150)
+        painter.fillPath(path, fill if chosen else QColor(palette.grid))
+    painter.strokePath(path, round_pen(palette.accent if current else line.name(), 2.5 if current else 1.2))
+
+
+def paint_result(
+    painter: QPainter, outline: QPainterPath, bridges: Sequence[QPainterPath], palette: Palette, *, stale: bool
+) -> None:
+    """Draw the outline that is made of the parts, paler while a newer one is being made."""
+    painter.save()
+    painter.setOpacity(0.35 if stale else 1.0)
+    for bridge in bridges:
+        painter.fillPath(bridge, QColor(palette.target_fill))
+    fill = QColor(palette.target_fill)
+    fill.setAlpha(70)
+    painter.fillPath(outline, fill)
+    painter.strokePath(outline, round_pen(palette.target, 2.4))
+    painter.restore()
+
+
+def part_pixmap(sketch: Sequence[FloatArray], closed: bool, size: QSize, ratio: float, palette: Palette) -> QPixmap:
+    """A part's picture for lists, as large as it goes into ``size``, logical pixels."""
+    pixmap = blank(size, ratio)
+    painter = painter_on(pixmap)
+    box = QRectF(0, 0, size.width(), size.height())
+    low = [min(float(line[:, axis].min()) for line in sketch) for axis in (0, 1)]
+    high = [max(float(line[:, axis].max()) for line in sketch) for axis in (0, 1)]
+    transform = ViewTransform.fitting(Bounds(low[0], low[1], high[0], high[1]), box, 4.0)
+    path = part_path(sketch, transform, closed)
+    if closed:
+        painter.fillPath(path, QColor(palette.panel_odd))
+    painter.strokePath(path, round_pen(palette.panel_line if closed else palette.text, 1.4))
+    painter.end()
+    return pixmap

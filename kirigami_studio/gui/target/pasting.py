@@ -52,7 +52,7 @@ class PasteReader(QObject):
             return
         found = recognised(svg_of(content))
         if found is None:
-            self._session.post(Message(tr(NOTHING), Tone.HINT))
+            self._session.hint(tr(NOTHING))
             return
         extension, text = found
         path = self._place(extension)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
+from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
-from kirigami_studio.gui.widgets.target_items import paint_field, paint_label, paint_proposal
+from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.target_items import paint_field, paint_handle, paint_label, paint_proposal
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.anchors import INTO, OUT, Anchors, with_anchors
@@ -34,8 +34,8 @@ KINDS = {
     Qt.Key.Key_Y: Kind.SYMMETRIC,
     Qt.Key.Key_A: Kind.AUTO,
 }
-#: Half the side of a point's mark and the radius of a handle's end, pixels.
-MARK, KNOB = 4.5, 3.5
+#: Half the side of a point's mark, pixels.
+MARK = 4.5
 
 
 class Grip(Enum):
@@ -47,12 +47,8 @@ class Grip(Enum):
     FIELD = "field"
 
 
-@dataclass(frozen=True, slots=True)
-class Handle:
-    """One end of an anchor's handles: ``side`` is INTO or OUT."""
-
-    anchor: int
-    side: int
+#: One end of an anchor's handles: the anchor, and INTO or OUT.
+Handle = tuple[int, int]
 
 
 class PointTool(SketchTool):
@@ -289,29 +285,31 @@ class PointTool(SketchTool):
     def _images(self, anchors: Anchors) -> dict[int, tuple[int, int]]:
         """The mirror images of the selected points, and by which factors they are that."""
         found: dict[int, tuple[int, int]] = {}
-        placed = self.context.active
-        for factors in self.context.mirror.images if placed is not None else ():
+        for factors in self.context.mirror.images:
             for index in self.selected:
-                image = self.context.mirror.image(anchors.places[index], factors)
-                far = np.linalg.norm(anchors.places - image, axis=1)
-                nearest = int(np.argmin(far))
-                if placed is not None and far[nearest] <= IMAGE_REACH * placed.scale:
-                    found.setdefault(nearest, factors)
+                image = self._image(anchors, index, factors)
+                if image is not None:
+                    found.setdefault(image, factors)
         return found
 
-    def _with_handle(self, anchors: Anchors, handle: Handle, pointer: PointerEvent) -> Anchors:
-        offset = np.array(pointer.place) - anchors.places[handle.anchor]
-        bent = anchors.with_handle(handle.anchor, handle.side, offset, pointer.alt, pointer.shift)
+    def _image(self, anchors: Anchors, index: int, factors: tuple[int, int]) -> int | None:
+        """The point that is the mirror image of another one."""
         placed = self.context.active
-        for factors in self.context.mirror.images if placed is not None else ():
-            image = self.context.mirror.image(anchors.places[handle.anchor], factors)
-            far = np.linalg.norm(anchors.places - image, axis=1)
-            nearest = int(np.argmin(far))
-            if placed is None or far[nearest] > IMAGE_REACH * placed.scale or nearest == handle.anchor:
-                continue
-            turned = factors[0] * factors[1] < 0  # a reflection turns the order of the points round
-            side = (INTO + OUT - handle.side) if turned else handle.side
-            bent = bent.with_handle(nearest, side, offset * factors, pointer.alt, pointer.shift)
+        image = self.context.mirror.image(anchors.places[index], factors)
+        far = np.linalg.norm(anchors.places - image, axis=1)
+        nearest = int(np.argmin(far))
+        return nearest if placed is not None and far[nearest] <= IMAGE_REACH * placed.scale else None
+
+    def _with_handle(self, anchors: Anchors, handle: Handle, pointer: PointerEvent) -> Anchors:
+        index, end = handle
+        offset = np.array(pointer.place) - anchors.places[index]
+        bent = anchors.with_handle(index, end, offset, pointer.alt, pointer.shift)
+        for factors in self.context.mirror.images:
+            image = self._image(anchors, index, factors)
+            if image is not None and image != index:
+                turned = factors[0] * factors[1] < 0  # a reflection turns the order of the points round
+                side = (INTO + OUT - end) if turned else end
+                bent = bent.with_handle(image, side, offset * factors, pointer.alt, pointer.shift)
         return bent
 
     @property
@@ -367,13 +365,11 @@ class PointTool(SketchTool):
         anchors = self._anchors
         if anchors is None:
             return None
-        shown = [Handle(index, side) for index in self.selected for side in (INTO, OUT)]
+        shown = [(index, side) for index in self.selected for side in (INTO, OUT)]
         far = {
-            handle: self._pixels_between(
-                anchors.places[handle.anchor] + anchors.handles[handle.anchor, handle.side], pixel
-            )
+            handle: self._pixels_between(anchors.places[handle[0]] + anchors.handles[handle], pixel)
             for handle in shown
-            if np.any(anchors.handles[handle.anchor, handle.side])
+            if np.any(anchors.handles[handle])
         }
         nearest = min(far, key=lambda handle: far[handle], default=None)
         return nearest if nearest is not None and far[nearest] <= REACH else None
@@ -385,11 +381,28 @@ class PointTool(SketchTool):
         anchors = self.anchors
         if anchors is None:
             return
-        field = None if self._field is None else (self._field[0].pixel, self._field[1].pixel)
-        images = frozenset(self._images(anchors)) - self.selected
-        shown = self.chosen if self._dragged is not None and self._grip is Grip.POINTS else None
-        marks = Marks(anchors, self.selected, images, self._dragged is not None, shown, field)
-        paint_marks(painter, transform, palette, marks)
+        if self._dragged is not None:
+            paint_proposal(painter, transform.to_pixels(anchors.ring), palette)
+        self._paint_handles(painter, transform, palette, anchors)
+        images = self._images(anchors).keys() - self.selected
+        for index, (x, y) in enumerate(transform.to_pixels(anchors.places).tolist()):
+            fill = palette.accent if index in self.selected else palette.canvas
+            ink(painter, palette.accent, 2.4 if index in images else 1.6, fill=fill)
+            _paint_point(painter, QPointF(x, y), anchors.kinds[index])
+        if self._dragged is not None and self._grip is Grip.POINTS and self.chosen is not None:
+            place = anchors.places[self.chosen]
+            x, y = transform.to_pixels(place).tolist()
+            paint_label(painter, QPointF(x, y), tr("{x:.4g}, {y:.4g} mm", x=place[0], y=place[1]), palette)
+        if self._field is not None:
+            paint_field(painter, self._field[0].pixel, self._field[1].pixel, palette)
+
+    def _paint_handles(self, painter: QPainter, transform: ViewTransform, palette: Palette, anchors: Anchors) -> None:
+        for index in self.selected:
+            start = QPointF(*transform.to_pixels(anchors.places[index]).tolist())
+            for offset in anchors.handles[index]:
+                if np.any(offset):
+                    end = QPointF(*transform.to_pixels(anchors.places[index] + offset).tolist())
+                    paint_handle(painter, start, end, palette)
 
 
 def _refusal(error: TargetError) -> Callable[[], Placed]:
@@ -409,50 +422,6 @@ def _kind_change_name(kind: Kind, count: int) -> str:
     }[kind]
 
 
-@dataclass(frozen=True, slots=True)
-class Marks:
-    """What is to be shown.
-
-    Attributes
-    ----------
-    anchors : Anchors
-    selected, images : frozenset of int
-        Selected points, and those that mirror them.
-    dragged : bool
-        Whether the line is the one that would come.
-    labelled : int or None
-        A point whose place is written beside it.
-    field : (QPointF, QPointF) or None
-        Corners of the field that selects, pixels.
-    """
-
-    anchors: Anchors
-    selected: frozenset[int]
-    images: frozenset[int]
-    dragged: bool
-    labelled: int | None
-    field: tuple[QPointF, QPointF] | None
-
-
-def paint_marks(painter: QPainter, transform: ViewTransform, palette: Palette, marks: Marks) -> None:
-    """Draw the points of a target and what is about to happen to them."""
-    anchors = marks.anchors
-    if marks.dragged:
-        paint_proposal(painter, transform.to_pixels(anchors.ring), palette)
-    _paint_handles(painter, transform, palette, marks)
-    for index, (x, y) in enumerate(transform.to_pixels(anchors.places).tolist()):
-        chosen = index in marks.selected
-        painter.setPen(QPen(QColor(palette.accent), 2.4 if index in marks.images else 1.6))
-        painter.setBrush(QColor(palette.accent if chosen else palette.canvas))
-        _paint_point(painter, QPointF(x, y), anchors.kinds[index])
-    if marks.labelled is not None:
-        place = anchors.places[marks.labelled]
-        x, y = transform.to_pixels(place).tolist()
-        paint_label(painter, QPointF(x, y), tr("{x:.4g}, {y:.4g} mm", x=place[0], y=place[1]), palette)
-    if marks.field is not None:
-        paint_field(painter, *marks.field, palette)
-
-
 def _paint_point(painter: QPainter, pointer: QPointF, kind: Kind) -> None:
     """A square for a corner, a circle for what is smooth; automatic ones are diamonds."""
     box = QRectF(pointer.x() - MARK, pointer.y() - MARK, 2 * MARK, 2 * MARK)
@@ -463,18 +432,3 @@ def _paint_point(painter: QPainter, pointer: QPointF, kind: Kind) -> None:
         painter.drawPolygon([pointer + QPointF(*offset) for offset in ((0, -far), (far, 0), (0, far), (-far, 0))])
     else:
         painter.drawEllipse(box)
-
-
-def _paint_handles(painter: QPainter, transform: ViewTransform, palette: Palette, marks: Marks) -> None:
-    anchors = marks.anchors
-    for index in marks.selected:
-        start = QPointF(*transform.to_pixels(anchors.places[index]).tolist())
-        for offset in anchors.handles[index]:
-            if not np.any(offset):
-                continue
-            end = QPointF(*transform.to_pixels(anchors.places[index] + offset).tolist())
-            painter.setPen(QPen(QColor(palette.muted), 1.2))
-            painter.drawLine(start, end)
-            painter.setPen(QPen(QColor(palette.accent), 1.4))
-            painter.setBrush(QColor(palette.canvas))
-            painter.drawEllipse(end, KNOB, KNOB)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPen
+from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
@@ -19,6 +19,7 @@ from kirigami_studio.gui.target.sketch_context import (
     SketchTool,
     distance,
 )
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import paint_field, paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -236,12 +237,10 @@ class PoseTool(SketchTool):
         places = {
             side: QPointF(*transform.to_pixels(np.array(place)).tolist()) for side, place in self.handles().items()
         }
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
+        ink(painter, palette.accent, 1.0, dashed=True)
         painter.drawRect(QRectF(places[-1, 1], places[1, -1]))
         painter.drawLine(places[0, 1], places[TURN])
-        painter.setPen(QPen(QColor(palette.accent), 1.6))
-        painter.setBrush(QColor(palette.canvas))
+        ink(painter, palette.accent, 1.6, fill=palette.canvas)
         for side, pointer in places.items():
             box = QRectF(pointer.x() - HANDLE, pointer.y() - HANDLE, 2 * HANDLE, 2 * HANDLE)
             if side == TURN:

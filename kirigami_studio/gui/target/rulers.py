@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.target.sketch_context import SketchContext
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 
@@ -27,22 +28,12 @@ X, Y = 0, 1
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """A guide that is being dragged.
-
-    Attributes
-    ----------
-    axis : int
-    at : float, mm
-        Where it lies.
-    new : bool
-        Whether it comes out of a ruler.
-    shown : int
-        How often guides had been laid on the board when it was taken; more often, an undo changed them meanwhile.
-    """
+    """A guide that is being dragged."""
 
     axis: int
-    at: float
-    new: bool
+    at: float  #: mm; where it lies
+    new: bool  #: whether it comes out of a ruler
+    #: How often guides had been laid on the board when it was taken; more often, an undo changed them meanwhile.
     shown: int
 
 
@@ -130,8 +121,7 @@ class Rulers:
     ) -> None:
         length = area.width() if axis == X else area.height()
         strip = QRectF(0.0, 0.0, length, RULER) if axis == X else QRectF(0.0, RULER, RULER, length - RULER)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.surface))
+        ink(painter, None, fill=palette.surface)
         painter.drawRect(strip)
         font = painter.font()
         small = painter.font()

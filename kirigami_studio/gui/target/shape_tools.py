@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,7 +83,7 @@ class Freehand(SketchTool):
     def paint(self, painter: QPainter, transform: ViewTransform, palette: Palette) -> None:
         if self._pointers:
             points = transform.to_pixels(np.array([pointer.free for pointer in self._pointers]))
-            paint_sketch(painter, points, palette, corners=False)
+            paint_sketch(painter, points, palette)
             _paint_images(painter, transform, palette, self.context, [pointer.free for pointer in self._pointers])
 
 
@@ -104,20 +103,11 @@ def stroke_of(points: FloatArray, mirror: Mirror = PLAIN) -> Placed:
 
 @dataclass(frozen=True, slots=True)
 class PenPoint:
-    """A point that the pen has set.
+    """A point that the pen has set."""
 
-    Attributes
-    ----------
-    pointer : PointerEvent
-        Where the button went down.
-    place : (x, y) float, mm
-    into, out : (x, y) float, mm
-        From the point to its handles, towards the one before and the next; zero for a corner.
-    kind : Kind
-    """
-
-    pointer: PointerEvent
-    place: Place
+    pointer: PointerEvent  #: where the button went down
+    place: Place  #: (x, y), mm
+    #: into, out: (x, y), mm; from the point to its handles, towards the one before and the next; zero for a corner.
     into: Place = (0.0, 0.0)
     out: Place = (0.0, 0.0)
     kind: Kind = Kind.CORNER
@@ -229,7 +219,7 @@ class Pen(SketchTool):
             there = self._points[0].place if self._at_first(self._pointer) else self._placed(self._pointer)
             points.append(PenPoint(self._pointer, there))
         line = self._line(points)
-        paint_sketch(painter, transform.to_pixels(line), palette, corners=False)
+        paint_sketch(painter, transform.to_pixels(line), palette)
         closing = self._closes or (self._pointer is not None and self._at_first(self._pointer))
         shown = len(self._points) - 1 if self._pulled is None else self._pulled
         handles = [
@@ -259,28 +249,22 @@ def _pen_shape(points: Sequence[PenPoint]) -> Placed:
     return with_anchors(Placed.from_ring(anchors.ring, POLYGON), anchors)
 
 
-class BoxTool(SketchTool, ABC):
-    """Drags a box; subclasses say what fills it."""
+class BoxTool(SketchTool):
+    """Drags a box for a shape.
 
-    def __init__(self, context: SketchContext) -> None:
+    Parameters
+    ----------
+    name : str
+        Of the shape, for the document and the name of the change.
+    shape : callable
+        What fills a box; raises a TargetError where nothing can.
+    """
+
+    def __init__(self, context: SketchContext, name: str, shape: Callable[[BoundingBox], Placed], hint: str) -> None:
         super().__init__(context)
+        self._name, self._shape, self.hint = name, shape, hint
         self._start: PointerEvent | None = None
         self._end: PointerEvent | None = None
-
-    @abstractmethod
-    def shape(self, box: BoundingBox) -> Placed:
-        """What fills a box.
-
-        Raises
-        ------
-        TargetError
-            Nothing can.
-        """
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Of the shape, for the document and the name of the change."""
 
     def press(self, pointer: PointerEvent) -> None:
         self._start = self._end = pointer
@@ -294,7 +278,7 @@ class BoxTool(SketchTool, ABC):
         self.drop()
         if start is not None and distance(start.pixel, pointer.pixel) >= LEAST_DRAG:
             box = BoundingBox.spanned(start.place, pointer.place, pointer.shift)
-            self.context.draw(lambda: self.shape(box), self.name)
+            self.context.draw(lambda: self._shape(box), self._name)
 
     @property
     def busy(self) -> bool:
@@ -308,7 +292,7 @@ class BoxTool(SketchTool, ABC):
             return
         box = BoundingBox.spanned(self._start.place, self._end.place, self._end.shift)
         try:
-            ring = self.shape(box).ring
+            ring = self._shape(box).ring
         except TargetError:  # too flat so far; said when the button is let go
             return
         for part in (*self.context.mirror.all_images(ring), ring):
@@ -316,36 +300,22 @@ class BoxTool(SketchTool, ABC):
         paint_size(painter, self._end.pixel, box.size, palette)
 
 
-class FigureTool(BoxTool):
-    """A rectangle, ellipse, regular polygon or star."""
-
-    def __init__(self, context: SketchContext, kind: Figure) -> None:
-        super().__init__(context)
-        self._kind = kind
-        self.hint = mark("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
-
-    @property
-    def name(self) -> str:
-        return self._kind.value
-
-    def shape(self, box: BoundingBox) -> Placed:
-        return placed_figure(self._kind, box, self.context.corners, self.context.waist)
+def figure_tool(context: SketchContext, kind: Figure) -> BoxTool:
+    """Return the tool for a rectangle, ellipse, regular polygon or star."""
+    hint = mark("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
+    return BoxTool(context, kind.value, lambda box: placed_figure(kind, box, context.corners, context.waist), hint)
 
 
-class TextTool(BoxTool):
-    """A word whose letters hang together."""
+def text_tool(context: SketchContext) -> BoxTool:
+    """Return the tool for a word whose letters hang together."""
 
-    hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
-
-    @property
-    def name(self) -> str:
-        return TEXT
-
-    def shape(self, box: BoundingBox) -> Placed:
-        text = self.context.text.strip()
-        context = self.context
+    def shape(box: BoundingBox) -> Placed:
+        text = context.text.strip()
         ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
         return Placed.from_ring(ring, text or TEXT, notes)
+
+    hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
+    return BoxTool(context, TEXT, shape, hint)
 
 
 def letters(text: str, family: str = "", bold: bool = True, italic: bool = False) -> list[list[FloatArray]]:
@@ -377,4 +347,4 @@ def _paint_images(
 ) -> None:
     """Draw what the mirror makes of an unfinished line."""
     for image in context.mirror.all_images(np.array(places)):
-        paint_sketch(painter, transform.to_pixels(image), palette, corners=False)
+        paint_sketch(painter, transform.to_pixels(image), palette)

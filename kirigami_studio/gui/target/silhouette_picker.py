@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QIcon, QKeyEvent
-from PySide6.QtWidgets import QFrame, QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QListWidgetItem, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.layout_items import target_pixmap
-from kirigami_studio.gui.widgets.search_window import search_field
+from kirigami_studio.gui.widgets.layouts import column, label
+from kirigami_studio.gui.widgets.search_window import picture_list, search_field
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.outlines import silhouettes
 
@@ -26,23 +27,9 @@ class SilhouettePicker(QFrame):
         self.setObjectName("popup")
         self._listens = False
         self.search = search_field(tr("Search the library"))
-        self.list = QListWidget()
-        self.list.setObjectName("libraryList")
-        self.list.setAccessibleName(tr("Library silhouettes"))
-        self.list.setViewMode(QListView.ViewMode.IconMode)
-        self.list.setMovement(QListView.Movement.Static)
-        self.list.setResizeMode(QListView.ResizeMode.Adjust)
-        self.list.setIconSize(PICTURE)
-        self.list.setGridSize(QSize(104, 104))
-        self.list.setWordWrap(True)
-        self.about = QLabel(tr("Choose a silhouette"))
-        self.about.setObjectName("muted")
-        self.about.setWordWrap(True)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 12, 12, 10)
-        column.addWidget(self.search)
-        column.addWidget(self.list, 1)
-        column.addWidget(self.about)
+        self.list = picture_list("libraryList", tr("Library silhouettes"), PICTURE, QSize(104, 104))
+        self.about = label(tr("Choose a silhouette"), wraps=True)
+        column(self.search, (self.list, 1), self.about, on=self, margins=(12, 12, 12, 10))
         self._fill(palette)
         self.list.itemClicked.connect(self._on_activated)
         self.list.itemActivated.connect(self._on_activated)
@@ -91,12 +78,12 @@ class SilhouettePicker(QFrame):
             super().keyPressEvent(event)
 
     def _best(self) -> QListWidgetItem | None:
-        """The selected silhouette, or else the one whose title matches the search best."""
+        """The selected silhouette, or else the one whose name or title matches the search best."""
         shown = [self.list.item(row) for row in range(self.list.count()) if self._shown(row)]
         if self.list.currentItem() in shown:
             return self.list.currentItem()
         wanted = self.search.text().strip().lower()
-        return min(shown, key=lambda item: len(item.text()) - len(wanted), default=None)
+        return min(shown, key=lambda item: (item.data(NAME_ROLE) != wanted, len(item.text())), default=None)
 
     def _shown(self, row: int) -> bool:
         return not self.list.item(row).isHidden()
@@ -105,7 +92,8 @@ class SilhouettePicker(QFrame):
         self.list.setCurrentRow(-1)
         for row in range(self.list.count()):
             item = self.list.item(row)
-            item.setHidden(text.strip().lower() not in item.text().lower())
+            wanted, titles = text.strip().lower(), (item.text().lower(), item.data(NAME_ROLE))  # shown, command line
+            item.setHidden(not any(wanted in title for title in titles))
 
     def _describe(self, item: QListWidgetItem | None) -> None:
         self.about.setText(item.toolTip() if item is not None else tr("Choose a silhouette"))

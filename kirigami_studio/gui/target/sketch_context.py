@@ -57,45 +57,27 @@ ARROWS = {
 
 @dataclass(frozen=True, slots=True)
 class PointerEvent:
-    """Where the pointer is.
-
-    Attributes
-    ----------
-    pixel : QPointF
-    free, place : (x, y) float, mm
-        There, and at the nearest crossing of the grid when snapping holds.
-    shift, alt : bool
-        Whether these keys are held.
-    snaps : bool
-        Whether snapping holds.
-    """
+    """Where the pointer is."""
 
     pixel: QPointF
+    #: free, place: (x, y), mm; there, and at the nearest crossing of the grid when snapping holds.
     free: Place
     place: Place
+    #: shift, alt: whether these keys are held.
     shift: bool
     alt: bool = False
-    snaps: bool = False
+    snaps: bool = False  #: whether snapping holds
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A finished gesture.
+    """A finished gesture."""
 
-    Attributes
-    ----------
-    gesture : str
-        As it follows the word Undo: "Add star".
-    make : callable
-        Returns the shape that takes the place of the active object, or the whole new drawing; raises a TargetError
-        when there can be none.
-    merge_key : str or None
-        Changes of one key that follow each other undo together.
-    """
-
-    gesture: str
+    gesture: str  #: as it follows the word Undo: "Add star"
+    #: Returns the shape that takes the place of the active object, or the whole new drawing; raises a TargetError when
+    #: there can be none.
     make: Callable[[], Placed | Drawing]
-    merge_key: str | None = None
+    merge_key: str | None = None  #: changes of one key that follow each other undo together
 
 
 class SketchContext(QObject):
@@ -217,7 +199,7 @@ class SketchContext(QObject):
         """Change the selected objects by an arrangement of the table."""
         one, drawing = EVERY[name], self.drawing
         if self.can_arrange(name):
-            self.changed.emit(Change(tr(one.gesture), lambda: one.make(drawing)))
+            self.changed.emit(Change(one.gesture, lambda: one.make(drawing)))
 
     def set_axis(self, axis: Axis) -> None:
         """Mirror what is drawn from now on about axes through the middle of the target, or of the empty board."""
@@ -251,16 +233,9 @@ class SketchContext(QObject):
 
 
 class SketchTool:
-    """A tool that does nothing; subclasses override what they need.
+    """A tool that does nothing; subclasses override what they need."""
 
-    Attributes
-    ----------
-    hint : str
-        What to do, one or two sentences for the status line.
-    cursor : Qt.CursorShape
-    """
-
-    hint = ""
+    hint = ""  #: what to do, one or two sentences for the status line
     cursor = Qt.CursorShape.CrossCursor
 
     def __init__(self, context: SketchContext) -> None:

@@ -1,32 +1,94 @@
-"""The target beside its start: file, library, board, size, simplify and smooth, a traced picture's threshold."""
+"""The target beside its start: file, library, board, sizes, simplify and smooth, a traced picture's threshold."""
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QSlider,
-    QStyle,
-    QStyleOptionSlider,
-    QWidget,
-)
+from PySide6.QtWidgets import QSizePolicy, QSlider, QStyle, QStyleOptionSlider, QWidget
 
+from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.run.start_tile import StartTile
 from kirigami_studio.gui.target.arrangements import EVERY
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
-from kirigami_studio.gui.target.opened_size_row import OpenedSizeRow
 from kirigami_studio.gui.target.target_view import TargetView, Tool
-from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, muted_label
-from kirigami_studio.gui.widgets.number_field import LengthField, number_field
+from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
+from kirigami_studio.gui.widgets.layouts import Part, label, push_button, row, slider
+from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field
+from kirigami_studio.gui.widgets.readable import TIMES, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, reach_texts
 from kirigami_studio.studio.targets import Picture
+
+OPENED_SIZE = mark("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
+FOLLOWED = mark("The flat sheet is made as wide as it takes; a flat width can be typed under Fabrication instead.")
+TYPED_WIDTH = mark("This follows from the flat width that was typed; a size typed here takes its place.")
+
+
+class OpenedSizeRow(QWidget):
+    """Two sides that keep the target's proportions; reports the longer one."""
+
+    size_wanted = Signal(float)  #: longer side, mm
+    drawn_wanted = Signal(float)  #: the same, as drawn
+    edited = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._size: OpenedSize | None = None
+        self._folded = False
+        self.width_ = _side("openedWidth", tr("Width of the opened shape in millimetres"))
+        self.height_ = _side("openedHeight", tr("Height of the opened shape in millimetres"))
+        self.caption = label(tr("&Opened size"), self.width_)
+        self.caption.setMinimumWidth(self.caption.sizeHint().width())
+        self.drawn = ToolButton("drawnSize", "chain", tr("Back to the drawn size."))
+        self.drawn.setFixedSize(29, 29)
+        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), label(tr("mm")))
+        row(self.caption, 4, *sides, self.drawn, on=self, spacing=4)
+        self.width_.valueChanged.connect(lambda width: self._report(width, 0))
+        self.height_.valueChanged.connect(lambda height: self._report(height, 1))
+        for field in (self.width_, self.height_):
+            field.editingFinished.connect(self.edited)
+        self.drawn.clicked.connect(self._on_drawn)
+        self.show_size(None, follows=False)
+
+    def show_size(self, size: OpenedSize | None, *, follows: bool) -> None:
+        """Show the size, and whether the flat width ``follows`` it or the other way round; nothing without a target."""
+        self._size = size
+        self.fold(self._folded)
+        if size is None:
+            return
+        about = FOLLOWED if follows else TYPED_WIDTH
+        for field, side in zip((self.width_, self.height_), size.opened, strict=True):
+            with QSignalBlocker(field):
+                field.setValue(side)
+            field.setToolTip(f"{tr(OPENED_SIZE)}\n{tr(about)}")
+        self.drawn.setVisible(size.drawn is not None and not size.agrees)
+        if size.drawn is not None:
+            self.drawn.setToolTip(tr("Back to the drawn size, {size}.", size=readable_size(*size.drawn)))
+
+    def fold(self, folded: bool) -> None:
+        """Give the room to the drawing board, which has sizes of its own."""
+        self._folded = folded
+        self.setVisible(self._size is not None and not folded)
+
+    def _report(self, side: float, which: int) -> None:
+        if self._size is not None:
+            self.size_wanted.emit(side * max(self._size.opened) / self._size.opened[which])
+
+    def _on_drawn(self) -> None:
+        if self._size is not None and self._size.drawn is not None:
+            self.drawn_wanted.emit(max(self._size.drawn))
+            self.edited.emit()
+
+
+def _side(name: str, accessible: str) -> LengthField:
+    field = decimal_field(LengthField, name, 1.0, LARGEST_MM, step=5.0, accessible=accessible)
+    compact(field, 56)  # without buttons, in the style sheet: their room is the numbers'
+    return field
+
 
 #: Slider steps from nothing to most.
 REFINE_STEPS = 100
@@ -75,41 +137,23 @@ class TargetPanel(Card):
         for name, icon, tip, checkable in BUTTONS:
             self.buttons[name] = ToolButton(name, icon, tr(tip), checkable)
             self.header.addWidget(self.buttons[name])
-        self.facts = ElidedLabel()
-        self.size_ = QLabel()
-        self.size_.setObjectName("muted")
-        line = QHBoxLayout()
-        line.addWidget(self.facts, 1)
-        line.addWidget(self.size_)
-        self.notes = muted_label()
-        self.notes.setObjectName("warning")
+        self.facts, self.size_ = ElidedLabel(), label()
+        self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach = ElidedLabel()
-        self.reach.setObjectName("warning")
+        self.reach, self.start_refusal = ElidedLabel(), ElidedLabel()
         self.reach.setAccessibleName(tr("Details that the grid may miss"))
-        self.reach.setVisible(False)
-        self.start_refusal = ElidedLabel()
-        self.start_refusal.setObjectName("warning")
         self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        self.start_refusal.setVisible(False)
-        self.threshold = ThresholdBar()
-        self.body.addWidget(self.tools)
-        self.start = StartTile()
-        boards = QHBoxLayout()
-        boards.setSpacing(8)
-        boards.addWidget(self.start)
-        boards.addWidget(self.view, 1)
-        self.body.addLayout(boards, 1)
-        self.body.addLayout(line)
-        self.opened = OpenedSizeRow()
-        self.body.addWidget(self.opened)
-        self.body.addWidget(self.start_refusal)
-        self.body.addWidget(self.reach)
-        self.body.addWidget(self.refine)
-        self.body.addWidget(self.threshold)
-        self.body.addWidget(self.notes)
+        for warning in (self.reach, self.start_refusal):
+            warning.setObjectName("warning")
+            warning.setVisible(False)
+        self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
         self.loose = LooseRow(self.view.context)
-        self.body.addWidget(self.loose)
+        self.body.addWidget(self.tools)
+        self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
+        self.body.addLayout(row((self.facts, 1), self.size_))
+        warnings = (self.start_refusal, self.reach)
+        for part in (self.opened, *warnings, self.refine, self.threshold, self.notes, self.loose):
+            self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
         self.buttons["edit"].clicked.connect(self.set_editing)
         self.tools.tool_wanted.connect(self.set_tool)
@@ -245,39 +289,34 @@ class RefineBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
         self._ratio = 1.0
         self._size = (0.0, 0.0)
         self.sliders: dict[str, QSlider] = {}
+        parts: list[Part] = []
         for name, caption, accessible, tip in SLIDERS:
-            slider = JumpSlider()
-            slider.setObjectName("threshold")
-            slider.setRange(0, REFINE_STEPS)
-            slider.setPageStep(REFINE_STEPS // 10)
-            slider.setAccessibleName(tr(accessible))
-            slider.setToolTip(tr(tip))
-            slider.setMinimumWidth(60)
-            slider.valueChanged.connect(lambda value, name=name: self._slide(name, value))
-            slider.sliderReleased.connect(lambda name=name: self._settle(name))
-            self.sliders[name] = slider
-            row.addWidget(_caption(tr(caption), slider))
-            row.addWidget(slider, 1)
-        self.width_ = _length(
-            tr("Target width"), tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        )
-        self.height_ = _length(
-            tr("Target height"), tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        )
-        for caption, field in ((tr("Size"), self.width_), ("\N{MULTIPLICATION SIGN}", self.height_)):
-            row.addWidget(_caption(caption, field))
-            row.addWidget(field)
+            own = JumpSlider()
+            own.setObjectName("threshold")
+            own.setRange(0, REFINE_STEPS)
+            own.setPageStep(REFINE_STEPS // 10)
+            own.setAccessibleName(tr(accessible))
+            own.setToolTip(tr(tip))
+            own.setMinimumWidth(60)
+            own.valueChanged.connect(lambda value, name=name: self._slide(name, value))
+            own.sliderReleased.connect(lambda name=name: self._settle(name))
+            self.sliders[name] = own
+            parts += [label(tr(caption), own), (own, 1)]
+        width = tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        height = tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
+        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"))
+        self.width_ = length(accessible=tr("Target width"), tip=width)
+        self.height_ = length(accessible=tr("Target height"), tip=height)
+        parts += [label(tr("Size"), self.width_), self.width_]
+        parts += [label("\N{MULTIPLICATION SIGN}", self.height_), self.height_]
         self.proportions = ToolButton(
             "keepProportions", "chain", tr("Keep proportions. Off: change width and height separately."), True
         )
         self.proportions.setChecked(True)
-        row.addWidget(self.proportions)
+        row(*parts, self.proportions, on=self, spacing=8)
         self.width_.valueChanged.connect(self._on_width)
         self.height_.valueChanged.connect(self._on_height)
 
@@ -300,15 +339,15 @@ class RefineBar(QWidget):
 
     def restart(self) -> None:
         """The sliders stand for another target: nothing is simplified or smoothed yet."""
-        for slider in self.sliders.values():
-            with QSignalBlocker(slider):
-                slider.setValue(0)
+        for own in self.sliders.values():
+            with QSignalBlocker(own):
+                own.setValue(0)
 
     def _slide(self, name: str, value: int) -> None:
-        for other, slider in self.sliders.items():
+        for other, own in self.sliders.items():
             if other != name:
-                with QSignalBlocker(slider):
-                    slider.setValue(0)
+                with QSignalBlocker(own):
+                    own.setValue(0)
         if self.sliders[name].isSliderDown():
             self.previewed.emit(name, value / REFINE_STEPS)
         else:
@@ -323,7 +362,6 @@ class JumpSlider(QSlider):
 
     def __init__(self) -> None:
         super().__init__(Qt.Orientation.Horizontal)
-        self._offset = 0.0
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         if event.button() is not Qt.MouseButton.LeftButton:
@@ -331,33 +369,15 @@ class JumpSlider(QSlider):
             return
         option = QStyleOptionSlider()
         self.initStyleOption(option)
-        handle = self.style().subControlRect(
-            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, self
-        )
-        on_handle = handle.contains(event.position().toPoint())
-        self._offset = event.position().x() - handle.left() if on_handle else 0.5 * handle.width()
+        part = QStyle.SubControl.SC_SliderHandle
+        handle = self.style().subControlRect(QStyle.ComplexControl.CC_Slider, option, part, self)
         self.setSliderDown(True)
-        if not on_handle:
-            self.setValue(self._value_at(event.position().x(), handle.width()))
-        event.accept()
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self.isSliderDown():
-            option = QStyleOptionSlider()
-            self.initStyleOption(option)
-            width = self.style().pixelMetric(QStyle.PixelMetric.PM_SliderLength, option, self)
-            self.setValue(self._value_at(event.position().x(), width))
-            event.accept()
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        if self.isSliderDown() and event.button() is Qt.MouseButton.LeftButton:
-            self.setSliderDown(False)
-            event.accept()
-
-    def _value_at(self, x: float, handle: int) -> int:
-        return QStyle.sliderValueFromPosition(
-            self.minimum(), self.maximum(), round(x - self._offset), max(self.width() - handle, 1)
-        )
+        if not handle.contains(event.position().toPoint()):
+            middle = Qt.MouseButton.MiddleButton  # with which sliders go to the pointer
+            event = QMouseEvent(
+                event.type(), event.position(), event.globalPosition(), middle, middle, event.modifiers()
+            )
+        super().mousePressEvent(event)
 
 
 class ThresholdBar(QWidget):
@@ -368,32 +388,15 @@ class ThresholdBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        caption = QLabel(tr("&Threshold"))
-        caption.setObjectName("muted")
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("threshold")
-        self.slider.setRange(1, GREY_LEVELS - 1)
-        self.slider.setPageStep(GREY_LEVELS // 20)
-        self.slider.setAccessibleName(tr("Threshold between shape and background, from black to white"))
-        self.slider.setToolTip(
-            tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
-        )
-        self.number = QLabel()
-        self.number.setObjectName("muted")
+        accessible = tr("Threshold between shape and background, from black to white")
+        tip = tr("Grey level that separates shape from background: 0 % is black, 100 % white (arrow keys: 0.5 %)")
+        self.slider = slider("threshold", accessible, tip, GREY_LEVELS - 1, GREY_LEVELS // 20, first=1)
+        self.number = label()
         self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.number.setMinimumWidth(self.number.fontMetrics().horizontalAdvance("99.5 %"))
-        self.automatic = QPushButton(tr("Auto"))
-        self.automatic.setObjectName("small")
-        self.automatic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.automatic.setToolTip(tr("Reset to the automatic threshold"))
-        caption.setBuddy(self.slider)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
-        row.addWidget(caption)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.number)
-        row.addWidget(self.automatic)
+        self.automatic = push_button(tr("Auto"), tr("Reset to the automatic threshold"))
+        caption = label(tr("&Threshold"), self.slider)
+        row(caption, (self.slider, 1), self.number, self.automatic, on=self, spacing=8)
         self.slider.valueChanged.connect(self._on_level)
         self.slider.sliderReleased.connect(self.edited)
 
@@ -410,22 +413,3 @@ class ThresholdBar(QWidget):
         self.changed.emit(value / GREY_LEVELS)
         if not self.slider.isSliderDown():
             self.edited.emit()
-
-
-def _caption(text: str, buddy: QWidget) -> QLabel:
-    label = QLabel(text)
-    label.setObjectName("muted")
-    label.setBuddy(buddy)
-    return label
-
-
-def _length(name: str, tip: str) -> LengthField:
-    field = LengthField()
-    field.setRange(0.1, LARGEST_MM)
-    field.setDecimals(1)
-    field.setSuffix(tr(" mm"))
-    number_field(field)
-    field.setKeyboardTracking(False)
-    field.setAccessibleName(name)
-    field.setToolTip(tip)
-    return field

@@ -1,17 +1,14 @@
-"""The target: its sources, its drawing board, the designs that a change of it discards; the start beside it; and the
-second target.
-"""
+"""The target: its sources, its drawing board, the designs that a change of it discards; and the start beside it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QObject
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.run.second_target_row import SecondTargetRow
 from kirigami_studio.gui.run.settings_editor import SettingsEditor
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.run.start_tile import StartTile
@@ -23,7 +20,7 @@ from kirigami_studio.gui.target.reshaping import TargetReshaper
 from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.gui.target.targeting import SecondReader, StartReader, Targeting
+from kirigami_studio.gui.target.targeting import StartReader, Targeting
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
@@ -37,12 +34,8 @@ class TargetPresenter(QObject):
 
     Parameters
     ----------
-    panel : TargetPanel
-    session : Session
-    targeting : Targeting
     pasting : PasteReader
         Reads what is dropped on the panel.
-    undo : callable
     """
 
     def __init__(
@@ -72,7 +65,7 @@ class TargetPresenter(QObject):
     def _connect_sources(self, pasting: PasteReader) -> None:
         panel, targeting = self._panel, self._targeting
         panel.buttons["clearTarget"].clicked.connect(targeting.clear)
-        panel.view.content_dropped.connect(pasting.take)
+        panel.view.drops.content_dropped.connect(pasting.take)
         panel.threshold.changed.connect(targeting.change_threshold)
         panel.threshold.automatic.clicked.connect(lambda: targeting.change_threshold(None))
         panel.threshold.edited.connect(targeting.tracer.end_drag)
@@ -178,8 +171,7 @@ class TargetPresenter(QObject):
             self._drop_question()  # what was drawn is gone by another way, and with it what could be replaced
             if self._offered is not None:
                 name = tr(self._offered.name)
-                sentence = tr("{name} was not taken. Open it again to use it.", name=name)
-                self._session.post(Message(sentence, Tone.HINT))
+                self._session.hint(tr("{name} was not taken. Open it again to use it.", name=name))
         drawn = document.target is not before.target or document.drawing != before.drawing or _moved(document, before)
         if drawn or size_of(document) != self._size:
             self._show_target(document)
@@ -203,46 +195,23 @@ def _moved(document: Document, before: Document) -> bool:
     return any(one is not other for one, other in zip(document.drawing, before.drawing, strict=False))
 
 
-#: What opens each source of an outline, by its kind.
-Openers = Mapping[str, Callable[[], object]]
-
-
 class StartPresenter(QObject):
-    """Shows the start beside the target, and opens what another one can be taken from.
+    """Shows the start beside the target.
 
     Parameters
     ----------
-    tile : StartTile
     settings : SettingsPanel
         Has the list of starts, and the grid that a plain rectangle follows.
-    session : Session
-    reader : StartReader
-    openers : mapping of str to callable
-    editor : SettingsEditor
     """
 
     def __init__(
-        self,
-        tile: StartTile,
-        settings: SettingsPanel,
-        session: Session,
-        *,
-        reader: StartReader,
-        openers: Openers,
-        editor: SettingsEditor,
+        self, tile: StartTile, settings: SettingsPanel, session: Session, reader: StartReader, editor: SettingsEditor
     ) -> None:
         super().__init__(tile)
-        self._tile, self._settings, self._session = tile, settings, session
-        self._openers, self._editor = openers, editor
+        self._tile, self._settings, self._session, self._editor = tile, settings, session, editor
         tile.chosen.connect(self._choose)
-        tile.file_dropped.connect(reader.open)
-        tile.other_wanted.connect(self.open_other)
-        settings.other_start_wanted.connect(self.open_other)
+        tile.drops.file_dropped.connect(reader.open)
         self.show()
-
-    def open_other(self, kind: str) -> None:
-        """Open the library, a file, the board or the pairs."""
-        self._openers[kind]()
 
     def _choose(self, start: StartShape) -> None:
         self._editor.change(start=start)
@@ -256,17 +225,3 @@ class StartPresenter(QObject):
         if stage is not None and starts_as(stage.candidate, start):
             flat = flat_size(stage.design.deployment, self._session.width_of(stage.candidate))
         self._tile.show_start(start, grid, document.fabrication.width_mm, flat)
-
-
-class SecondPresenter(QObject):
-    """Opens what a second target can be taken from."""
-
-    def __init__(self, row: SecondTargetRow, reader: SecondReader, openers: Openers) -> None:
-        super().__init__(row)
-        self._openers = openers
-        row.other_wanted.connect(self.open_other)
-        row.file_dropped.connect(reader.open)
-
-    def open_other(self, kind: str) -> None:
-        """Open the library, a file or the board."""
-        self._openers[kind]()

@@ -1,23 +1,24 @@
-"""The target: shown, and drawn on with the tools beside it."""
+"""The target: shown, and drawn on with the tools beside it; the picture under it lies still while it is traced."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QMimeData, QPointF, QRectF, QSize, Qt, Signal
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
-    QColor,
     QFocusEvent,
+    QImage,
     QKeyEvent,
     QMouseEvent,
     QPainter,
-    QPen,
 )
 from PySide6.QtWidgets import QWidget
 
@@ -26,11 +27,11 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.pose_tool import PoseTool
 from kirigami_studio.gui.target.rulers import RULER, Rulers
-from kirigami_studio.gui.target.shape_tools import FigureTool, Freehand, Pen, TextTool
+from kirigami_studio.gui.target.shape_tools import Freehand, Pen, figure_tool, text_tool
 from kirigami_studio.gui.target.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
-from kirigami_studio.gui.target.underlay import Underlay, picture_image
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import (
     paint_axes,
     paint_grid,
@@ -56,6 +57,8 @@ ROOM = 0.2
 SAME_SCALE = 1e-6
 #: Millimetres of an inch.
 INCH = 25.4
+#: How much of the picture below the board shines through.
+OPACITY = 0.5
 
 
 class Tool(Enum):
@@ -76,15 +79,13 @@ class Tool(Enum):
 class TargetView(Canvas):
     """Shows one outline on a board in mm and lets the user change it."""
 
-    file_dropped = Signal(str)
-    content_dropped = Signal(QMimeData)  #: a picture or a text
     tool_left = Signal()
     editing_left = Signal()
     hint = Signal(str)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._outline: Outline | None = None
+        self.outline: Outline | None = None
         self._preview: Placed | None = None
         self.reach: Reach | None = None
         self.underlay: Underlay | None = None
@@ -94,29 +95,19 @@ class TargetView(Canvas):
         self.context = SketchContext(self)
         self.context.repaint.connect(self.update)
         self.context.tool_done.connect(self.tool_left)
-        self._tool = Tool.LOOK
+        self.tool = Tool.LOOK
         self._tools = _tools(self.context)
         self.rulers = Rulers(self.context)
         self.drops = FileDrops(self, with_content=True)
-        self.drops.file_dropped.connect(self.file_dropped)
-        self.drops.content_dropped.connect(self.content_dropped)
         self.setMouseTracking(True)
         self.setObjectName("targetView")
         self.setAccessibleName(tr("Target silhouette"))
         self.setToolTip(tr("The shape the sheet opens into. Drop a PNG, JPG, SVG, DXF or JSON file here."))
 
     @property
-    def outline(self) -> Outline | None:
-        return self._outline
-
-    @property
-    def tool(self) -> Tool:
-        return self._tool
-
-    @property
     def active(self) -> SketchTool:
         """What follows the pointer now."""
-        return self._tools[self._tool]
+        return self._tools[self.tool]
 
     def show_outline(
         self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()
@@ -140,7 +131,7 @@ class TargetView(Canvas):
                 under = under.laid_under(drawn, traced)
         elif drawn is None:
             under = None
-        self._outline, self._preview, self.reach = outline, None, None
+        self.outline, self._preview, self.reach = outline, None, None
         target = drawn or (None if outline is None else Placed.on_board(outline))
         alone = () if target is None else (target,)
         self.context.show(target, tuple(map(self._placed, objects)) if len(objects) > 1 else alone)
@@ -177,7 +168,7 @@ class TargetView(Canvas):
     def set_tool(self, tool: Tool) -> None:
         """Change what the pointer does."""
         self.active.drop()
-        self._tool = tool
+        self.tool = tool
         self.active.sync()
         self.setCursor(self.active.cursor)
         if tool is not Tool.LOOK:
@@ -206,8 +197,7 @@ class TargetView(Canvas):
         now = self.transform() or transform
         middle = np.array([0.5 * (chosen.left + chosen.right), 0.5 * (chosen.bottom + chosen.top)])
         self._shift += box.center() - QPointF(*now.to_pixels(middle).tolist())
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom_to_real_size(self) -> None:
         """Show a millimetre as long as it is on paper."""
@@ -243,7 +233,7 @@ class TargetView(Canvas):
             return self._board
         if self.context.placed is not None:
             return Bounds.of(self.context.placed.ring)
-        return None if self._tool is Tool.LOOK else BOARD
+        return None if self.tool is Tool.LOOK else BOARD
 
     def scene_box(self) -> QRectF:
         """The view, on the board without its rulers."""
@@ -303,8 +293,7 @@ class TargetView(Canvas):
         if self._editing and transform is not None and not self.rendering:
             self.rulers.paint(painter, transform, QRectF(self.rect()), self.palette_)
         if self.drops.here:
-            painter.setPen(QPen(QColor(self.palette_.accent), 2.0, Qt.PenStyle.DashLine))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
+            ink(painter, self.palette_.accent, 2.0, dashed=True)
             painter.drawRoundedRect(self.rect().adjusted(6, 6, -6, -6), 8, 8)
 
     # the pointer and the keys --------------------------------------------------------------------------------------
@@ -312,7 +301,7 @@ class TargetView(Canvas):
     @property
     def _looking(self) -> bool:
         """Whether a drag moves the view."""
-        return self._panning or self._tool is Tool.LOOK
+        return self._panning or self.tool is Tool.LOOK
 
     def event(self, event: QEvent) -> bool:
         """Keys of the board come before the window's commands: Qt asks first whose key it is (ShortcutOverride)."""
@@ -345,7 +334,7 @@ class TargetView(Canvas):
             super().mousePressEvent(event)
             return
         pointer = self._pointer_event(event)
-        takes = self._tool is Tool.POSE and self.context.drawing.at(pointer.free) is None
+        takes = self.tool is Tool.POSE and self.context.drawing.at(pointer.free) is None
         if not (self._editing and self.rulers.press(pointer.pixel, takes=takes)):
             self.active.press(pointer)
         self.update()
@@ -410,7 +399,7 @@ class TargetView(Canvas):
             self.active.drop()
         elif self.active.deselect():
             return
-        elif self._tool not in (Tool.POSE, Tool.LOOK):
+        elif self.tool not in (Tool.POSE, Tool.LOOK):
             self.tool_left.emit()
         else:
             self.editing_left.emit()
@@ -425,9 +414,53 @@ def _tools(context: SketchContext) -> dict[Tool, SketchTool]:
         Tool.POSE: PoseTool(context),
         Tool.FREEHAND: Freehand(context),
         Tool.POLYGON: Pen(context),
-        Tool.RECTANGLE: FigureTool(context, Figure.RECTANGLE),
-        Tool.ELLIPSE: FigureTool(context, Figure.ELLIPSE),
-        Tool.REGULAR: FigureTool(context, Figure.REGULAR),
-        Tool.STAR: FigureTool(context, Figure.STAR),
-        Tool.TEXT: TextTool(context),
+        Tool.RECTANGLE: figure_tool(context, Figure.RECTANGLE),
+        Tool.ELLIPSE: figure_tool(context, Figure.ELLIPSE),
+        Tool.REGULAR: figure_tool(context, Figure.REGULAR),
+        Tool.STAR: figure_tool(context, Figure.STAR),
+        Tool.TEXT: text_tool(context),
     }
+
+
+def picture_image(levels: NDArray[np.uint8]) -> QImage:
+    """Return a picture to draw, made of (H, W, 4) levels: red, green, blue, opacity."""
+    height, width = levels.shape[:2]
+    return QImage(levels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888).copy()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Underlay:
+    """A picture at its place on the board."""
+
+    path: Path
+    image: QImage  #: reduced for drawing
+    corner: tuple[float, float]  #: (x, y), mm; its lower left corner
+    pixel: float  #: mm; side of one source pixel
+    size: tuple[int, int]  #: (width, height)
+
+    @classmethod
+    def under(cls, placed: Placed, path: Path, image: QImage, traced: Traced) -> Underlay:
+        """Lay a picture under the target that was traced from it."""
+        return cls(path, image, (0.0, 0.0), 1.0, traced.picture).laid_under(placed, traced)
+
+    def laid_under(self, placed: Placed, traced: Traced) -> Underlay:
+        """The same picture where its contour lies as the target does."""
+        pixel = placed.scale / traced.scale
+        x, y = (centre - pixel * own for centre, own in zip(placed.centre, traced.centre, strict=True))
+        return replace(self, corner=(x, y), pixel=pixel)
+
+    def place(self, traced: Traced) -> Placed:
+        """Where another contour of the same picture lies on the board."""
+        x, y = (corner + self.pixel * own for corner, own in zip(self.corner, traced.centre, strict=True))
+        return Placed(traced.outline, self.pixel * traced.scale, (x, y))
+
+    def paint(self, painter: QPainter, transform: ViewTransform) -> None:
+        """Draw the picture, half transparent."""
+        width, height = (self.pixel * count * transform.scale for count in self.size)
+        left = transform.origin[0] + transform.scale * self.corner[0]
+        bottom = transform.origin[1] - transform.scale * self.corner[1]
+        painter.save()
+        painter.setOpacity(OPACITY)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.drawImage(QRectF(QPointF(left, bottom - height), QPointF(left + width, bottom)), self.image)
+        painter.restore()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from enum import Enum
 from functools import partial
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from PySide6.QtCore import QObject, Signal
 
 from kirigami_studio.evaluate.second_target import USUAL_PHI, SecondTarget
-from kirigami_studio.foundation.steps import Steps
+from kirigami_studio.foundation.steps import Cancel, Steps
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.generation import DesignRun
 from kirigami_studio.gui.run.target_reader import next_run
@@ -198,21 +199,30 @@ class SourceReader(QObject):
         self.read.emit(found.outline, reason)
 
 
-class LatestRead(Generic[T]):
-    """Reads one thing at a time that is chosen by a name, a file or a drawing; the newest wins.
+class OutlineReader(QObject, Generic[T]):
+    """Reads an outline beside the target: a name, a file or a drawing; the newest wins.
 
     Why one was refused is said until another one is read, or chosen elsewhere.
     """
 
-    def __init__(self, session: Session, take: Callable[[T], None]) -> None:
-        self._session, self._on_result = session, take
-        self._job = LatestJob[T](session.queue)
+    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
+
+    def __init__(
+        self, session: Session, reading: Callable[[str, Cancel], Iterator[T | PartsRead]], parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._session, self._reading = session, reading
+        self._job = LatestJob[T | PartsRead](session.queue)
         self._refusal: Message | None = None
 
-    def start(self, name: str, steps: Steps[T]) -> None:
+    def open(self, source: str) -> None:
+        """Read a file, or a silhouette of the library by name."""
+        self.read(tr("reading {name}", name=Path(source).name), partial(self._reading, source))
+
+    def read(self, name: str, steps: Steps[T | PartsRead]) -> None:
         """Read it in the worker; ``name`` follows the word "while" in messages."""
         self.stop()
-        self._job.start(name, steps, JobCallbacks(self._on_result, on_failed=self._refuse))
+        self._job.start(name, steps, JobCallbacks(self._on_read, on_failed=self._refuse))
 
     def stop(self) -> None:
         """Forget what is still being read, and why the last one was refused: something else took its place."""
@@ -221,26 +231,37 @@ class LatestRead(Generic[T]):
             self._session.withdraw(self._refusal)
             self._refusal = None
 
+    def take_chosen(self, outline: Outline, usual: bool) -> None:
+        """Take the outline that was made of chosen parts, the usual one or another."""
+        self.take(outline)
+
+    @abstractmethod
+    def take(self, outline: Outline) -> None:
+        """Take a shape that was drawn, or made of chosen parts."""
+
+    @abstractmethod
+    def use(self, found: T) -> None:
+        """Bring into the document what was read."""
+
+    def _on_read(self, found: T | PartsRead) -> None:
+        if isinstance(found, PartsRead):
+            self.choice_wanted.emit(found)
+        else:
+            self.use(found)
+
     def _refuse(self, sentence: str, trace: str) -> None:
         self._refusal = Message(sentence, Tone.ERROR, trace)
         self._session.report_failure(sentence, trace)
 
 
-class StartReader(QObject):
+class StartReader(OutlineReader[StartShape]):
     """Reads the outline that sheets are to have while they are flat; a shape that cannot be one changes nothing."""
 
     checked = Signal(Outline, str)  #: a shape that is being drawn, and why the next run would refuse it, or ""
-    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
 
     def __init__(self, session: Session, parent: QObject) -> None:
-        super().__init__(parent)
-        self._session = session
-        self._read = LatestRead[StartShape | PartsRead](session, self._on_result)
+        super().__init__(session, reading_start, parent)
         self._check = LatestJob[str](session.queue)
-
-    def open(self, source: str) -> None:
-        """Read a file, or a silhouette of the library by name."""
-        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_start, source))
 
     def check(self, outline: Outline) -> None:
         """Find out whether the next run would refuse a shape that is being drawn."""
@@ -249,62 +270,30 @@ class StartReader(QObject):
         callbacks: JobCallbacks[str] = JobCallbacks(partial(self.checked.emit, outline))
         self._check.start(tr("checking the start"), steps, callbacks)
 
-    def take_chosen(self, outline: Outline, usual: bool) -> None:
-        """Take the outline that was made of chosen parts, the usual one or another."""
-        self.draw(outline)
+    def take(self, outline: Outline) -> None:
+        self.read(tr("reading the start"), partial(making_start, outline))
 
-    def draw(self, outline: Outline) -> None:
-        """Take a shape that was drawn."""
-        self._read.start(tr("reading the start"), partial(making_start, outline))
-
-    def stop(self) -> None:
-        """Forget what is still being read: another start was chosen."""
-        self._read.stop()
-
-    def _on_result(self, found: StartShape | PartsRead) -> None:
-        if isinstance(found, PartsRead):
-            self.choice_wanted.emit(found)
-            return
+    def use(self, found: StartShape) -> None:
         self._session.apply(edits.set_settings(self._session.document, start=found))
         self._session.history.end_drag()
         self._session.set_status(tr("Sheets start as {name}. Press Generate (Ctrl+G).", name=found.name))
 
 
-class SecondReader(QObject):
+class SecondReader(OutlineReader[TargetRead]):
     """Reads the second target; it is shown at the angle, and with the weight, of the one before."""
 
-    choice_wanted = Signal(PartsRead)  #: answered by :meth:`take_chosen`
-
     def __init__(self, session: Session, parent: QObject) -> None:
-        super().__init__(parent)
-        self._session = session
-        self._read = LatestRead[TargetRead | PartsRead](session, self._on_read)
+        super().__init__(session, reading_second, parent)
 
-    def open(self, source: str) -> None:
-        """Read a file, or a silhouette of the library by name."""
-        self._read.start(tr("reading {name}", name=Path(source).name), partial(reading_second, source))
-
-    def _on_read(self, found: TargetRead | PartsRead) -> None:
-        if isinstance(found, PartsRead):
-            self.choice_wanted.emit(found)
-        else:
-            self.take(found.outline)
-
-    def take_chosen(self, outline: Outline, usual: bool) -> None:
-        """Take the outline that was made of chosen parts, the usual one or another."""
-        self.take(outline)
+    def use(self, found: TargetRead) -> None:
+        self.take(found.outline)
 
     def take(self, outline: Outline) -> None:
-        """Take a shape that was read or drawn."""
         self.stop()
         session, settings = self._session, self._session.document.settings
         session.apply(edits.set_settings(session.document, second=second_for(settings, outline)))
         session.history.end_drag()
         session.set_status(tr("Sheets pass {name} on their way. Press Generate (Ctrl+G).", name=outline.name))
-
-    def stop(self) -> None:
-        """Forget what is still being read: another second target was chosen, or none."""
-        self._read.stop()
 
 
 def second_for(settings: DesignSettings, outline: Outline) -> SecondTarget:

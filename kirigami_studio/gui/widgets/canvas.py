@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPe
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -34,7 +35,6 @@ class Canvas(QWidget):
     Subclasses override :meth:`scene_bounds`, :meth:`paint_scene` and :meth:`empty_state`.
     """
 
-    zoom_changed = Signal(float)
     view_changed = Signal(float, QPointF)  #: zoom and shift (pixels), after a gesture has changed them
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -43,7 +43,7 @@ class Canvas(QWidget):
         self._zoom = 1.0
         self._shift = QPointF(0.0, 0.0)
         self._grip: QPointF | None = None
-        self._overlays: frozenset[Enum] = frozenset()
+        self.overlays: frozenset[Enum] = frozenset()
         self.rendering = False  #: whether it is drawn into a picture instead of the screen
         self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -72,7 +72,6 @@ class Canvas(QWidget):
     # public ----------------------------------------------------------------------------------------------------------
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self.palette_ = palette
         self.update()
 
@@ -92,9 +91,7 @@ class Canvas(QWidget):
     def fit(self) -> None:
         """Show everything again."""
         self._zoom, self._shift = 1.0, QPointF(0.0, 0.0)
-        self.zoom_changed.emit(self._zoom)
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom(self, factor: float, about: QPointF | None = None) -> None:
         """Zoom, keeping the pixel ``about`` (the middle unless given) in place."""
@@ -104,9 +101,7 @@ class Canvas(QWidget):
         offset = (about or middle) - middle
         self._shift = offset + (self._shift - offset) * factor
         self._zoom = wanted
-        self.zoom_changed.emit(self._zoom)
-        self._emit_view()
-        self.update()
+        self._show_view()
 
     def zoom_to(self, place: tuple[float, float], zoom: float) -> None:
         """Bring a place of the world to the middle, enlarged ``zoom`` times over the fitted picture."""
@@ -116,8 +111,7 @@ class Canvas(QWidget):
         if transform is not None:
             x, y = transform.to_pixels(np.array(place)).tolist()
             self._shift += self.scene_box().center() - QPointF(x, y)
-            self._emit_view()
-            self.update()
+            self._show_view()
 
     def render_to(self, painter: QPainter, size: QSize) -> None:
         """Render the view into any paint device, as large as ``size`` allows, without the background dots."""
@@ -138,20 +132,20 @@ class Canvas(QWidget):
     @contextmanager
     def without_overlays(self) -> Iterator[None]:
         """Draw no overlays inside this context."""
-        before, self._overlays = self._overlays, frozenset()
+        before, self.overlays = self.overlays, frozenset()
         try:
             yield
         finally:
-            self._overlays = before
+            self.overlays = before
 
     def set_view(self, zoom: float, shift: QPointF) -> None:
         """Show the part that another canvas of the same size and scene shows; no signal is emitted for it."""
         self._zoom, self._shift = zoom, QPointF(shift)
-        self.zoom_changed.emit(self._zoom)
         self.update()
 
-    def _emit_view(self) -> None:
+    def _show_view(self) -> None:
         self.view_changed.emit(self._zoom, QPointF(self._shift))
+        self.update()
 
     # events --------------------------------------------------------------------------------------------------------
 
@@ -179,8 +173,7 @@ class Canvas(QWidget):
             self._shift += event.position() - self._grip
             self._grip = event.position()
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
-            self._emit_view()
-            self.update()
+            self._show_view()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         self._grip = None
@@ -190,8 +183,7 @@ class Canvas(QWidget):
         self.fit()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         self._paint_background(painter)
         self._paint_content(painter)
         painter.end()
@@ -221,11 +213,8 @@ class Canvas(QWidget):
         One row of dots is drawn and laid down as often as there are rows: a view of 1700 x 1300 has 4500 of them.
         """
         ratio = self.devicePixelRatioF()
-        picture = QPixmap(round(self.width() * ratio), round(self.height() * ratio))
-        picture.setDevicePixelRatio(ratio)
-        picture.fill(Qt.GlobalColor.transparent)
-        painter = QPainter(picture)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        picture = blank(self.size(), ratio)
+        painter = painter_on(picture)
         self._paint_ground(painter)
         dots = self._row_of_dots(ratio)
         for y in range(GRID_STEP // 2 + (self.height() % GRID_STEP) // 2, self.height() - 4, GRID_STEP):
@@ -234,17 +223,13 @@ class Canvas(QWidget):
         return picture
 
     def _paint_ground(self, painter: QPainter) -> None:
-        painter.setPen(QPen(QColor(self.palette_.border), 1.0))
-        painter.setBrush(QColor(self.palette_.canvas))
+        ink(painter, self.palette_.border, fill=self.palette_.canvas)
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 7, 7)
 
     def _row_of_dots(self, ratio: float) -> QPixmap:
         """The dots across the view; ``ratio`` device pixels per pixel."""
-        row = QPixmap(round(self.width() * ratio), math.ceil(DOT_ROW * ratio))
-        row.setDevicePixelRatio(ratio)
-        row.fill(Qt.GlobalColor.transparent)
-        painter = QPainter(row)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        row = blank(QSize(self.width(), DOT_ROW), ratio)
+        painter = painter_on(row)
         pen = QPen(QColor(self.palette_.grid), 2.0)
         pen.setCapStyle(Qt.PenCapStyle.RoundCap)
         painter.setPen(pen)

@@ -7,7 +7,6 @@ from PySide6.QtGui import QAction, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QFrame,
-    QHBoxLayout,
     QLabel,
     QLayout,
     QScrollArea,
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.fitted_text import fits, fitted, shortened
+from kirigami_studio.gui.widgets.layouts import column, label, row
 from kirigami_studio.gui.widgets.number_field import number_field
 from kirigami_studio.gui.widgets.theme import Palette
 
@@ -32,19 +32,10 @@ class Card(QFrame):
     def __init__(self, title: str, parent: QWidget | None = None, right_inset: int = INSET) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(INSET, 8, right_inset, INSET)
-        outer.setSpacing(8)
-        self.header = QHBoxLayout()
-        self.header.setSpacing(4)
-        self.title = QLabel(title)
-        self.title.setObjectName("cardTitle")
+        self.title = label(title, name="cardTitle")
         self.title.setMinimumHeight(30)
-        self.header.addWidget(self.title, 1)
-        self.body = QVBoxLayout()
-        self.body.setSpacing(8)
-        outer.addLayout(self.header)
-        outer.addLayout(self.body, 1)
+        self.header, self.body = row((self.title, 1), spacing=4), column(spacing=8)
+        column(self.header, (self.body, 1), on=self, spacing=8, margins=(INSET, 8, right_inset, INSET))
 
 
 class ToolButton(QToolButton):
@@ -68,7 +59,6 @@ class ToolButton(QToolButton):
             self.setIcon(icons.icon(name, self._palette))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.show_icon(self._icon_name)
 
@@ -178,31 +168,18 @@ def compact(box: QAbstractSpinBox, width: int = 62) -> None:
 
 def captioned(text: str, buddy: QWidget, content: QWidget | QLayout) -> QVBoxLayout:
     """A small caption above a control; ``buddy`` gets the focus when its mnemonic is pressed."""
-    caption = QLabel(text)
-    caption.setObjectName("muted")
-    caption.setBuddy(buddy)
-    column = QVBoxLayout()
-    column.setSpacing(3)
-    column.addWidget(caption)
-    if isinstance(content, QWidget):
-        column.addWidget(content)
-    else:
-        column.addLayout(content)
-    return column
+    return column(label(text, buddy), content, spacing=3)
 
 
 def muted_label() -> QLabel:
     """A muted label that wraps."""
-    label = QLabel()
-    label.setObjectName("muted")
-    label.setWordWrap(True)
-    return label
+    return label(wraps=True)
 
 
-def own_markup(label: QLabel) -> None:
+def own_markup(words: QLabel) -> None:
     """Show a label's text as HTML: for text of the program's own, never for a name, a path or a message.
 
     Every other label and every tooltip of the application is plain text: ``studio.qss`` says so.
     """
-    label.setProperty("markup", True)
-    label.setTextFormat(Qt.TextFormat.RichText)
+    words.setProperty("markup", True)
+    words.setTextFormat(Qt.TextFormat.RichText)

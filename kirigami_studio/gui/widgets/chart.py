@@ -10,11 +10,12 @@ import numpy as np
 import pyqtgraph
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QPen, QResizeEvent, QTextDocument
-from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import decimal_sign, number, tr
 from kirigami_studio.gui.widgets.card import own_markup
+from kirigami_studio.gui.widgets.layouts import column
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 pg: Any = pyqtgraph  # it has types for a part of itself only
@@ -74,11 +75,7 @@ class Chart(QWidget):
         self.plot.scene().sigMouseClicked.connect(self._click)
         self.plot.scene().sigMouseMoved.connect(self._move)
         self.plot.viewport().installEventFilter(self)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.numbers)
-        column.addWidget(self.plot, 1)
+        column(self.numbers, (self.plot, 1), on=self, spacing=0)
 
     def set_series(self, series: Series) -> None:
         """Draw other values; those that are not numbers leave a gap."""
@@ -106,7 +103,6 @@ class Chart(QWidget):
         self.plot.getAxis("bottom").setHeight(None if shown else 6)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.plot.setBackground(QColor(palette.surface))
         for side in ("left", "bottom"):

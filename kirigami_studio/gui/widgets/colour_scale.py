@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.widgets.legends import paint_chip
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Shades of a scale; neighbours cannot be told apart.
@@ -28,24 +29,13 @@ MARGIN = 6.0
 
 @dataclass(frozen=True, slots=True)
 class ColourScale:
-    """A linear scale between two values.
+    """A linear scale between two values."""
 
-    Attributes
-    ----------
-    title : str
-        With the unit.
-    low, high : float
-    colours : tuple of str
-        Evenly spaced stops from ``low`` to ``high``.
-    ticks : tuple of (float, str)
-        Value and label.
-    """
-
-    title: str
+    title: str  #: with the unit
     low: float
     high: float
-    colours: tuple[str, ...]
-    ticks: tuple[tuple[float, str], ...]
+    colours: tuple[str, ...]  #: evenly spaced stops from ``low`` to ``high``
+    ticks: tuple[tuple[float, str], ...]  #: value and label
 
     def share(self, values: FloatArray) -> FloatArray:
         """Where values lie between ``low`` (0) and ``high`` (1), cut off there."""
@@ -107,8 +97,7 @@ def paint_colour_bars(painter: QPainter, scales: list[ColourScale], right: float
         gradient = QLinearGradient(bar.topLeft(), bar.topRight())
         for index, colour in enumerate(scale.colours):
             gradient.setColorAt(index / (len(scale.colours) - 1), QColor(colour))
-        painter.setPen(QPen(QColor(palette.strong_border), 1.0))
-        painter.setBrush(gradient)
+        ink(painter, palette.strong_border, fill=gradient)
         painter.drawRect(bar)
         _paint_ticks(painter, scale, bar, palette)
 

@@ -12,14 +12,8 @@ class FileDrops(QObject):
 
     Parameters
     ----------
-    widget : QWidget
     with_content : bool
         Whether pictures and texts are taken, too.
-
-    Attributes
-    ----------
-    here : bool
-        Whether something that would be taken is held over the widget.
     """
 
     file_dropped = Signal(str)
@@ -27,7 +21,7 @@ class FileDrops(QObject):
 
     def __init__(self, widget: QWidget, *, with_content: bool = False) -> None:
         super().__init__(widget)
-        self.here = False
+        self.here = False  #: whether something that would be taken is held over the widget
         self._widget, self._with_content = widget, with_content
         widget.setAcceptDrops(True)
         widget.installEventFilter(self)

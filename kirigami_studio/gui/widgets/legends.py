@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPen
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.fitted_text import elided
+from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -79,10 +80,7 @@ def paint_legend(painter: QPainter, chips: list[Chip], boxes: list[QRectF], pale
 
 def paint_chip(painter: QPainter, box: QRectF, palette: Palette) -> None:
     """Draw the box behind a label."""
-    back = QColor(palette.surface)
-    back.setAlpha(225)
-    painter.setPen(QColor(palette.border))
-    painter.setBrush(back)
+    ink(painter, palette.border, fill=palette.surface, alpha=225)
     painter.drawRoundedRect(box, 6, 6)
 
 

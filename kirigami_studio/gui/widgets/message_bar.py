@@ -10,22 +10,13 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QRect, Qt, Signal
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import (
-    QBoxLayout,
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QPlainTextEdit,
-    QPushButton,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QPlainTextEdit, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ToolButton
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Lines of details that are shown without scrolling.
@@ -51,27 +42,19 @@ class MessageBar(QFrame):
         self.sentence.setWordWrap(True)
         self.sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.details = QPushButton(tr("Details"))
-        self.details.setObjectName("link")
-        self.details.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.details = push_button(tr("Details"), name="link")
         self.details.setCheckable(True)
         self.copy = ToolButton("copyMessage", "copy", tr("Copy the message and its details."))
         self.previous = ToolButton("previousMessage", "previous", tr("Previous message."))
-        self.position = QLabel()
-        self.position.setObjectName("muted")
+        self.position = label()
         self.next = ToolButton("nextMessage", "next", tr("Next message."))
         self.close_button = ToolButton("closeMessage", "close", tr("Close this message."))
-        self.close_all_button = QPushButton(tr("Close all"))
-        self.close_all_button.setObjectName("link")
-        self.close_all_button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.close_all_button.setToolTip(tr("Close all messages."))
+        self.close_all_button = push_button(tr("Close all"), tr("Close all messages."), name="link")
         self.trace = QPlainTextEdit()
         self.trace.setReadOnly(True)
         self.trace.setAccessibleName(tr("Message details"))
         self._line = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._buttons = QHBoxLayout()
-        self._actions = QHBoxLayout()
-        self._actions.setSpacing(6)
+        self._actions = row(spacing=6)
         self._lay_out()
         self.details.toggled.connect(self._show_details)
         self.copy.clicked.connect(self._copy)
@@ -82,31 +65,12 @@ class MessageBar(QFrame):
         self.hide()
 
     def _lay_out(self) -> None:
-        words = QHBoxLayout()
-        words.setSpacing(8)
-        words.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignVCenter)
-        words.addWidget(self.sentence, 1)
-        self._buttons.setSpacing(8)
-        self._buttons.addStretch(1)
-        self._buttons.addLayout(self._actions)
-        for part in (
-            self.details,
-            self.previous,
-            self.position,
-            self.next,
-            self.close_all_button,
-            self.copy,
-            self.close_button,
-        ):
-            self._buttons.addWidget(part, 0, Qt.AlignmentFlag.AlignVCenter)
+        parts = (self.details, self.previous, self.position, self.next, self.close_all_button, self.copy)
+        self._buttons = row(..., self._actions, *parts, self.close_button, spacing=8)
         self._line.setSpacing(8)
-        self._line.addLayout(words, 1)
+        self._line.addLayout(row(self.icon, (self.sentence, 1), spacing=8), 1)
         self._line.addLayout(self._buttons)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 5, 6, 5)
-        column.setSpacing(4)
-        column.addLayout(self._line)
-        column.addWidget(self.trace)
+        column(self._line, self.trace, on=self, spacing=4, margins=(12, 5, 6, 5))
         self.trace.hide()
 
     @property
@@ -142,7 +106,6 @@ class MessageBar(QFrame):
             self._go(len(self._messages) - 1)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self._go(self._at)
 
@@ -201,9 +164,8 @@ class MessageBar(QFrame):
             if button is not None:
                 button.hide()
                 button.deleteLater()
-        for label, act in message.actions:
-            choice = QPushButton(label)
-            choice.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        for text, act in message.actions:
+            choice = push_button(text, name="")
             choice.clicked.connect(lambda _=False, act=act: self._act(act, message))
             self._actions.addWidget(choice)
 

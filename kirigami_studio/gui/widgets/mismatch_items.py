@@ -16,7 +16,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.legends import Chip
-from kirigami_studio.gui.widgets.paths import area_path
+from kirigami_studio.gui.widgets.paths import area_path, painter_on
 from kirigami_studio.gui.widgets.readable import readable_area
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -36,25 +36,16 @@ STRIPE_STEP = 8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mismatch:
-    """Both differences between a target and a sheet.
+    """Both differences between a target and a sheet."""
 
-    Attributes
-    ----------
-    missing, extra : shapely geometry, world
-        Target without sheet, and sheet without target.
-    missing_share, extra_share : float
-        Their areas as parts of the target's area.
-    target_area : float, world
-    gap : BoundaryGap
-        How far the boundaries of target and sheet are from each other.
-    """
-
+    #: missing, extra: world; target without sheet, and sheet without target.
     missing: BaseGeometry
     extra: BaseGeometry
+    #: missing_share, extra_share: their areas as parts of the target's area.
     missing_share: float
     extra_share: float
-    target_area: float
-    gap: BoundaryGap
+    target_area: float  #: world
+    gap: BoundaryGap  #: how far the boundaries of target and sheet are from each other
 
 
 def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
@@ -91,19 +82,12 @@ def mismatch_of_nodes(design: PosedDesign, target: Outline, phi: float, nodes: F
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundaryGap:
-    """Distances between two boundaries, world units.
+    """Distances between two boundaries, world units."""
 
-    Attributes
-    ----------
-    mean, greatest : float
-        Over evenly spaced places of both; the greatest is looked for at their corners as well.
-    ends : (2, 2) float
-        The greatest one's place on one boundary, and the nearest place of the other.
-    """
-
+    #: mean, greatest: over evenly spaced places of both; the greatest is looked for at their corners as well.
     mean: float
     greatest: float
-    ends: FloatArray
+    ends: FloatArray  #: (2, 2); the greatest one's place on one boundary, and the nearest place of the other
 
 
 def boundary_gap(first: BaseGeometry, second: BaseGeometry) -> BoundaryGap:
@@ -179,8 +163,7 @@ def stripes(colour: str, rising: bool, ratio: float) -> QPixmap:
     tint = QColor(colour)
     tint.setAlpha(TINT_ALPHA)
     tile.fill(tint)
-    painter = QPainter(tile)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter = painter_on(tile)
     painter.setPen(QPen(QColor(colour), 1.2 * ratio))
     for shift in (-edge, 0, edge):  # the corners of the tile belong to its neighbours' stripes
         ends = (edge, 0) if rising else (0, edge)

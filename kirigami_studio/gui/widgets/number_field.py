@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from typing import TypeVar
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QValidator
@@ -144,3 +145,38 @@ class LengthField(DecimalField):
     """A length in mm that may be typed as ``3 in``, ``3/8"``, ``8.5 cm`` or ``50 um``; it shows mm."""
 
     units = LENGTH_UNITS
+
+
+Field = TypeVar("Field", bound=DecimalField)
+
+
+def decimal_field(
+    kind: type[Field],
+    name: str,
+    low: float,
+    high: float,
+    *,
+    decimals: int = 1,
+    step: float = 1.0,
+    suffix: str = "",
+    accessible: str = "",
+    tip: str = "",
+    width: int | None = None,
+) -> Field:
+    """A number between ``low`` and ``high`` that reports what was typed once it is complete.
+
+    ``width`` is the field's own, pixels; without it the style's.
+    """
+    field = kind()
+    field.setObjectName(name)
+    field.setDecimals(decimals)
+    field.setRange(low, high)
+    field.setSingleStep(step)
+    field.setSuffix(suffix)
+    field.setKeyboardTracking(False)
+    field.setAccessibleName(accessible)
+    field.setToolTip(tip)
+    if width is not None:
+        field.setFixedWidth(width)
+    number_field(field)
+    return field

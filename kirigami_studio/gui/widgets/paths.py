@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QByteArray, QDataStream, Qt
-from PySide6.QtGui import QColor, QPainterPath, QPen
+from PySide6.QtCore import QByteArray, QDataStream, QSize, Qt
+from PySide6.QtGui import QBrush, QColor, QGradient, QPaintDevice, QPainter, QPainterPath, QPen, QPixmap
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -32,6 +32,44 @@ ELEMENT = np.dtype([("kind", ">i4"), ("x", ">f8"), ("y", ">f8")])
 def round_pen(colour: str, width: float) -> QPen:
     """A pen with round ends and corners."""
     return QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
+
+
+def painter_on(device: QPaintDevice) -> QPainter:
+    """Return a painter whose edges are smooth."""
+    painter = QPainter(device)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    return painter
+
+
+def blank(size: QSize, ratio: float) -> QPixmap:
+    """Return a transparent picture of a size in logical pixels, with ``ratio`` device pixels to each."""
+    pixmap = QPixmap(round(size.width() * ratio), round(size.height() * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    return pixmap
+
+
+def ink(
+    painter: QPainter,
+    line: str | QPen | None,
+    width: float = 1.0,
+    *,
+    fill: str | QColor | QBrush | QGradient | None = None,
+    alpha: int = 255,
+    dashed: bool = False,
+) -> None:
+    """Draw from now on with a line of a colour and a width, pixels, and filled; None is for no line, or no fill.
+
+    ``alpha`` is the opacity of the fill, 0 to 255.
+    """
+    style = Qt.PenStyle.DashLine if dashed else Qt.PenStyle.SolidLine
+    if isinstance(line, str):
+        line = QPen(QColor(line), width, style)
+    painter.setPen(Qt.PenStyle.NoPen if line is None else line)
+    if isinstance(fill, str):
+        fill = QColor(fill)
+        fill.setAlpha(alpha)
+    painter.setBrush(Qt.BrushStyle.NoBrush if fill is None else fill)
 
 
 def line_path(points: FloatArray, closed: bool) -> QPainterPath:

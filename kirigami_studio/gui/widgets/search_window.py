@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
-from PySide6.QtWidgets import QHeaderView, QLabel, QLineEdit, QTreeWidget, QTreeWidgetItem, QWidget
+from PySide6.QtWidgets import QHeaderView, QLineEdit, QListView, QListWidget, QTreeWidget, QTreeWidgetItem, QWidget
+
+from kirigami_studio.gui.widgets.layouts import label
 
 #: Role of the words that a line is found by.
 WORDS = Qt.ItemDataRole.UserRole
@@ -21,6 +23,20 @@ def search_field(prompt: str) -> QLineEdit:
     return field
 
 
+def picture_list(name: str, accessible: str, picture: QSize, card: QSize) -> QListWidget:
+    """A list of pictures with their names below them, in a grid that fills the width."""
+    made = QListWidget()
+    made.setObjectName(name)
+    made.setAccessibleName(accessible)
+    made.setViewMode(QListView.ViewMode.IconMode)
+    made.setMovement(QListView.Movement.Static)
+    made.setResizeMode(QListView.ResizeMode.Adjust)
+    made.setIconSize(picture)
+    made.setGridSize(card)
+    made.setWordWrap(True)
+    return made
+
+
 class SearchWindow(QWidget):
     """A window with a search field: Ctrl+F goes to it, Esc clears it, then closes the window."""
 
@@ -29,8 +45,7 @@ class SearchWindow(QWidget):
         self.setWindowTitle(title)
         self.search = search_field(prompt)
         self.search.setToolTip(tip)
-        self.found = QLabel()
-        self.found.setObjectName("muted")
+        self.found = label()
         QShortcut(QKeySequence.StandardKey.Find, self, self._begin_search)
 
     def _begin_search(self) -> None:

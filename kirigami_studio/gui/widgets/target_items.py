@@ -12,26 +12,26 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.mismatch_items import stripes
-from kirigami_studio.gui.widgets.paths import line_path, round_pen
+from kirigami_studio.gui.widgets.paths import ink, line_path, round_pen
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
 
 #: Dashes and gaps of a second target's outline, in widths of the line.
 DASHES = (3.5, 3.0)
+#: Radius of the end of a handle, pixels.
+KNOB = 3.5
 
 
 def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
     """Fill the target: (L, 2) pixels."""
-    painter.setPen(round_pen(palette.target, width))
-    painter.setBrush(QColor(palette.target_fill))
+    ink(painter, round_pen(palette.target, width), fill=palette.target_fill)
     painter.drawPath(line_path(points, closed=True))
 
 
 def paint_start_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
     """Fill what the sheet looks like while it is flat, in the sheet's colours: (L, 2) pixels."""
-    painter.setPen(round_pen(palette.panel_line, width))
-    painter.setBrush(QColor(palette.panel_odd))
+    ink(painter, round_pen(palette.panel_line, width), fill=palette.panel_odd)
     painter.drawPath(line_path(points, closed=True))
 
 
@@ -57,17 +57,18 @@ def paint_target_line(
     painter.drawPath(path)
 
 
-def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette, corners: bool) -> None:
-    """Draw a stroke that is still being made: (L, 2) pixels, with handles on the corners of a polygon."""
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(round_pen(palette.accent, 2.0))
+def paint_sketch(painter: QPainter, points: FloatArray, palette: Palette) -> None:
+    """Draw a stroke that is still being made: (L, 2) pixels."""
+    ink(painter, round_pen(palette.accent, 2.0))
     painter.drawPath(line_path(points, closed=False))
-    if not corners:
-        return
-    painter.setPen(round_pen(palette.accent, 1.5))
-    for index, (x, y) in enumerate(points.tolist()):
-        painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
-        painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
+
+
+def paint_handle(painter: QPainter, start: QPointF, end: QPointF, palette: Palette) -> None:
+    """Draw a handle that bends a line, from its point to the knob at its end, pixels."""
+    painter.setPen(QPen(QColor(palette.muted), 1.2))
+    painter.drawLine(start, end)
+    ink(painter, palette.accent, 1.4, fill=palette.canvas)
+    painter.drawEllipse(end, KNOB, KNOB)
 
 
 def paint_pen_points(
@@ -79,11 +80,7 @@ def paint_pen_points(
     """
     x, y = places[shown].tolist()
     for end_x, end_y in handles.tolist():
-        painter.setPen(QPen(QColor(palette.muted), 1.2))
-        painter.drawLine(QPointF(x, y), QPointF(end_x, end_y))
-        painter.setPen(QPen(QColor(palette.accent), 1.4))
-        painter.setBrush(QColor(palette.canvas))
-        painter.drawEllipse(QPointF(end_x, end_y), 3.5, 3.5)
+        paint_handle(painter, QPointF(x, y), QPointF(end_x, end_y), palette)
     painter.setPen(round_pen(palette.accent, 1.5))
     for index, (x, y) in enumerate(places.tolist()):
         painter.setBrush(QColor(palette.accent if index == 0 else palette.canvas))
@@ -93,19 +90,13 @@ def paint_pen_points(
 
 def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> None:
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
-    fill = QColor(palette.accent)
-    fill.setAlpha(36)
-    painter.setPen(round_pen(palette.accent, 2.0))
-    painter.setBrush(fill)
+    ink(painter, round_pen(palette.accent, 2.0), fill=palette.accent, alpha=36)
     painter.drawPath(line_path(points, closed=True))
 
 
 def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palette) -> None:
     """Draw the box that selects what lies in it, between two corners in pixels."""
-    fill = QColor(palette.accent)
-    fill.setAlpha(28)
-    painter.setPen(QPen(QColor(palette.accent), 1.0, Qt.PenStyle.DashLine))
-    painter.setBrush(fill)
+    ink(painter, palette.accent, 1.0, dashed=True, fill=palette.accent, alpha=28)
     painter.drawRect(QRectF(one, other).normalized())
 
 
@@ -114,8 +105,7 @@ def paint_object(
 ) -> None:
     """Draw one of several objects, (L, 2) pixels: its fill, and a thin line that tells its state."""
     colour = palette.warning if loose else palette.accent if selected else palette.muted
-    painter.setPen(round_pen(colour, 1.8 if selected or loose else 1.0))
-    painter.setBrush(QColor(palette.target_fill) if filled else Qt.BrushStyle.NoBrush)
+    ink(painter, round_pen(colour, 1.8 if selected or loose else 1.0), fill=palette.target_fill if filled else None)
     painter.drawPath(line_path(points, closed=True))
     if loose:
         painter.setBrush(QBrush(stripes(colour, True, painter.device().devicePixelRatioF())))
@@ -139,8 +129,7 @@ def paint_label(painter: QPainter, pointer: QPointF, text: str, palette: Palette
     right = pointer.x() + 14.0
     left = right if right + width < painter.window().right() else pointer.x() - 14.0 - width
     box = QRectF(left, max(pointer.y() - height - 8.0, 4.0), width, height)
-    painter.setPen(QPen(QColor(palette.border), 1.0))
-    painter.setBrush(QColor(palette.surface))
+    ink(painter, palette.border, fill=palette.surface)
     painter.drawRoundedRect(box, 5.0, 5.0)
     painter.setPen(QColor(palette.text))
     painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
@@ -150,8 +139,7 @@ def paint_reach(painter: QPainter, arms: Sequence[FloatArray], notches: Sequence
     """Mark what a grid can hardly show, (L, 2) pixels each: arms hatched one way, notches the other, both framed."""
     ratio = painter.device().devicePixelRatioF()
     for rings, colour, rising in ((arms, palette.warning, True), (notches, palette.extra, False)):
-        painter.setPen(round_pen(colour, 1.2))
-        painter.setBrush(QBrush(stripes(colour, rising, ratio)))
+        ink(painter, round_pen(colour, 1.2), fill=QBrush(stripes(colour, rising, ratio)))
         for ring in rings:
             painter.drawPath(line_path(ring, closed=True))
 

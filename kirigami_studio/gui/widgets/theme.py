@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from string import Template
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
@@ -91,88 +91,66 @@ def themed(widgets: Iterable[QWidget]) -> Iterator[Themed]:
             yield widget
 
 
-LIGHT = Palette(
-    name="light",
-    window="#eceff3",
-    surface="#ffffff",
-    raised="#f4f6f9",
-    border="#d9dfe6",
-    strong_border="#b9c3ce",
-    text="#18202a",
-    muted="#566271",
-    accent="#0a61b5",
-    accent_hover="#084f96",
-    accent_soft="#e1eefb",
-    on_accent="#ffffff",
-    disabled="#98a3af",
-    warning="#a34a00",
-    warning_soft="#fff1df",
-    error_soft="#fdebdc",
-    canvas="#fbfcfe",
-    grid="#e6ebf0",
-    panel_even="#8bb9e6",
-    panel_odd="#b3d2f1",
-    panel_line="#2b669f",
-    target="#d4610a",
-    target_fill="#f9dcc2",
-    missing="#e8822a",
-    extra="#0c2f5e",
-    fault="#ffd60a",
-    fault_line="#14110a",
-    cut_sheet="#e9edf2",
-    slits="#0064a6",
-    edge_slits="#c95000",
-    relief="#008a66",
-    engraved="#b0126a",
-    current_cut="#ffb000",
-    widths=("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
-    diverging=("#08407e", "#5a9bd5", "#f3f1ec", "#eb9a4a", "#a34300"),
-    sequential=("#f1f7f5", "#8fcbb8", "#1f8a6d", "#00463a"),
-    good="#1a7f4b",
-    bad="#b3261e",
-)
+#: Colours by role, light and dark.
+COLOURS: dict[str, tuple[Any, Any]] = {
+    "window": ("#eceff3", "#13161a"),
+    "surface": ("#ffffff", "#1b1f24"),
+    "raised": ("#f4f6f9", "#242a31"),
+    "border": ("#d9dfe6", "#313942"),
+    "strong_border": ("#b9c3ce", "#475260"),
+    "text": ("#18202a", "#e8edf2"),
+    "muted": ("#566271", "#9dabb8"),
+    "accent": ("#0a61b5", "#5aa9f5"),
+    "accent_hover": ("#084f96", "#7dbcf8"),
+    "accent_soft": ("#e1eefb", "#1a324b"),
+    "on_accent": ("#ffffff", "#06131f"),
+    "disabled": ("#98a3af", "#66727e"),
+    "warning": ("#a34a00", "#ffb066"),
+    "warning_soft": ("#fff1df", "#35260f"),
+    "error_soft": ("#fdebdc", "#3a2511"),
+    "canvas": ("#fbfcfe", "#0f1215"),
+    "grid": ("#e6ebf0", "#1c2127"),
+    "panel_even": ("#8bb9e6", "#2c669f"),
+    "panel_odd": ("#b3d2f1", "#4485c2"),
+    "panel_line": ("#2b669f", "#0d1b2a"),
+    "target": ("#d4610a", "#ff9d4d"),
+    "target_fill": ("#f9dcc2", "#4a2f18"),
+    "missing": ("#e8822a", "#ff9d4d"),
+    "extra": ("#0c2f5e", "#cfe6ff"),
+    "fault": ("#ffd60a", "#ffd60a"),
+    "fault_line": ("#14110a", "#14110a"),
+    "cut_sheet": ("#e9edf2", "#262d35"),
+    "slits": ("#0064a6", "#56b4e9"),
+    "edge_slits": ("#c95000", "#f09a3e"),
+    "relief": ("#008a66", "#2fc79d"),
+    "engraved": ("#b0126a", "#ff8cc6"),
+    "current_cut": ("#ffb000", "#ffe14d"),
+    "good": ("#1a7f4b", "#4fc98f"),
+    "bad": ("#b3261e", "#ff8d83"),
+}
+#: Shades by role, light and dark.
+SHADES: dict[str, tuple[Any, Any]] = {
+    "widths": (
+        ("#4a0d67", "#73308f", "#9a58b3", "#bb85cf", "#d6b0e4"),
+        ("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
+    ),
+    "diverging": (
+        ("#08407e", "#5a9bd5", "#f3f1ec", "#eb9a4a", "#a34300"),
+        ("#8fcbff", "#2f7fc4", "#262a30", "#c46a16", "#ffbe78"),
+    ),
+    "sequential": (
+        ("#f1f7f5", "#8fcbb8", "#1f8a6d", "#00463a"),
+        ("#16211f", "#1f6b58", "#35b793", "#b5f3df"),
+    ),
+}
 
-DARK = Palette(
-    name="dark",
-    window="#13161a",
-    surface="#1b1f24",
-    raised="#242a31",
-    border="#313942",
-    strong_border="#475260",
-    text="#e8edf2",
-    muted="#9dabb8",
-    accent="#5aa9f5",
-    accent_hover="#7dbcf8",
-    accent_soft="#1a324b",
-    on_accent="#06131f",
-    disabled="#66727e",
-    warning="#ffb066",
-    warning_soft="#35260f",
-    error_soft="#3a2511",
-    canvas="#0f1215",
-    grid="#1c2127",
-    panel_even="#2c669f",
-    panel_odd="#4485c2",
-    panel_line="#0d1b2a",
-    target="#ff9d4d",
-    target_fill="#4a2f18",
-    missing="#ff9d4d",
-    extra="#cfe6ff",
-    fault="#ffd60a",
-    fault_line="#14110a",
-    cut_sheet="#262d35",
-    slits="#56b4e9",
-    edge_slits="#f09a3e",
-    relief="#2fc79d",
-    engraved="#ff8cc6",
-    current_cut="#ffe14d",
-    widths=("#f6dcff", "#dfb2f2", "#c088da", "#9d63ba", "#7a4597"),
-    diverging=("#8fcbff", "#2f7fc4", "#262a30", "#c46a16", "#ffbe78"),
-    sequential=("#16211f", "#1f6b58", "#35b793", "#b5f3df"),
-    good="#4fc98f",
-    bad="#ff8d83",
-)
 
+def _palette(name: str, place: int) -> Palette:
+    colours: dict[str, Any] = {role: pair[place] for role, pair in (COLOURS | SHADES).items()}
+    return Palette(name, **colours)
+
+
+LIGHT, DARK = _palette("light", 0), _palette("dark", 1)
 PALETTES = {palette.name: palette for palette in (LIGHT, DARK)}
 
 

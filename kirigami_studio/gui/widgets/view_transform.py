@@ -40,17 +40,10 @@ class Bounds:
 
 @dataclass(frozen=True, slots=True)
 class ViewTransform:
-    """Uniform scaling with the y axis turned over: ``px = (x, -y) * scale + origin``.
+    """Uniform scaling with the y axis turned over: ``px = (x, -y) * scale + origin``."""
 
-    Attributes
-    ----------
-    scale : float, pixels per world unit
-    origin : (x, y) float, pixels
-        Where the world's origin appears.
-    """
-
-    scale: float
-    origin: tuple[float, float]
+    scale: float  #: pixels per world unit
+    origin: tuple[float, float]  #: (x, y), pixels; where the world's origin appears
 
     @classmethod
     def fitting(cls, bounds: Bounds, rect: QRectF, margin: float = 0.0) -> ViewTransform:

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QFontDatabase
-from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
-    QPlainTextEdit,
-    QSplitter,
-    QTreeWidgetItem,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QLabel, QPlainTextEdit, QSplitter, QTreeWidgetItem, QWidget
 
 from kirigami_studio import __version__
 from kirigami_studio.foundation.licences import Component, components
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.widgets.card import own_markup
 from kirigami_studio.gui.widgets.icons import coloured
+from kirigami_studio.gui.widgets.layouts import column, label, row
 from kirigami_studio.gui.widgets.search_window import SearchedList, SearchWindow
 
 #: Edge of the program's icon, pixels.
@@ -48,9 +41,9 @@ class AboutWindow(SearchWindow):
         self.list.setObjectName("licenceList")
         self.list.setColumnWidth(2, LICENCE)
         self.shown, self.paper = QLabel(), QLabel()
-        for label in (self.shown, self.paper):
-            own_markup(label)
-            label.setOpenExternalLinks(True)
+        for linked in (self.shown, self.paper):
+            own_markup(linked)
+            linked.setOpenExternalLinks(True)
         self.text = QPlainTextEdit()
         self.text.setAccessibleName(tr("Text of the licence"))
         self.text.setReadOnly(True)
@@ -63,7 +56,7 @@ class AboutWindow(SearchWindow):
         self.resize(1120, 680)
 
     def _lay_out(self) -> None:
-        picture, name, whole = QLabel(), QLabel("Kirigami Studio"), QVBoxLayout(self)
+        picture, name = QLabel(), QLabel("Kirigami Studio")
         picture.setPixmap(coloured("kirigami-studio", ICON, self.devicePixelRatioF()))
         font = name.font()
         font.setPointSizeF(1.6 * font.pointSizeF())
@@ -72,37 +65,19 @@ class AboutWindow(SearchWindow):
         self.paper.setText(
             tr('After <a href="{link}">Yazdani, Shalileh and Shahriari, arXiv:2605.08098</a>', link=PAPER)
         )
-        version = QLabel(tr("Version {version}  ·  MIT licence", version=__version__))
-        for label in (version, self.paper):
-            label.setObjectName("muted")
-        words = QVBoxLayout()
-        words.setSpacing(2)
-        for label in (name, version, QLabel(tr(PURPOSE)), self.paper):
-            words.addWidget(label)
-        head = QHBoxLayout()
-        head.setSpacing(16)
-        head.addWidget(picture, 0, Qt.AlignmentFlag.AlignTop)
-        head.addLayout(words, 1)
+        version = label(tr("Version {version}  ·  MIT licence", version=__version__))
+        self.paper.setObjectName("muted")
+        words = column(name, version, QLabel(tr(PURPOSE)), self.paper, spacing=2)
         columns = QSplitter(Qt.Orientation.Horizontal)
         columns.setChildrenCollapsible(False)
-        for parts in ((self.search, self.list, self.found), (self.shown, self.text)):
-            side, column = QWidget(), QVBoxLayout()
-            side.setLayout(column)
-            column.setContentsMargins(0, 0, 0, 0)
-            column.setSpacing(6)
-            for part in parts:
-                column.addWidget(part, int(part in (self.list, self.text)))
+        for parts in ((self.search, (self.list, 1), self.found), (self.shown, (self.text, 1))):
+            side = QWidget()
+            column(*parts, on=side, spacing=6)
             columns.addWidget(side)
         columns.setSizes([480, 620])
         columns.setStretchFactor(1, 1)
-        qt = QLabel(tr(QT))
-        qt.setObjectName("muted")
-        qt.setWordWrap(True)
-        whole.setContentsMargins(16, 16, 16, 12)
-        whole.setSpacing(12)
-        whole.addLayout(head)
-        whole.addWidget(columns, 1)
-        whole.addWidget(qt)
+        head = row(column(picture, ...), (words, 1), spacing=16)
+        column(head, (columns, 1), label(tr(QT), wraps=True), on=self, spacing=12, margins=(16, 16, 16, 12))
 
     def _fill(self) -> None:
         for component in self.components:
@@ -133,8 +108,8 @@ class AboutWindow(SearchWindow):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
         """Links take the colours of another theme only when they are laid out again."""
         if event.type() == QEvent.Type.PaletteChange:
-            for label in (self.shown, self.paper):
-                text = label.text()
-                label.clear()
-                label.setText(text)
+            for linked in (self.shown, self.paper):
+                text = linked.text()
+                linked.clear()
+                linked.setText(text)
         super().changeEvent(event)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QGuiApplication
@@ -23,9 +24,6 @@ class Appearance(QObject):
 
     Parameters
     ----------
-    window : QWidget
-    session : Session
-    preferences : UserPreferences
     palette : Palette
         Worn once :meth:`set_theme` is called.
     start_again : callable
@@ -60,7 +58,7 @@ class Appearance(QObject):
 
     def choose_language(self, language: str) -> None:
         """Prefer another language; it is that of the next window."""
-        self._preferences.choose_language(language)
+        self._preferences.keep(replace(self._preferences.present, language=language))
         self.offer_start()
 
     def offer_start(self) -> None:
@@ -101,10 +99,12 @@ class Appearance(QObject):
 
     def switch(self) -> None:
         """Change between light and dark; the choice stays until the desktop is to be followed again."""
-        self._preferences.choose_theme(Theme.LIGHT if self.palette.dark else Theme.DARK)
-        self.refresh()
+        self._choose(Theme.LIGHT if self.palette.dark else Theme.DARK)
 
     def follow_system(self) -> None:
         """Follow the desktop's theme, or stop at the present one."""
-        self._preferences.choose_theme(Theme(self.palette.name) if self.follows_system else Theme.SYSTEM)
+        self._choose(Theme(self.palette.name) if self.follows_system else Theme.SYSTEM)
+
+    def _choose(self, wanted: Theme) -> None:
+        self._preferences.keep(replace(self._preferences.present, theme=wanted))
         self.refresh()

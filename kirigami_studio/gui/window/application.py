@@ -240,7 +240,6 @@ def open_window(application: QApplication, earlier: MainWindow | None = None) ->
 
     Parameters
     ----------
-    application : QApplication
     earlier : MainWindow, optional
         A closed one, with whose project it goes on.
 

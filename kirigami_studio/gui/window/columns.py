@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QSettings, QSize, Qt
-from PySide6.QtWidgets import QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSplitter, QStackedWidget, QWidget
 
 from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
 from kirigami_studio.gui.make.fabrication_panel import Extent, FabricationPanel
 from kirigami_studio.gui.run.generate_bar import GenerateBar
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.target.target_panel import TargetPanel
+from kirigami_studio.gui.widgets.layouts import column
 from kirigami_studio.gui.window.stage_panel import StagePanel
 
 #: Least and largest first width (pixels) of the outer columns, and their share of the window in between.
@@ -20,17 +21,7 @@ EXTENT_BY_HEIGHT = ((1000, Extent.ALL), (860, Extent.CHOICES), (0, Extent.EXPORT
 
 
 class Columns(QWidget):
-    """Lays the panels out, and remembers their sizes.
-
-    Attributes
-    ----------
-    target, settings, run, stage, gallery, fabrication
-        The panels of the places.
-    pages : QStackedWidget
-        The columns, and what is shown in their place.
-    splitter : QSplitter
-        Between the columns.
-    """
+    """Lays the panels out, and remembers their sizes."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -53,12 +44,9 @@ class Columns(QWidget):
         self.splitter.splitterMoved.connect(self._keep_sizes)
         self.target.editing_changed.connect(self._make_room)
         self.stage.whole_width_wanted.connect(self._give_whole_width)
-        self.pages = QStackedWidget()
+        self.pages = QStackedWidget()  #: the columns, and what is shown in their place
         self.pages.addWidget(self.splitter)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(10, 0, 10, 2)
-        whole.setSpacing(8)
-        whole.addWidget(self.pages, 1)
+        column((self.pages, 1), on=self, margins=(10, 0, 10, 2))
 
     def fit(self, window: QSize) -> None:
         """Lay the panels out for a window of this size."""
@@ -99,8 +87,8 @@ class Columns(QWidget):
             return
         if whole:
             self._sizes_before = self.splitter.sizes()
-        for column in self._outer:
-            column.setVisible(not whole)
+        for outer in self._outer:
+            outer.setVisible(not whole)
         if not whole:
             self.splitter.setSizes(self._sizes_before)
             self.share_width(self.window().width())
@@ -126,12 +114,8 @@ class Columns(QWidget):
         self.settings.remember(settings)
 
 
-def _column(*panels: QWidget) -> QWidget:
-    """Panels above each other, of which the first one grows."""
-    column = QWidget()
-    layout = QVBoxLayout(column)
-    layout.setContentsMargins(0, 0, 0, 0)
-    layout.setSpacing(8)
-    for number, panel in enumerate(panels):
-        layout.addWidget(panel, 0 if number else 1)
-    return column
+def _column(upper: QWidget, lower: QWidget) -> QWidget:
+    """Two panels above each other, of which the first one grows."""
+    both = QWidget()
+    column((upper, 1), lower, on=both, spacing=8)
+    return both

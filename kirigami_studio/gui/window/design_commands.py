@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
@@ -32,115 +33,44 @@ def commands(
 
 
 def _runs(generate: Callable[[], None], cancel: Callable[[], None]) -> tuple[Command, ...]:
-    menu = tr("&Design")
+    command = partial(Command, tr("&Design"))
+    ready = partial(command, enabled_when=lambda now: now.has_target and not now.running)
+    at_work = partial(command, enabled_when=lambda now: now.running or now.busy)
+    stop = tr("Stop generating, trimming or fitting")
     return (
-        Command(
-            "generate",
-            menu,
-            tr("&Generate"),
-            tr("Design sheets for the target"),
-            generate,
-            shortcuts=("Ctrl+G", "Ctrl+Return"),
-            icon="generate",
-            enabled_when=lambda now: now.has_target and not now.running,
+        ready(
+            "generate", tr("&Generate"), tr("Design sheets for the target"), generate, "Ctrl+G; Ctrl+Return", "generate"
         ),
-        Command(
-            "cancel",
-            menu,
-            tr("&Cancel"),
-            tr("Stop generating, trimming or fitting"),
-            cancel,
-            shortcuts=("Esc",),
-            icon="stop",
-            enabled_when=lambda now: now.running or now.busy,
-        ),
+        at_work("cancel", tr("&Cancel"), stop, cancel, "Esc", "stop"),
     )
 
 
 def _changes(stage: StagePanel, hand: HandEditor, presenters: Presenters, dialogs: Dialogs) -> tuple[Command, ...]:
     """What changes the chosen design, or how it is cut."""
-    menu = tr("&Design")
+    command, switch = partial(Command, tr("&Design")), partial(Command.switching, tr("&Design"))
+    changing = partial(command, enabled_when=CAN_CHANGE)
+    trim, by_hand = tr("Cut the edge panels along the target"), tr("Edit voids and outline by hand")
+    lock, unlock = tr("Lock every void against manual edits"), tr("Unlock every void for manual edits")
+    even = tr("Space the edge cuts evenly along the sheet's sides")
+    refit = tr("Improve the match from the current design")
+    artwork = tr("Lay a picture on the sheet, and print it in register with the cuts")
+    toggle, fit = presenters.voids.toggle_lock, partial(presenters.refit, True)
     return (
-        Command(
-            "trim",
-            menu,
-            tr("&Trim to target"),
-            tr("Cut the edge panels along the target"),
-            stage.trim.switch.trigger,
-            shortcuts=("Ctrl+T",),
-            icon="trim",
-            gap=True,
-            switch=stage.trim.switch,
-        ),
-        Command(
-            "hand",
-            menu,
-            tr("Edit by &hand"),
-            tr("Edit voids and outline by hand"),
-            stage.hand.switch.trigger,
-            shortcuts=("H",),
-            icon="hand",
-            switch=stage.hand.switch,
-        ),
-        Command(
-            "lock",
-            menu,
-            tr("&Lock voids"),
-            tr("Lock or unlock the selected voids"),
-            presenters.voids.toggle_lock,
-            shortcuts=("L",),
-            icon="lock",
-            enabled_when=_can_change,
-        ),
-        Command(
-            "lock_all",
-            menu,
-            tr("Lock all &voids"),
-            tr("Lock every void against manual edits"),
-            partial(hand.lock_all, True),
-            enabled_when=_can_change,
-        ),
-        Command(
-            "unlock_all",
-            menu,
-            tr("&Unlock all voids"),
-            tr("Unlock every void for manual edits"),
-            partial(hand.lock_all, False),
-            enabled_when=_can_change,
-        ),
-        Command(
-            "even_rim",
-            menu,
-            tr("&Even rim"),
-            tr("Space the edge cuts evenly along the sheet's sides"),
-            hand.even_rim,
-            enabled_when=_can_change,
-        ),
-        Command(
-            "refit",
-            menu,
-            tr("&Fit again"),
-            tr("Improve the match from the current design"),
-            partial(presenters.refit, True),
-            shortcuts=("Ctrl+F",),
-            icon="refit",
-            enabled_when=_can_change,
-        ),
-        Command(
-            "artwork",
-            menu,
-            tr("Art&work …"),
-            tr("Lay a picture on the sheet, and print it in register with the cuts"),
-            dialogs.show_artwork,
-        ),
-        Command(
+        switch("trim", tr("&Trim to target"), trim, stage.trim.switch, "Ctrl+T", "trim", gap=True),
+        switch("hand", tr("Edit by &hand"), by_hand, stage.hand.switch, "H", "hand"),
+        changing("lock", tr("&Lock voids"), tr("Lock or unlock the selected voids"), toggle, "L", "lock"),
+        changing("lock_all", tr("Lock all &voids"), lock, partial(hand.lock_all, True)),
+        changing("unlock_all", tr("&Unlock all voids"), unlock, partial(hand.lock_all, False)),
+        changing("even_rim", tr("&Even rim"), even, hand.even_rim),
+        changing("refit", tr("&Fit again"), refit, fit, "Ctrl+F", "refit"),
+        command("artwork", tr("Art&work …"), artwork, dialogs.show_artwork),
+        command(
             "materials",
-            menu,
             tr("&Materials …"),
             tr("Copy, edit and calibrate materials"),
             dialogs.show_materials,
-            shortcuts=("Ctrl+M",),
-            icon="material",
+            "Ctrl+M",
+            "material",
         ),
     )
 
@@ -149,83 +79,39 @@ def _choices(
     gallery: GalleryPanel, generation: Generation, marks: DesignMarks, presenters: Presenters
 ) -> tuple[Command, ...]:
     """Which designs there are, and what becomes of them."""
-    menu, designs = tr("&Design"), presenters.designs
+    command, designs, walk = partial(Command, tr("&Design")), presenters.designs, partial(_walk, gallery.view)
+    adding, changing = partial(command, enabled_when=_can_add), partial(command, enabled_when=CAN_CHANGE)
+    more, alike = tr("Generate more designs from the next seed"), tr("Generate more designs like the chosen one")
+    note = tr("Rename the chosen design, and note what you want to remember of it")
+    pin_tip, reject_tip = tr("Pin or unpin the chosen design"), tr("Reject the chosen design (Del in the gallery)")
+    rename = presenters.all_designs.rename_current
+
+    def more_like() -> None:
+        generation.more_like(gallery.bar.nearness_value)
+
+    def pin() -> None:
+        marks.pin(designs.chosen)
+
+    def reject() -> None:
+        designs.reject(designs.chosen)
+
     return (
-        Command(
-            "next",
-            menu,
-            tr("&Next design"),
-            tr("Choose the next design"),
-            partial(_walk, gallery.view, 1),
-            shortcuts=("Ctrl+Down", "PgDown"),
-            gap=True,
+        command(
+            "next", tr("&Next design"), tr("Choose the next design"), partial(walk, 1), "Ctrl+Down; PgDown", gap=True
         ),
-        Command(
-            "previous",
-            menu,
-            tr("P&revious design"),
-            tr("Choose the previous design"),
-            partial(_walk, gallery.view, -1),
-            shortcuts=("Ctrl+Up", "PgUp"),
+        command(
+            "previous", tr("P&revious design"), tr("Choose the previous design"), partial(walk, -1), "Ctrl+Up; PgUp"
         ),
-        Command(
-            "again",
-            menu,
-            tr("M&ore designs"),
-            tr("Generate more designs from the next seed"),
-            generation.again,
-            shortcuts=("Ctrl+R",),
-            icon="again",
-            gap=True,
-            enabled_when=_can_add,
-        ),
-        Command(
-            "more_like",
-            menu,
-            tr("More li&ke this"),
-            tr("Generate more designs like the chosen one"),
-            lambda: generation.more_like(gallery.bar.nearness_value),
-            shortcuts=("Ctrl+Shift+R",),
-            icon="alike",
-            enabled_when=_can_add,
-        ),
-        Command(
-            "pin",
-            menu,
-            tr("&Pin design"),
-            tr("Pin or unpin the chosen design"),
-            lambda: marks.pin(designs.chosen),
-            shortcuts=("I",),
-            icon="pin",
-            gap=True,
-            enabled_when=_can_change,
-            worded=_pin_wording,
-        ),
-        Command(
-            "rename",
-            menu,
-            tr("N&ame and note …"),
-            tr("Rename the chosen design, and note what you want to remember of it"),
-            presenters.all_designs.rename_current,
-            shortcuts=("F2",),
-            icon="note",
-            enabled_when=_can_change,
-        ),
-        Command(
-            "reject",
-            menu,
-            tr("Re&ject design"),
-            tr("Reject the chosen design (Del in the gallery)"),
-            lambda: designs.reject(designs.chosen),
-            icon="reject",
-            enabled_when=_can_change,
-            worded=_reject_wording,
-        ),
+        adding("again", tr("M&ore designs"), more, generation.again, "Ctrl+R", "again", gap=True),
+        adding("more_like", tr("More li&ke this"), alike, more_like, "Ctrl+Shift+R", "alike"),
+        changing("pin", tr("&Pin design"), pin_tip, pin, "I", "pin", gap=True, worded=_pin_wording),
+        changing("rename", tr("N&ame and note …"), note, rename, "F2", "note"),
+        changing("reject", tr("Re&ject design"), reject_tip, reject, icon="reject", worded=_reject_wording),
     )
 
 
-def _can_change(now: WindowState) -> bool:
-    return now.can_change_design
+#: Enables what changes the chosen design.
+CAN_CHANGE = attrgetter("can_change_design")
 
 
 def _can_add(now: WindowState) -> bool:

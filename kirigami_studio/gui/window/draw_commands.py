@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command
@@ -20,14 +21,9 @@ def commands(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Comma
 
 
 def _board(panel: TargetPanel) -> Command:
+    edit = panel.buttons["edit"]
     return Command(
-        "edit_target",
-        tr("D&raw"),
-        tr("&Edit target"),
-        tr("Open or leave the drawing board"),
-        panel.buttons["edit"].click,
-        shortcuts=("E",),
-        icon="edit",
+        tr("D&raw"), "edit_target", tr("&Edit target"), tr("Open or leave the drawing board"), edit.click, "E", "edit"
     )
 
 
@@ -36,7 +32,7 @@ def _tools(panel: TargetPanel, post: Callable[[Message], None]) -> tuple[Command
 
     def tool(which: Tool, text: str, key: str, tip: str, icon: str = "", gap: bool = False) -> Command:
         take = partial(_on_tool, panel, post, which)
-        return Command(which.value, tr("D&raw"), text, tip, take, (key,), icon or which.value, gap)
+        return Command(tr("D&raw"), which.value, text, tip, take, key, icon or which.value, gap)
 
     return (
         tool(Tool.POINTS, tr("Move &points"), "N", tr("Drag the target's points"), gap=True),
@@ -55,17 +51,8 @@ def _modes(panel: TargetPanel) -> tuple[Command, ...]:
     """How the next shape joins the target; only on the board."""
 
     def mode(name: str, how: Combine, text: str, key: str, tip: str, icon: str) -> Command:
-        return Command(
-            name,
-            tr("D&raw"),
-            text,
-            tip,
-            partial(_set_mode, panel, how),
-            (key,),
-            icon,
-            gap=how is Combine.NEW,
-            enabled_when=lambda now: now.editing_target,
-        )
+        take, on_board = partial(_set_mode, panel, how), attrgetter("editing_target")
+        return Command(tr("D&raw"), name, text, tip, take, key, icon, how is Combine.NEW, enabled_when=on_board)
 
     new, join = tr("The next shape is another object"), tr("Add the next shape to the objects it overlaps")
     cut = tr("Cut the next shape out of the objects it overlaps")
@@ -79,27 +66,11 @@ def _modes(panel: TargetPanel) -> tuple[Command, ...]:
 
 
 def _aids(panel: TargetPanel) -> tuple[Command, ...]:
-    strip = panel.tools
+    command, cycle = partial(Command, tr("D&raw")), partial(_cycle_axis, panel)
+    axis, grid = tr("Switch to the next mirror axis"), tr("Show the grid and snap to it")
     return (
-        Command(
-            "axis",
-            tr("D&raw"),
-            tr("M&irror while drawing"),
-            tr("Switch to the next mirror axis"),
-            partial(_cycle_axis, panel),
-            shortcuts=("Shift+M",),
-            icon="axis-upright",
-            gap=True,
-        ),
-        Command(
-            "grid",
-            tr("D&raw"),
-            tr("Snap to g&rid"),
-            tr("Show the grid and snap to it"),
-            strip.grid.click,
-            shortcuts=("Ctrl+Shift+G",),
-            icon="grid",
-        ),
+        command("axis", tr("M&irror while drawing"), axis, cycle, "Shift+M", "axis-upright", gap=True),
+        command("grid", tr("Snap to g&rid"), grid, panel.tools.grid.click, "Ctrl+Shift+G", "grid"),
     )
 
 
@@ -108,15 +79,9 @@ def _arrangements(panel: TargetPanel) -> tuple[Command, ...]:
     context = panel.view.context
 
     def command(one: Arrangement) -> Command:
+        arrange, possible = partial(context.arrange, one.id), lambda now: one.id in now.arrangements
         return Command(
-            one.id,
-            tr("&Arrange"),
-            tr(one.text),
-            tr(one.tip),
-            partial(context.arrange, one.id),
-            (one.key,) if one.key else (),
-            gap=one.gap,
-            enabled_when=lambda now: one.id in now.arrangements,
+            tr("&Arrange"), one.id, tr(one.text), tr(one.tip), arrange, one.key, gap=one.gap, enabled_when=possible
         )
 
     return tuple(command(one) for one in EVERY.values())

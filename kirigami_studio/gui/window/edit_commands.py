@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from operator import attrgetter
+
 from PySide6.QtGui import QGuiApplication
 
 from kirigami_studio.foundation.words import tr
@@ -17,71 +20,34 @@ def commands(
     project: OpenProject, targeting: Targeting, dialogs: Dialogs, pasting: PasteReader, picturing: PictureMaker
 ) -> tuple[Command, ...]:
     """Return the commands of the Edit menu."""
-    menu = tr("&Edit")
+    command = partial(Command, tr("&Edit"))
+    undo = partial(command, enabled_when=lambda now: now.undo_label is not None, worded=_undo_wording)
+    redo = partial(command, enabled_when=lambda now: now.redo_label is not None, worded=_redo_wording)
+    paste, copy = tr("Paste a picture, SVG or path as the target"), tr("Copy a picture of the active view")
+    cuts = tr("Copy the cut plan as SVG in mm")
+
+    def take_pasted() -> None:
+        pasting.take(QGuiApplication.clipboard().mimeData())
+
+    def copy_view() -> None:
+        picturing.copy(picturing.view_at_work())
+
     return (
-        Command(
-            "undo",
-            menu,
-            tr("&Undo"),
-            tr("Undo"),
-            project.undo,
-            shortcuts=("Ctrl+Z",),
-            icon="undo",
-            enabled_when=lambda now: now.undo_label is not None,
-            worded=_undo_wording,
+        undo("undo", tr("&Undo"), tr("Undo"), project.undo, "Ctrl+Z", "undo"),
+        redo("redo", tr("&Redo"), tr("Redo"), project.redo, "Ctrl+Y; Ctrl+Shift+Z", "redo"),
+        command(
+            "history", tr("&History …"), tr("List all steps and jump to one"), dialogs.show_history, "Ctrl+Shift+H"
         ),
-        Command(
-            "redo",
-            menu,
-            tr("&Redo"),
-            tr("Redo"),
-            project.redo,
-            shortcuts=("Ctrl+Y", "Ctrl+Shift+Z"),
-            icon="redo",
-            enabled_when=lambda now: now.redo_label is not None,
-            worded=_redo_wording,
-        ),
-        Command(
-            "history",
-            menu,
-            tr("&History …"),
-            tr("List all steps and jump to one"),
-            dialogs.show_history,
-            shortcuts=("Ctrl+Shift+H",),
-        ),
-        Command(
-            "paste",
-            menu,
-            tr("&Paste target"),
-            tr("Paste a picture, SVG or path as the target"),
-            lambda: pasting.take(QGuiApplication.clipboard().mimeData()),
-            shortcuts=("Ctrl+V",),
-            gap=True,
-        ),
-        Command(
-            "copy_picture",
-            menu,
-            tr("&Copy picture"),
-            tr("Copy a picture of the active view"),
-            lambda: picturing.copy(picturing.view_at_work()),
-            shortcuts=("Ctrl+Shift+C",),
-        ),
-        Command(
-            "copy_cuts",
-            menu,
-            tr("Copy cuts as S&VG"),
-            tr("Copy the cut plan as SVG in mm"),
-            picturing.copy_cuts,
-            shortcuts=("Ctrl+Alt+C",),
-        ),
-        Command(
+        command("paste", tr("&Paste target"), paste, take_pasted, "Ctrl+V", gap=True),
+        command("copy_picture", tr("&Copy picture"), copy, copy_view, "Ctrl+Shift+C"),
+        command("copy_cuts", tr("Copy cuts as S&VG"), cuts, picturing.copy_cuts, "Ctrl+Alt+C"),
+        command(
             "clear",
-            menu,
             tr("Clear tar&get"),
             tr("Remove the target"),
             targeting.clear,
             icon="clear",
-            enabled_when=lambda now: now.has_target,
+            enabled_when=attrgetter("has_target"),
         ),
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 
 from PySide6.QtCore import QObject
@@ -11,11 +12,10 @@ from PySide6.QtCore import QObject
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.files.file_dialogs import FileDialogs
+from kirigami_studio.gui.files.file_dialogs import FileDialogs, FileToOpen
 from kirigami_studio.gui.files.open_project import OpenProject
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.session.command import Command
-from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.target.targeting import Targeting
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE, UnsavedWork
@@ -30,13 +30,10 @@ class FileCommands(QObject):
 
     Parameters
     ----------
-    services : Services
     unsaved : UnsavedWork
         Is asked before another project replaces this one.
-    ask : FileDialogs
     exports : ExportRow
         Has the kind of file that suits the material.
-    parent : QObject
     """
 
     def __init__(
@@ -54,27 +51,24 @@ class FileCommands(QObject):
         self._unsaved.guard(OTHER_PROJECT, self._choose_project)
 
     def _choose_project(self) -> None:
-        path = self._ask.project()
+        self._ask_for(FileToOpen.PROJECT, self._services.project.open)
+
+    def _ask_for(self, wanted: FileToOpen, take: Callable[[Path], None]) -> None:
+        path = self._ask.open(wanted)
         if path is not None:
-            self._services.project.open(path)
+            take(path)
 
     def ask_target(self) -> None:
         """Open a target file of the user's choice."""
-        path = self._ask.target()
-        if path is not None:
-            self._services.targeting.open(str(path))
+        self._ask_for(FileToOpen.TARGET, lambda path: self._services.targeting.open(str(path)))
 
     def ask_start(self) -> None:
         """Read a file of the user's choice as the start outline."""
-        path = self._ask.start()
-        if path is not None:
-            self._services.start.open(str(path))
+        self._ask_for(FileToOpen.START, lambda path: self._services.start.open(str(path)))
 
     def ask_second(self) -> None:
         """Read a file of the user's choice as the second target."""
-        path = self._ask.target()
-        if path is not None:
-            self._services.second.open(str(path))
+        self._ask_for(FileToOpen.TARGET, lambda path: self._services.second.open(str(path)))
 
     def open(self, name: str) -> None:
         """Open a dropped, pasted or recent file: a project or a target."""
@@ -92,6 +86,7 @@ class FileCommands(QObject):
         self._unsaved.guard(SAMPLE, self._open_sample)
 
     def _open_sample(self) -> None:
+        # a method, so that two questions about it are equal, and the second is not asked beside the first
         self._services.project.open(resource("examples", "heart.kiri"))
 
     def open_pair(self, path: Path) -> None:
@@ -112,8 +107,7 @@ class FileCommands(QObject):
 
     def _export(self, ending: str, motion: Motion) -> None:
         if self._services.session.stage is None:
-            sentence = tr("No design to export yet. Generate one first.")
-            self._services.session.post(Message(sentence, Tone.HINT))
+            self._services.session.hint(tr("No design to export yet. Generate one first."))
             return
         path = self._ask.export(f"{self._name}{ending}")
         if path is not None:
@@ -135,15 +129,11 @@ class FileCommands(QObject):
 
     def ask_artwork(self) -> None:
         """Lay a picture of the user's choice on the sheet."""
-        path = self._ask.artwork()
-        if path is not None:
-            self._services.artwork.open(path)
+        self._ask_for(FileToOpen.ARTWORK, self._services.artwork.open)
 
     def ask_second_artwork(self) -> None:
         """Let a second picture of the user's choice share the sheet."""
-        path = self._ask.artwork()
-        if path is not None:
-            self._services.artwork.open_second(path)
+        self._ask_for(FileToOpen.ARTWORK, self._services.artwork.open_second)
 
     def export_artwork(self) -> None:
         """Write the printed sheet into a folder of the user's choice."""
@@ -170,127 +160,47 @@ def commands(
     close: Callable[[], object],
 ) -> tuple[Command, ...]:
     """Return the commands of the File menu."""
-    menu = tr("&File")
+    command = partial(Command, tr("&File"))
+    sheet = partial(command, enabled_when=attrgetter("shows_design"))
+    recover = tr("Ask again about work that an earlier session left unsaved")
+    parts = tr("Choose other parts of the target's drawing, or join them in another way")
+    pairs = tr("Open one of twelve finished designs that lead from one shape to another")
+    artwork = tr("Export the picture on the sheet, in register with the cuts")
+    moving = tr("Export a looping GIF of the sheet as cut: it stops where it jams")
+    ideal = tr("Export a looping GIF of the ideal motion, with connectors of no width")
+    save_as, cut = tr("Save the project under another name"), tr("Export a cut file in mm, or a picture")
+    library, every = tr("Choose a silhouette from the library"), tr("Export every file type to one folder")
     return (
-        Command(
-            "new", menu, tr("&New project"), tr("Start an empty project"), files.new_project, shortcuts=("Ctrl+N",)
-        ),
-        Command(
+        command("new", tr("&New project"), tr("Start an empty project"), files.new_project, "Ctrl+N"),
+        command(
             "open_project",
-            menu,
             tr("Open &project …"),
             tr("Open a .kiri project"),
             files.ask_project,
-            shortcuts=("Ctrl+Shift+O",),
-            icon="project",
+            "Ctrl+Shift+O",
+            "project",
         ),
-        Command(
-            "recover",
-            menu,
-            tr("Reco&ver unsaved work …"),
-            tr("Ask again about work that an earlier session left unsaved"),
-            project.recovery.offer_again,
-        ),
-        Command(
-            "save",
-            menu,
-            tr("&Save project"),
-            tr("Save the project"),
-            unsaved.save,
-            shortcuts=("Ctrl+S",),
-            icon="save",
-        ),
-        Command(
-            "save_as",
-            menu,
-            tr("Save project &as …"),
-            tr("Save the project under another name"),
-            unsaved.save_as,
-            shortcuts=("Ctrl+Shift+S",),
-        ),
-        Command(
+        command("recover", tr("Reco&ver unsaved work …"), recover, project.recovery.offer_again),
+        command("save", tr("&Save project"), tr("Save the project"), unsaved.save, "Ctrl+S", "save"),
+        command("save_as", tr("Save project &as …"), save_as, unsaved.save_as, "Ctrl+Shift+S"),
+        command(
             "open_target",
-            menu,
             tr("&Open target …"),
             tr("Open a target silhouette"),
             files.ask_target,
-            shortcuts=("Ctrl+O",),
-            icon="open",
+            "Ctrl+O",
+            "open",
             gap=True,
         ),
-        Command(
-            "choose_parts",
-            menu,
-            tr("C&hoose parts …"),
-            tr("Choose other parts of the target's drawing, or join them in another way"),
-            targeting.choose_parts,
-            enabled_when=lambda now: now.has_parts,
+        command(
+            "choose_parts", tr("C&hoose parts …"), parts, targeting.choose_parts, enabled_when=attrgetter("has_parts")
         ),
-        Command(
-            "library",
-            menu,
-            tr("Target &library …"),
-            tr("Choose a silhouette from the library"),
-            show_library,
-            shortcuts=("Ctrl+L",),
-            icon="library",
-        ),
-        Command(
-            "pairs",
-            menu,
-            tr("E&xamples of pairs …"),
-            tr("Open one of twelve finished designs that lead from one shape to another"),
-            show_pairs,
-        ),
-        Command(
-            "export",
-            menu,
-            tr("Export &cut file …"),
-            tr("Export a cut file in mm, or a picture"),
-            files.export,
-            shortcuts=("Ctrl+E",),
-            icon="export",
-            gap=True,
-            enabled_when=lambda now: now.shows_design,
-        ),
-        Command(
-            "export_all",
-            menu,
-            tr("Export &everything …"),
-            tr("Export every file type to one folder"),
-            files.export_all,
-            shortcuts=("Ctrl+Shift+E",),
-            enabled_when=lambda now: now.shows_design,
-        ),
-        Command(
-            "export_artwork",
-            menu,
-            tr("Export art&work …"),
-            tr("Export the picture on the sheet, in register with the cuts"),
-            export_artwork,
-            enabled_when=lambda now: now.shows_design,
-        ),
-        Command(
-            "animation",
-            menu,
-            tr("Export an&imation …"),
-            tr("Export a looping GIF of the sheet as cut: it stops where it jams"),
-            files.animate,
-        ),
-        Command(
-            "animation_ideal",
-            menu,
-            tr("Expor&t ideal animation …"),
-            tr("Export a looping GIF of the ideal motion, with connectors of no width"),
-            partial(files.animate, Motion.IDEAL),
-        ),
-        Command(
-            "quit",
-            menu,
-            tr("&Quit"),
-            tr("Close Kirigami Studio"),
-            close,
-            shortcuts=("Ctrl+Q",),
-            gap=True,
-        ),
+        command("library", tr("Target &library …"), library, show_library, "Ctrl+L", "library"),
+        command("pairs", tr("E&xamples of pairs …"), pairs, show_pairs),
+        sheet("export", tr("Export &cut file …"), cut, files.export, "Ctrl+E", "export", gap=True),
+        sheet("export_all", tr("Export &everything …"), every, files.export_all, "Ctrl+Shift+E"),
+        sheet("export_artwork", tr("Export art&work …"), artwork, export_artwork),
+        command("animation", tr("Export an&imation …"), moving, files.animate),
+        command("animation_ideal", tr("Expor&t ideal animation …"), ideal, partial(files.animate, Motion.IDEAL)),
+        command("quit", tr("&Quit"), tr("Close Kirigami Studio"), close, "Ctrl+Q", gap=True),
     )

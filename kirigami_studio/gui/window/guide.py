@@ -14,12 +14,12 @@ from PySide6.QtWidgets import (
     QTreeWidget,
     QTreeWidgetItem,
     QTreeWidgetItemIterator,
-    QVBoxLayout,
     QWidget,
 )
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import language, tr
+from kirigami_studio.gui.widgets.layouts import column
 from kirigami_studio.gui.widgets.search_window import SearchWindow
 
 #: Headings down to this level are in the guide's contents.
@@ -66,20 +66,14 @@ class GuideWindow(SearchWindow):
 
     def _lay_out(self) -> None:
         side = QWidget()
-        left = QVBoxLayout(side)
-        left.setContentsMargins(12, 12, 4, 12)
-        left.setSpacing(6)
-        for part in (self.search, self.found, self.contents):
-            left.addWidget(part)
+        column(self.search, self.found, self.contents, on=side, spacing=6, margins=(12, 12, 4, 12))
         columns = QSplitter(Qt.Orientation.Horizontal)
         columns.setChildrenCollapsible(False)
         columns.addWidget(side)
         columns.addWidget(self.text)
         columns.setStretchFactor(1, 1)
         columns.setSizes([260, 700])
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(columns)
+        column(columns, on=self)
 
     def _read(self) -> None:
         """Show the guide of the present language."""

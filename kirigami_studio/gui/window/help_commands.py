@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command
@@ -11,33 +12,12 @@ from kirigami_studio.gui.window.open_dialogs import Dialogs
 
 def commands(dialogs: Dialogs, open_sample: Callable[[], None]) -> tuple[Command, ...]:
     """Return the commands of the Help menu."""
-    menu = tr("&Help")
+    command = partial(Command, tr("&Help"))
+    keys, sample = tr("Search all keys and gestures"), tr("Open a sample project with heart designs")
+    about = tr("Version and licences of the program and of what comes with it")
     return (
-        Command(
-            "guide", menu, tr("&Guide"), tr("Open the user guide"), dialogs.show_guide, shortcuts=("F1",), icon="guide"
-        ),
-        Command(
-            "shortcuts",
-            menu,
-            tr("&Keyboard shortcuts"),
-            tr("Search all keys and gestures"),
-            dialogs.show_shortcuts,
-            shortcuts=("?", "Ctrl+/"),
-        ),
-        Command(
-            "sample",
-            menu,
-            tr("Open &sample project"),
-            tr("Open a sample project with heart designs"),
-            open_sample,
-            gap=True,
-        ),
-        Command(
-            "about",
-            menu,
-            tr("&About Kirigami Studio"),
-            tr("Version and licences of the program and of what comes with it"),
-            dialogs.show_about,
-            gap=True,
-        ),
+        command("guide", tr("&Guide"), tr("Open the user guide"), dialogs.show_guide, "F1", "guide"),
+        command("shortcuts", tr("&Keyboard shortcuts"), keys, dialogs.show_shortcuts, "?; Ctrl+/"),
+        command("sample", tr("Open &sample project"), sample, open_sample, gap=True),
+        command("about", tr("&About Kirigami Studio"), about, dialogs.show_about, gap=True),
     )

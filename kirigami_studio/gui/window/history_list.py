@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent
-from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QListWidget, QListWidgetItem, QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.widgets.layouts import column, label
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.project.history import History
 
@@ -30,13 +31,8 @@ class HistoryList(QWidget):
         self.steps.setSpacing(2)
         self.steps.itemClicked.connect(self._go)
         self.steps.itemActivated.connect(self._go)
-        self.counted = QLabel()
-        self.counted.setObjectName("muted")
-        column = QVBoxLayout(self)
-        column.setContentsMargins(8, 8, 8, 8)
-        column.setSpacing(6)
-        column.addWidget(self.steps, 1)
-        column.addWidget(self.counted)
+        self.counted = label()
+        column((self.steps, 1), self.counted, on=self, spacing=6, margins=(8, 8, 8, 8))
         self.resize(WIDTH, 380)
         # Over the stage's upper right corner: beside the candidates, off the target and the menus.
         self.move(parent.mapToGlobal(QPoint(round(0.74 * parent.width()) - WIDTH, 120)))

@@ -16,6 +16,7 @@ from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.theme import Palette
@@ -52,8 +53,6 @@ class MainWindow(QMainWindow):
 
     Parameters
     ----------
-    services : Services
-    palette : Palette
     file_dialogs : FileDialogs, optional
         In the place of the desktop's.
     """
@@ -93,7 +92,9 @@ class MainWindow(QMainWindow):
         )
         self.pasting = PasteReader(session, self)
         self.picturing = PictureMaker(self, session, services.cutting)
-        self.heading = self._heading()
+        self.heading = label()  #: name of the project, in the middle of the toolbar
+        self.heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.heading.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.presenters = Presenters(
             columns,
             services,
@@ -216,14 +217,6 @@ class MainWindow(QMainWindow):
             follows_system=self.appearance.follows_system,
             still=services.preferences.present.motion == "still",
         )
-
-    def _heading(self) -> QLabel:
-        """The name of the project, in the middle of the toolbar."""
-        heading = QLabel()
-        heading.setObjectName("muted")
-        heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        heading.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-        return heading
 
     def _build_toolbar(self) -> None:
         bar = self.addToolBar(tr("Main"))

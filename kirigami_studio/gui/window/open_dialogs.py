@@ -25,10 +25,9 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.make.export_report import ExportReport
     from kirigami_studio.gui.make.library_editors import MaterialEditor
     from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
-    from kirigami_studio.gui.target.outline_board import OutlineBoard
+    from kirigami_studio.gui.target.outline_board import OutlineBoard, StartBoard
     from kirigami_studio.gui.target.part_picker import PartPicker
     from kirigami_studio.gui.target.silhouette_picker import SilhouettePicker
-    from kirigami_studio.gui.target.start_board import StartBoard
     from kirigami_studio.gui.window.about import AboutWindow
     from kirigami_studio.gui.window.guide import GuideWindow
     from kirigami_studio.gui.window.history_list import HistoryList
@@ -45,9 +44,6 @@ class Dialogs(QObject):
     ----------
     window : QWidget
         The parent of the dialogs.
-    services : Services
-    files : FileCommands
-    appearance : Appearance
     library_button : QWidget
         The library opens below it.
     commands : callable
@@ -140,11 +136,11 @@ class Dialogs(QObject):
 
     def show_start_board(self) -> None:
         """Open the board that the start is drawn on, with the present start."""
-        from kirigami_studio.gui.target.start_board import StartBoard
+        from kirigami_studio.gui.target.outline_board import StartBoard
 
         if self.start_board is None:
             self.start_board = StartBoard(self._window)
-            self.start_board.taken.connect(self._services.start.draw)
+            self.start_board.taken.connect(self._services.start.take)
             self.start_board.check_wanted.connect(self._services.start.check)
             self._services.start.checked.connect(self.start_board.show_check)
             self._appearance.colour(self.start_board)
@@ -199,14 +195,14 @@ class Dialogs(QObject):
         if self.artwork is None:
             keeper = self._services.artwork
             self.artwork = ArtworkEditor(self._window)
-            self.artwork.picture_wanted.connect(self._files.ask_artwork)
-            self.artwork.removed.connect(keeper.remove)
-            self.artwork.second_wanted.connect(self._files.ask_second_artwork)
-            self.artwork.second_removed.connect(keeper.remove_second)
+            self.artwork.choose.clicked.connect(self._files.ask_artwork)
+            self.artwork.remove.clicked.connect(keeper.remove)
+            self.artwork.second.clicked.connect(self._files.ask_second_artwork)
+            self.artwork.remove_second.clicked.connect(keeper.remove_second)
             self.artwork.stripes_wanted.connect(keeper.share)
             self.artwork.changed.connect(lambda changes: keeper.place(**changes))
             self.artwork.edited.connect(self._services.session.history.end_drag)
-            self.artwork.export_wanted.connect(self.export_artwork)
+            self.artwork.export.clicked.connect(self.export_artwork)
             self._services.session.document_changed.connect(self._update_artwork)
             self._services.session.display.stage_changed.connect(self._update_artwork)
         self._update_artwork()

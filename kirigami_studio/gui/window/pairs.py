@@ -6,11 +6,13 @@ from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QIcon
-from PySide6.QtWidgets import QDialog, QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QListWidgetItem, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.stage.layout_items import states_pixmap
+from kirigami_studio.gui.widgets.layouts import column, label
+from kirigami_studio.gui.widgets.search_window import picture_list
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.projects import Pair, reading_pairs
 from kirigami_studio.studio.two_states import TwoStates
@@ -37,22 +39,9 @@ class PairGallery(QDialog):
         self._undrawn: list[int] = []
         self._drawing = QTimer(self, singleShot=True, interval=0)  # one picture for each turn of the window
         self._drawing.timeout.connect(self._draw_next)
-        self.list = QListWidget()
-        self.list.setObjectName("pairList")
-        self.list.setAccessibleName(tr("Pairs of shapes"))
-        self.list.setViewMode(QListView.ViewMode.IconMode)
-        self.list.setMovement(QListView.Movement.Static)
-        self.list.setResizeMode(QListView.ResizeMode.Adjust)
-        self.list.setIconSize(PICTURE)
-        self.list.setGridSize(CARD)
-        self.list.setWordWrap(True)
-        self.about = QLabel(tr(ABOUT))
-        self.about.setObjectName("muted")
-        self.about.setWordWrap(True)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 12, 12, 10)
-        column.addWidget(self.list, 1)
-        column.addWidget(self.about)
+        self.list = picture_list("pairList", tr("Pairs of shapes"), PICTURE, CARD)
+        self.about = label(tr(ABOUT), wraps=True)
+        column((self.list, 1), self.about, on=self, margins=(12, 12, 12, 10))
         self.list.itemClicked.connect(self._on_activated)
         self.list.itemActivated.connect(self._on_activated)
 
@@ -68,7 +57,6 @@ class PairGallery(QDialog):
         return bool(self.pairs) and not self._job.busy and not self._undrawn
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         if palette is not self._palette:
             self._palette = palette
             self._undrawn = list(range(len(self.pairs)))

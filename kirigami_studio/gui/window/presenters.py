@@ -14,17 +14,17 @@ from kirigami_studio.gui.gallery.all_designs_presenter import AllDesignsPresente
 from kirigami_studio.gui.gallery.comparing import Comparison
 from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
 from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
-from kirigami_studio.gui.run.run_presenter import RunPresenter
+from kirigami_studio.gui.run.generate_bar import RunPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.session.session import Entry
-from kirigami_studio.gui.stage.void_presenter import VoidPresenter
+from kirigami_studio.gui.stage.void_bar import VoidPresenter
 from kirigami_studio.gui.target.pasting import PasteReader
-from kirigami_studio.gui.target.target_presenter import SecondPresenter, StartPresenter, TargetPresenter
+from kirigami_studio.gui.target.target_presenter import StartPresenter, TargetPresenter
 from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
 from kirigami_studio.gui.window.services import Services
-from kirigami_studio.gui.window.stage_presenter import StagePresenter
+from kirigami_studio.gui.window.stage_panel import StagePresenter
 from kirigami_studio.gui.window.welcome_page import WelcomePresenter
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of
@@ -38,11 +38,6 @@ class Presenters(QObject):
 
     Parameters
     ----------
-    columns : Columns
-    services : Services
-    dialogs : Dialogs
-    files : FileCommands
-    pasting : PasteReader
     status : QLabel
         Tells of the void that is pointed at.
     command : callable
@@ -126,28 +121,7 @@ class Presenters(QObject):
             editor=services.settings,
             cancel=chosen.cancel,
         )
-        self.start = StartPresenter(
-            target.start,
-            settings,
-            session,
-            reader=services.start,
-            openers={
-                LIBRARY_START: lambda: dialogs.show_start_library(settings.start),
-                FILE_START: files.ask_start,
-                DRAWN_START: dialogs.show_start_board,
-                PAIRS: dialogs.show_pairs,
-            },
-            editor=services.settings,
-        )
-        self.second = SecondPresenter(
-            settings.second,
-            services.second,
-            {
-                LIBRARY_START: lambda: dialogs.show_second_library(settings.second.shape),
-                FILE_START: files.ask_second,
-                DRAWN_START: dialogs.show_second_board,
-            },
-        )
+        self.start = StartPresenter(target.start, settings, session, services.start, services.settings)
         self.voids = VoidPresenter(
             stage.view,
             stage.voids,
@@ -191,7 +165,7 @@ class Presenters(QObject):
         stage.voids.refit.clicked.connect(self.refit)
         chosen.sampled.known.connect(stage.show_sample)
         chosen.trimming.busy_changed.connect(stage.show_trimming)
-        chosen.refitting.busy_changed.connect(stage.voids.show_fitting)
+        chosen.refitting.busy_changed.connect(stage.voids.refit.setChecked)
         services.as_cut.changed.connect(stage.show_as_cut)
         services.artwork.painted.connect(stage.view.show_artwork)
         services.cutting.planned.connect(stage.show_title)
@@ -210,11 +184,27 @@ class Presenters(QObject):
         panel, services, dialogs, files = self._columns.target, self._services, self._dialogs, self._files
         panel.buttons["openTarget"].clicked.connect(files.ask_target)
         panel.buttons["library"].clicked.connect(dialogs.show_library)
-        panel.view.file_dropped.connect(files.open)
+        panel.view.drops.file_dropped.connect(files.open)
         services.targeting.reader.design_read.connect(files.open_design)
         panel.opened.size_wanted.connect(services.fabrication.set_opened_size)
         panel.opened.drawn_wanted.connect(services.fabrication.cut_at_drawn_size)
         panel.opened.edited.connect(services.session.history.end_drag)
+        settings, second = self._columns.settings, self._columns.settings.second
+        openers: dict[str, Callable[[], object]] = {
+            LIBRARY_START: lambda: dialogs.show_start_library(settings.start),
+            FILE_START: files.ask_start,
+            DRAWN_START: dialogs.show_start_board,
+            PAIRS: dialogs.show_pairs,
+        }
+        for wanted in (panel.start.other_wanted, settings.other_start_wanted):
+            wanted.connect(lambda kind: openers[kind]())
+        second_openers: dict[str, Callable[[], object]] = {
+            LIBRARY_START: lambda: dialogs.show_second_library(second.shape),
+            FILE_START: files.ask_second,
+            DRAWN_START: dialogs.show_second_board,
+        }
+        second.other_wanted.connect(lambda kind: second_openers[kind]())
+        second.drops.file_dropped.connect(services.second.open)
         for reader, purpose in (
             (services.targeting.reader, Purpose.TARGET),
             (services.start, Purpose.START),
@@ -231,7 +221,7 @@ class Presenters(QObject):
         panel.exports.ideal_wanted.connect(lambda: files.animate(Motion.IDEAL))
         services.exporter.exported.connect(dialogs.show_report)
         services.project.recovery.recover_wanted.connect(files.recover)
-        for changed in (services.project.materials.material_added, dialogs.materials_changed):
+        for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
         pasting.file_wanted.connect(files.open)
 
@@ -324,4 +314,4 @@ class Presenters(QObject):
             chosen.refit()
         else:
             chosen.cancel()
-        self._columns.stage.voids.show_fitting(chosen.refitting.busy)
+        self._columns.stage.voids.refit.setChecked(chosen.refitting.busy)

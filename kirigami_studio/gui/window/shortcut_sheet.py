@@ -6,10 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from PySide6.QtGui import QKeySequence
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.session.command import Command
+from kirigami_studio.gui.widgets.layouts import column
 from kirigami_studio.gui.widgets.search_window import SearchedList, SearchWindow
 
 
@@ -74,11 +75,7 @@ class ShortcutSheet(SearchWindow):
         )
         self.list = SearchedList([tr("Action"), tr("Keys or mouse")], name=tr("Shortcuts and gestures"))
         self.list.setObjectName("shortcutList")
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 12, 12, 10)
-        column.addWidget(self.search)
-        column.addWidget(self.list, 1)
-        column.addWidget(self.found)
+        column(self.search, (self.list, 1), self.found, on=self, margins=(12, 12, 12, 10))
         self._fill(commands)
         self.search.textChanged.connect(self._filter)
         self._filter("")

@@ -1,30 +1,36 @@
-"""The chosen design, large: layout, cuts or comparison, with overlays, plots and the deployment."""
+"""The chosen design, large: layout, cuts or comparison, with overlays, plots and the deployment; and its presenter."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QByteArray, QSettings, QSignalBlocker, QSize, Qt, Signal
+import math
+from collections.abc import Callable
+
+from PySide6.QtCore import QByteArray, QObject, QSettings, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QResizeEvent
-from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMenu, QSplitter, QStackedWidget, QToolButton, QWidget
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.gallery.compare_page import ComparePage
 from kirigami_studio.gui.gallery.gallery_model import described
+from kirigami_studio.gui.make.cut_view import CutView
 from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
-from kirigami_studio.gui.session.session import Entry
+from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutState
-from kirigami_studio.gui.stage.as_cut_line import AsCutLine
+from kirigami_studio.gui.stage.curves import CurveReader
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
-from kirigami_studio.gui.stage.ends_line import EndsLine
+from kirigami_studio.gui.stage.gripping import GripFinder
 from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, LayoutView
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
+from kirigami_studio.gui.stage.slider_lines import AsCutLine, EndsLine
 from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.widgets.layouts import column, plain_pane
 from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.studio.two_states import TwoStates
+from kirigami_studio.studio.two_states import TwoStates, match_of_start, start_of
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
@@ -86,7 +92,7 @@ class StagePanel(Card):
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
         self.cuts_switch = SwitchButton("cuts", "cuts", tr(CUTS))
-        self.cuts_switch.switch.toggled.connect(self._toggle_cuts)
+        self.cuts_switch.switch.toggled.connect(lambda on: self._turn_to(self.cuts if on else self._layout_page))
         self.before = SwitchButton("before", "before", tr(BEFORE))
         self.before.switch.toggled.connect(self._toggle_before)
         self.trim = SwitchButton("trim", "trim", tr(TRIM))
@@ -147,30 +153,20 @@ class StagePanel(Card):
             button.hide()  # until it is known that there is room
 
     def _add_pages(self) -> None:
-        self._layout_page = layout = QWidget()
-        layout.setObjectName("plain")
-        column = QVBoxLayout(layout)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
+        self._layout_page = plain_pane()
         self.split = QSplitter(Qt.Orientation.Vertical)
         self.split.setChildrenCollapsible(False)
         self.split.addWidget(self.view)
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
-        self.welcome = WelcomePage()
-        column.addWidget(self.welcome, 1)
-        column.addWidget(self.split, 1)
-        self.voids = VoidBar()
+        self.welcome, self.voids = WelcomePage(), VoidBar()
+        below = (self.voids, self.deployment, self.ends, self.as_cut)
+        column((self.welcome, 1), (self.split, 1), *below, on=self._layout_page, spacing=8)
         self.voids.hide()
-        column.addWidget(self.voids)
-        column.addWidget(self.deployment)
-        column.addWidget(self.ends)
-        column.addWidget(self.as_cut)
         self.pages = QStackedWidget()
-        self.pages.addWidget(layout)
-        self.pages.addWidget(self.cuts)
-        self.pages.addWidget(self.compare)
+        for page in (self._layout_page, self.cuts, self.compare):
+            self.pages.addWidget(page)
         self.body.addWidget(self.pages, 1)
         self.verdict = VerdictBar()
         self.body.addWidget(self.verdict)
@@ -225,18 +221,22 @@ class StagePanel(Card):
         """What Space plays now."""
         return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
 
+    @property
+    def _in_sight(self) -> LayoutView | CutView | ComparePage:
+        return self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view
+
     def take_focus(self) -> None:
         """Give the keyboard to what is in sight."""
-        view = self.welcome if self.split.isHidden() else self.view
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else view).setFocus()
+        alone = self._in_sight is self.view and self.split.isHidden()
+        (self.welcome if alone else self._in_sight).setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).fit()
+        self._in_sight.fit()
 
     def zoom(self, factor: float) -> None:
         """Enlarge what is in sight."""
-        (self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view).zoom(factor)
+        self._in_sight.zoom(factor)
 
     def set_comparing(self, on: bool) -> None:
         """Show several designs side by side, or one alone."""
@@ -252,9 +252,6 @@ class StagePanel(Card):
     def _show_comparison(self) -> None:
         self.show_title()
         self.whole_width_wanted.emit(self.wants_whole_width)
-
-    def _toggle_cuts(self, on: bool) -> None:
-        self._turn_to(self.cuts if on else self._layout_page)
 
     def _turn_to(self, page: QWidget) -> None:
         compared = self.comparing
@@ -485,10 +482,6 @@ class StagePanel(Card):
             part.set_low(self.height() < LOW)
         self.body.activate()
 
-    def set_overlay(self, overlay: Overlay, on: bool) -> None:
-        """Draw something over the layout, or no longer."""
-        self.overlays[overlay].setChecked(on)
-
     def _update_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, switch in self.overlays.items() if switch.isChecked())
         self.view.set_overlays(chosen)
@@ -519,3 +512,102 @@ def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float)
         tr("match {match:.1f} %   panels ±{variation:.0f} %", match=match, variation=variation),
         tr("match {match:.1f} %", match=match),
     )
+
+
+class StagePresenter(QObject):
+    """Shows the design on the stage, as wide as it would be cut, and what a run leaves of it.
+
+    Parameters
+    ----------
+    name_of : callable
+        What a design is called.
+    """
+
+    facts_changed = Signal(str)  #: what the status line says of the design
+
+    def __init__(
+        self,
+        panel: StagePanel,
+        session: Session,
+        *,
+        curves: CurveReader,
+        grips: GripFinder,
+        name_of: Callable[[Candidate | None], str],
+    ) -> None:
+        super().__init__(panel)
+        self._panel, self._session, self._curves, self._name_of = panel, session, curves, name_of
+        self._running = False
+        panel.plots_switch.switch.toggled.connect(curves.want)
+        panel.status.connect(session.set_status)
+        panel.overlays_changed.connect(lambda shown: grips.want(Overlay.GRIPS in shown))
+        curves.grown.connect(panel.plots.show_curves)
+        grips.changed.connect(panel.view.show_grips)
+        self.show_document()
+        self.show_design(None)
+
+    def show_run(self) -> None:
+        """A run has begun: its target is shown, then the best design so far."""
+        self._running = True
+        self._panel.set_trimmable(False)
+        self._panel.show_run(self._session.document.target)
+
+    def show_idle(self) -> None:
+        """No run is in progress."""
+        self._running = False
+        self._panel.set_trimmable(True)
+        self._panel.show_idle()
+        self._show_hint()
+
+    def _show_hint(self) -> None:
+        """Say what to do next while there is no design."""
+        if self._running:
+            return
+        if self._session.document.target is not None:
+            self._panel.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
+            return
+        hint = tr("Draw a shape, open a file, or take a silhouette.")
+        self._panel.set_hint("target", tr("Start with a target"), hint)
+
+    def show_document(self) -> None:
+        """The document has changed."""
+        self._show_width()
+        self._show_hint()
+
+    def show_design(self, entry: Entry | None) -> None:
+        """Another design is chosen, or none."""
+        target, candidate = self._session.document.target, None if entry is None else entry.candidate
+        self._show_width()
+        self._panel.show_entry(entry, target, self._name_of(candidate))
+        self._curves.show(None if entry is None else entry.design, target)
+        self.facts_changed.emit("" if entry is None else "   ·   ".join(_facts(entry)))
+
+    def _show_width(self) -> None:
+        """The flat sheet is as wide as opens the design on the stage to the size asked for."""
+        stage = self._session.stage
+        self._panel.set_sheet_width(self._session.width_of(None if stage is None else stage.candidate))
+
+
+def _facts(entry: Entry) -> list[str]:
+    """Facts about a design for the status line."""
+    (rows, columns), score, trim = entry.candidate.sheet.grid, entry.candidate.score, entry.candidate.trim
+    facts = [
+        tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns),
+        tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
+        tr("match {match:.1f} %", match=100 * score.iou_exact),
+    ]
+    if entry.candidate.sheet.start is not None and trim is None:
+        share = 100 * match_of_start(entry.candidate.sheet)
+        facts.append(tr("{start} {share:.1f} % when flat", start=start_of(entry.candidate), share=share))
+    second = entry.candidate.second
+    if second is not None:
+        shown, angle = second.target.outline.name, math.degrees(second.target.phi)
+        share = 100 * second.match.iou_exact
+        if trim is None:
+            facts.append(tr("{name} {share:.1f} % at {angle:.0f}°", name=shown, share=share, angle=angle))
+        else:
+            facts.append(tr("{name} {share:.1f} % at {angle:.0f}° untrimmed", name=shown, share=share, angle=angle))
+    if entry.candidate.symmetry is not None:
+        facts.insert(1, tr("symmetric"))
+    if trim is not None:
+        facts.append(tr("trimmed match {match:.1f} %", match=100 * trim.iou))
+    return facts if score.feasible else [*facts, tr("overlaps itself")]

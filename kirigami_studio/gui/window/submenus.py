@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QAction, QActionGroup
-from PySide6.QtWidgets import QLabel, QMenu, QWidget, QWidgetAction
+from PySide6.QtWidgets import QMenu, QWidget, QWidgetAction
 
 from kirigami_studio.foundation.words import languages, tr
 from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
@@ -17,34 +17,15 @@ from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import TargetView
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.language import NAMES, SYSTEM
+from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.project.recent import Recent
 
 #: Commands by id, "" for a gap.  Those that cannot be given now are grey.
 BOARD = (
-    *(
-        "undo",
-        "redo",
-        "",
-        "duplicate",
-        "delete",
-        "union",
-        "difference",
-        "intersection",
-        "to_front",
-        "to_back",
-        "",
-        "pose",
-        "points",
-        "polygon",
-        "freehand",
-        "rectangle",
-        "ellipse",
-        "regular",
-        "star",
-        "text",
-    ),
+    *("undo", "redo", "", "duplicate", "delete", "union", "difference", "intersection", "to_front", "to_back"),
+    *("", "pose", "points", "polygon", "freehand", "rectangle", "ellipse", "regular", "star", "text"),
     *("", "paste", "copy_picture", "clear", "", "fit", "zoom_selection", "zoom_real", "zoom_in", "zoom_out"),
     *("", "grid", "axis", "", "edit_target"),
 )
@@ -81,25 +62,19 @@ class PictureMenu(QMenu):
             each.setToolTip(tr("{scale} PNG pixels per screen pixel", scale=scale))
             each.setCheckable(True)
             each.setChecked(scale == self._picturing.scale)
-            each.triggered.connect(partial(self._set_scale, scale))
+            each.triggered.connect(lambda _=False, scale=scale: setattr(self._picturing, "scale", scale))
             sizes.addAction(each)
         self.addSeparator()
         overlays = self.addAction(tr("Include &overlays"))
         overlays.setObjectName("pictureOverlays")
         overlays.setCheckable(True)
         overlays.setChecked(self._picturing.overlays)
-        overlays.toggled.connect(self._set_overlays)
+        overlays.toggled.connect(lambda on: setattr(self._picturing, "overlays", on))
 
     def _write(self, view: QWidget, name: str, _: bool = False) -> None:
         path = self._ask(f"{name.lower()}.png")
         if path is not None:
             self._picturing.write(view, path)
-
-    def _set_scale(self, scale: int, _: bool = False) -> None:
-        self._picturing.scale = scale
-
-    def _set_overlays(self, on: bool) -> None:
-        self._picturing.overlays = on
 
 
 class RecentMenu(QMenu):
@@ -140,11 +115,9 @@ class RecentMenu(QMenu):
 
     def _caption(self, title: str) -> QAction:
         """A heading in the menu; the style draws no titles of sections."""
-        label = QLabel(title)
-        label.setObjectName("muted")
-        label.setContentsMargins(12, 6, 12, 2)
-        caption = QWidgetAction(self)
-        caption.setDefaultWidget(label)
+        words, caption = label(title), QWidgetAction(self)
+        words.setContentsMargins(12, 6, 12, 2)
+        caption.setDefaultWidget(words)
         caption.setEnabled(False)
         return caption
 
@@ -156,11 +129,8 @@ class RecentMenu(QMenu):
         action = self.addAction(f"&{number % 10}  {shown}")
         action.setToolTip(path)
         action.setStatusTip(path)
-        action.triggered.connect(partial(self._open, path))
+        action.triggered.connect(lambda _=False: self._take(path))
         self.entries[path] = action
-
-    def _open(self, path: str, _: bool = False) -> None:
-        self._take(path)
 
 
 class LanguageMenu(QMenu):
@@ -176,7 +146,7 @@ class LanguageMenu(QMenu):
             name = tr("&System") if code == SYSTEM else NAMES.get(code, code)
             each = self.choices[code] = self.addAction(name)
             each.setCheckable(True)
-            each.triggered.connect(partial(self._choose, code))
+            each.triggered.connect(lambda _=False, code=code: appearance.choose_language(code))
             group.addAction(each)
         self.aboutToShow.connect(self.refresh)
         self.refresh()
@@ -186,9 +156,6 @@ class LanguageMenu(QMenu):
         chosen = self.choices.get(self._appearance.language)
         if chosen is not None:
             chosen.setChecked(True)
-
-    def _choose(self, code: str, _: bool = False) -> None:
-        self._appearance.choose_language(code)
 
 
 def offer_context_menus(target: TargetPanel, stage: StagePanel, commands: CommandActions) -> None:

@@ -19,18 +19,10 @@ from kirigami_studio.studio.projects import ChangedOnDisk
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """How the user is asked before another project replaces this one.
+    """How the user is asked before another project replaces this one."""
 
-    Attributes
-    ----------
-    question : str
-        Asked while there are unsaved changes.
-    proceed : str
-        The button that goes on without saving.
-    """
-
-    question: str
-    proceed: str
+    question: str  #: asked while there are unsaved changes
+    proceed: str  #: the button that goes on without saving
 
 
 NEW_PROJECT = Replacement(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 
 from PySide6.QtWidgets import QAbstractButton, QComboBox
 
@@ -20,18 +21,7 @@ from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.stage_panel import StagePanel
 
 #: Commands that switch what is drawn over the layout.
-OVERLAY_COMMANDS = {
-    "show_target": Overlay.TARGET,
-    "show_mismatch": Overlay.MISMATCH,
-    "show_faults": Overlay.FAULTS,
-    "show_stretch": Overlay.STRETCH,
-    "show_grips": Overlay.GRIPS,
-    "show_ratios": Overlay.RATIOS,
-    "show_openings": Overlay.OPENINGS,
-    "show_small_parts": Overlay.SMALL_PARTS,
-    "show_panel_numbers": Overlay.PANEL_NUMBERS,
-    "show_void_numbers": Overlay.VOID_NUMBERS,
-}
+OVERLAY_COMMANDS = {f"show_{overlay.value}": overlay for overlay in Overlay}
 
 
 def commands(
@@ -53,84 +43,39 @@ def commands(
 
 
 def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
-    bar, menu = stage.deployment, tr("&View")
+    bar, command = stage.deployment, partial(Command, tr("&View"))
+    slower = tr("Play the deployment slower, down to a quarter of normal speed")
+    faster = tr("Play the deployment faster, up to four times normal speed")
+    mode, speed = tr("Switch between back and forth, loop and once"), bar.options.change_speed
+    as_cut = tr("Show the panels with their bows and connectors, as they are cut")
+    ideal = tr("Let the slider go on where the sheet would jam as cut")
+    flat, target = partial(bar.set_phi, math.pi), partial(_go_to_target, stage, session)
+    jams, shown = attrgetter("ideal.enabled"), attrgetter("ideal.checked")
     return (
-        Command(
-            "play",
-            menu,
-            tr("&Play / pause"),
-            tr("Play the deployment"),
-            partial(_play, stage),
-            shortcuts=("Space",),
-            icon="play",
-        ),
-        Command(
-            "slower",
-            menu,
-            tr("Slower"),
-            tr("Play the deployment slower, down to a quarter of normal speed"),
-            partial(bar.options.change_speed, -1),
-            shortcuts=("<",),
-        ),
-        Command(
-            "faster",
-            menu,
-            tr("Faster"),
-            tr("Play the deployment faster, up to four times normal speed"),
-            partial(bar.options.change_speed, 1),
-            shortcuts=(">",),
-        ),
-        Command(
-            "play_mode",
-            menu,
-            tr("Next play m&ode"),
-            tr("Switch between back and forth, loop and once"),
-            bar.options.next_mode,
-            shortcuts=("Shift+P",),
-        ),
-        Command(
-            "to_flat",
-            menu,
-            tr("&Flat sheet (180°)"),
-            tr("Show the sheet flat"),
-            partial(bar.set_phi, math.pi),
-            shortcuts=("Ctrl+Left",),
-        ),
-        Command(
-            "to_target",
-            menu,
-            tr("&Target angle"),
-            tr("Show the target angle"),
-            partial(_go_to_target, stage, session),
-            shortcuts=("Ctrl+Right",),
-        ),
-        Command(
-            "as_cut",
-            menu,
-            tr("As cut"),
-            tr("Show the panels with their bows and connectors, as they are cut"),
-            bar.as_cut.trigger,
-            shortcuts=("Shift+C",),
-            icon="connector",
-            switch=bar.as_cut,
-        ),
-        Command(
+        command("play", tr("&Play / pause"), tr("Play the deployment"), partial(_play, stage), "Space", "play"),
+        command("slower", tr("Slower"), slower, partial(speed, -1), "<"),
+        command("faster", tr("Faster"), faster, partial(speed, 1), ">"),
+        command("play_mode", tr("Next play m&ode"), mode, bar.options.next_mode, "Shift+P"),
+        command("to_flat", tr("&Flat sheet (180°)"), tr("Show the sheet flat"), flat, "Ctrl+Left"),
+        command("to_target", tr("&Target angle"), tr("Show the target angle"), target, "Ctrl+Right"),
+        Command.switching(tr("&View"), "as_cut", tr("As cut"), as_cut, bar.as_cut, "Shift+C", "connector"),
+        command(
             "ideal",
-            menu,
             tr("Ideal beyond the &jam"),
-            tr("Let the slider go on where the sheet would jam as cut"),
+            ideal,
             bar.ideal.toggle,
-            shortcuts=("Shift+J",),
-            enabled_when=lambda now: now.ideal.enabled,
-            checked_when=lambda now: now.ideal.checked,
+            "Shift+J",
+            enabled_when=jams,
+            checked_when=shown,
         ),
     )
 
 
 def _overlays(stage: StagePanel) -> tuple[Command, ...]:
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
-        switch = stage.overlays[OVERLAY_COMMANDS[name]]
-        return Command(name, tr("&View"), text, tip, switch.trigger, (key,), icon, gap, switch=switch)
+        return Command.switching(
+            tr("&View"), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap=gap
+        )
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")
@@ -153,162 +98,72 @@ def _overlays(stage: StagePanel) -> tuple[Command, ...]:
 
 
 def _faults(stage: StagePanel) -> tuple[Command, ...]:
+    command, step = partial(Command, tr("&View")), stage.tour.step
     return (
-        Command(
-            "next_fault",
-            tr("&View"),
-            tr("Ne&xt fault"),
-            tr("Zoom to the next fault"),
-            partial(stage.tour.step, 1),
-            shortcuts=("F3",),
-        ),
-        Command(
-            "previous_fault",
-            tr("&View"),
-            tr("Previo&us fault"),
-            tr("Zoom to the previous fault"),
-            partial(stage.tour.step, -1),
-            shortcuts=("Shift+F3",),
+        command("next_fault", tr("Ne&xt fault"), tr("Zoom to the next fault"), partial(step, 1), "F3"),
+        command(
+            "previous_fault", tr("Previo&us fault"), tr("Zoom to the previous fault"), partial(step, -1), "Shift+F3"
         ),
     )
 
 
 def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
-    stage, compare, menu = columns.stage, columns.gallery.bar.compare.switch, tr("&View")
+    stage, compare = columns.stage, columns.gallery.bar.compare
+    command, switching = partial(Command, tr("&View")), partial(Command.switching, tr("&View"))
+    before, cuts = tr("Show the design before polishing"), tr("Show the cut plan at kerf width")
+    plots = tr("Show match, size and gaps at every angle")
+    every = tr("Show all designs flat, half open and open in one window")
     return (
-        Command(
-            "before",
-            menu,
-            tr("&Before polish"),
-            tr("Show the design before polishing"),
-            stage.before.switch.trigger,
-            shortcuts=("B",),
-            icon="before",
-            gap=True,
-            switch=stage.before.switch,
-        ),
-        Command(
-            "cuts",
-            menu,
-            tr("&Cuts"),
-            tr("Show the cut plan at kerf width"),
-            stage.cuts_switch.switch.trigger,
-            shortcuts=("C",),
-            icon="cuts",
-            switch=stage.cuts_switch.switch,
-        ),
-        Command(
-            "plots",
-            menu,
-            tr("P&lots"),
-            tr("Show match, size and gaps at every angle"),
-            stage.plots_switch.switch.trigger,
-            shortcuts=("J",),
-            icon="plots",
-            switch=stage.plots_switch.switch,
-        ),
-        Command(
-            "compare",
-            menu,
-            tr("Si&de by side"),
-            tr("Compare designs side by side"),
-            compare.trigger,
-            shortcuts=("K",),
-            icon="compare",
-            switch=compare,
-        ),
-        Command(
-            "all_designs",
-            menu,
-            tr("All designs"),
-            tr("Show all designs flat, half open and open in one window"),
-            presenters.all_designs.toggle,
-            shortcuts=("A",),
-            icon="table",
-        ),
-        Command(
+        switching("before", tr("&Before polish"), before, stage.before.switch, "B", "before", gap=True),
+        switching("cuts", tr("&Cuts"), cuts, stage.cuts_switch.switch, "C", "cuts"),
+        switching("plots", tr("P&lots"), plots, stage.plots_switch.switch, "J", "plots"),
+        switching("compare", tr("Si&de by side"), tr("Compare designs side by side"), compare.switch, "K", "compare"),
+        command("all_designs", tr("All designs"), every, presenters.all_designs.toggle, "A", "table"),
+        command(
             "swap",
-            menu,
             tr("S&wap compared designs"),
             tr("Make the compared design the chosen one"),
             presenters.comparison.swap,
-            shortcuts=("Shift+K",),
-            icon="swap",
-            enabled_when=lambda now: now.comparing,
+            "Shift+K",
+            "swap",
+            enabled_when=attrgetter("comparing"),
         ),
     )
 
 
 def _zooms(board: TargetPanel, stage: StagePanel) -> tuple[Command, ...]:
     """What is in sight is zoomed: the drawing board while it is open, else the stage."""
-    menu = tr("&View")
+    command, real = partial(Command, tr("&View")), tr("Show a millimetre as long as it is on paper")
+    drawn = partial(command, enabled_when=attrgetter("editing_target"))
+    selected = tr("Show what is selected as large as possible")
+
+    def fit() -> None:
+        board.view.fit() if board.editing else stage.fit()
 
     def zoom(factor: float) -> None:
         board.view.zoom(factor) if board.editing else stage.zoom(factor)
 
     return (
-        Command(
-            "fit",
-            menu,
-            tr("Show &everything"),
-            tr("Zoom to show everything"),
-            lambda: board.view.fit() if board.editing else stage.fit(),
-            shortcuts=("0", "Ctrl+0"),
-            icon="fit",
-            gap=True,
-        ),
-        Command("zoom_in", menu, tr("Zoom in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), ("Ctrl++", "Ctrl+=")),
-        Command("zoom_out", menu, tr("Zoom out"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), ("Ctrl+-",)),
-        Command(
-            "zoom_real",
-            menu,
-            tr("Actual size"),
-            tr("Show a millimetre as long as it is on paper"),
-            board.view.zoom_to_real_size,
-            shortcuts=("Ctrl+1",),
-            enabled_when=lambda now: now.editing_target,
-        ),
-        Command(
-            "zoom_selection",
-            menu,
-            tr("Zoom to selection"),
-            tr("Show what is selected as large as possible"),
-            board.view.zoom_to_selection,
-            shortcuts=("Ctrl+2",),
-            enabled_when=lambda now: now.editing_target,
-        ),
+        command("fit", tr("Show &everything"), tr("Zoom to show everything"), fit, "0; Ctrl+0", "fit", gap=True),
+        command("zoom_in", tr("Zoom in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), "Ctrl++; Ctrl+="),
+        command("zoom_out", tr("Zoom out"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), "Ctrl+-"),
+        drawn("zoom_real", tr("Actual size"), real, board.view.zoom_to_real_size, "Ctrl+1"),
+        drawn("zoom_selection", tr("Zoom to selection"), selected, board.view.zoom_to_selection, "Ctrl+2"),
     )
 
 
 def _themes(appearance: Appearance, switch_motion: Callable[[], None]) -> tuple[Command, ...]:
+    command, motion = (
+        partial(Command, tr("&View")),
+        tr("Nothing moves by itself, such as the sample on the empty stage"),
+    )
+    dark, tip = tr("Dark t&heme"), tr("Switch between light and dark")
+    followed, still = attrgetter("follows_system"), attrgetter("still")
+    system, match = tr("Follow the s&ystem"), tr("Match the system theme")
     return (
-        Command(
-            "theme",
-            tr("&View"),
-            tr("Dark t&heme"),
-            tr("Switch between light and dark"),
-            appearance.switch,
-            shortcuts=("Ctrl+Alt+D",),
-            icon="moon",
-            gap=True,
-            worded=_theme_wording,
-        ),
-        Command(
-            "theme_system",
-            tr("&View"),
-            tr("Follow the s&ystem"),
-            tr("Match the system theme"),
-            appearance.follow_system,
-            checked_when=lambda now: now.follows_system,
-        ),
-        Command(
-            "still",
-            tr("&View"),
-            tr("Reduce motion"),
-            tr("Nothing moves by itself, such as the sample on the empty stage"),
-            switch_motion,
-            checked_when=lambda now: now.still,
-        ),
+        command("theme", dark, tip, appearance.switch, "Ctrl+Alt+D", "moon", gap=True, worded=_theme_wording),
+        command("theme_system", system, match, appearance.follow_system, checked_when=followed),
+        command("still", tr("Reduce motion"), motion, switch_motion, checked_when=still),
     )
 
 

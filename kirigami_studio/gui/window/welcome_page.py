@@ -11,17 +11,7 @@ from dataclasses import replace
 
 from PySide6.QtCore import QElapsedTimer, QEvent, QLocale, QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QHideEvent, QResizeEvent
-from PySide6.QtWidgets import (
-    QApplication,
-    QGridLayout,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QSizePolicy,
-    QStyle,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QApplication, QGridLayout, QSizePolicy, QStyle, QWidget
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.paper import Paper
@@ -36,6 +26,7 @@ from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.stage.deployment_bar import phi_at
 from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.gui.widgets.card import ToolButton, muted_label
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.preferences import MotionPreference, TypedSize
@@ -108,12 +99,8 @@ class WelcomePage(QWidget):
         keeps.setRetainSizeWhenHidden(True)
         self.view.setSizePolicy(keeps)
         self.view.hide()
-        self.headline = QLabel()
-        self.headline.setObjectName("cardTitle")
-        self.hint = muted_label()
-        self.guide = QPushButton(tr("Guide"))
-        self.guide.setObjectName("link")
-        self.guide.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.headline, self.hint = label(name="cardTitle"), muted_label()
+        self.guide = push_button(tr("Guide"), name="link")
         self.question = CuttingQuestion()
         self.question.hide()
         self.offers: dict[str, ToolButton] = {}
@@ -123,27 +110,11 @@ class WelcomePage(QWidget):
         rows = QGridLayout(self.steps)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setColumnStretch(1, 1)
-        for row, step in enumerate(STEPS):
-            number, words = QLabel(str(row + 1)), muted_label()
-            number.setObjectName("number")
-            words.setText(tr(step))
-            rows.addWidget(number, row, 0, Qt.AlignmentFlag.AlignTop)
-            rows.addWidget(words, row, 1)
-        words_ = QVBoxLayout()
-        words_.setSpacing(2)
-        words_.addWidget(self.headline)
-        words_.addWidget(self.hint)
-        line = QHBoxLayout()
-        line.addLayout(words_, 1)
-        line.addWidget(self.guide, 0, Qt.AlignmentFlag.AlignTop)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        column.addWidget(self.view, 1)
-        column.addLayout(line)
-        column.addWidget(self.question)
-        column.addLayout(self._grid)
-        column.addWidget(self.steps)
+        for place, step in enumerate(STEPS):
+            rows.addWidget(label(str(place + 1), name="number"), place, 0, Qt.AlignmentFlag.AlignTop)
+            rows.addWidget(label(tr(step), wraps=True), place, 1)
+        line = row((column(self.headline, self.hint, spacing=2), 1), column(self.guide, ...))
+        column((self.view, 1), line, self.question, self._grid, self.steps, on=self, spacing=8)
 
     def offer(self, actions: Mapping[str, QAction]) -> None:
         """Offer ways to begin, by commands of the window."""
@@ -167,8 +138,8 @@ class WelcomePage(QWidget):
         columns = next(count for count in (6, 3, 2, 1) if count <= most)
         for place, button in enumerate(self.offers.values()):
             self._grid.addWidget(button, *divmod(place, columns))
-        for column in range(len(OFFERS)):
-            self._grid.setColumnStretch(column, 1 if column < columns else 0)
+        for place in range(len(OFFERS)):
+            self._grid.setColumnStretch(place, 1 if place < columns else 0)
         layout = self.layout()
         if layout is not None:
             shown = self.steps.isVisibleTo(self)

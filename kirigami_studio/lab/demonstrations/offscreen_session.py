@@ -19,6 +19,7 @@ from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.gui.files.file_dialogs import FileToOpen
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
@@ -42,17 +43,8 @@ class PresetFiles:
     def __init__(self, out: Path) -> None:
         self._out = out
 
-    def target(self) -> Path | None:
-        return None
-
-    def start(self) -> Path | None:
-        return None
-
-    def artwork(self) -> Path | None:
-        return None
-
-    def project(self) -> Path | None:
-        return self._out / "session.kiri"
+    def open(self, wanted: FileToOpen) -> Path | None:
+        return self._out / "session.kiri" if wanted is FileToOpen.PROJECT else None
 
     def save(self, proposal: str) -> Path | None:
         return self._out / "session.kiri"

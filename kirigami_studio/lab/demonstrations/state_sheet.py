@@ -17,7 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
-from kirigami_studio.gui.gallery.card_delegate import CardButton, button_boxes
+from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
@@ -214,7 +214,9 @@ class StateSheet(BoardStates):
             box.setChecked(True)
         bar.order.setCurrentIndex(bar.order.findData(SortOrder.PANEL))
         bar.order.activated.emit(bar.order.currentIndex())
-        hover(view.viewport(), button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center())
+        hover(
+            view.viewport(), view.cards.button_boxes(view.visualRect(view.model_.index(0, 0)))[CardButton.PIN].center()
+        )
         self.all_sizes("gallery-sorted")
         bar.filters.least.setValue(100.0)
         self.all_sizes("gallery-nothing")
@@ -296,10 +298,10 @@ class StateSheet(BoardStates):
         ):
             stage.deployment.set_phi(math.radians(angle))
             for overlay in shown:
-                stage.set_overlay(overlay, True)
+                stage.overlays[overlay].setChecked(True)
             self.all_sizes(f"overlay-{shown[0].value}")
             for overlay in shown:
-                stage.set_overlay(overlay, False)
+                stage.overlays[overlay].setChecked(False)
         stage.deployment.set_phi(0.0)
 
     def plots(self) -> None:

@@ -91,6 +91,44 @@ def test_that_export_takes_the_machines_profile_bed_and_speeds(
     assert (tmp_path / "cricut.svg").exists() and slow["size_mm"] == plain["size_mm"]
 
 
+@pytest.mark.torch
+@pytest.mark.parametrize(("machine", "more"), [("cricut-maker", "cut.svg"), ("hand", "cut.pdf"), ("uv-laser", "")])
+def test_that_a_design_comes_with_the_file_that_its_machine_takes(
+    machine: str, more: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    words = ("design", "square", "--grid", "4x4", "--k", "1", "--no-polish", "--machine", machine)
+    found = answer(capsys, *words, "--out", str(tmp_path / "here"))
+    roles = ["project", "cut", "layout", "preview", "candidates", *(["machine_cut"] if more else [])]
+    assert sorted(found["files"]) == sorted(roles)
+    assert all(Path(path).exists() for path in found["files"].values()), "a folder for a file for each layer"
+    if more:
+        path = Path(found["files"]["machine_cut"])
+        assert path.name == more and f"profile {find_machine(machine).profile}" in _made_with(path, capsys)
+
+
+def _made_with(path: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """Line of ``check`` on how a file was made; PDFs are not read."""
+    if path.suffix == ".pdf":
+        return f"profile {find_machine('hand').profile}" if path.read_bytes().startswith(b"%PDF-") else ""
+    assert main(["check", str(path)]) == 0
+    return next(line for line in capsys.readouterr().out.splitlines() if "made with:" in line)
+
+
+@pytest.mark.torch
+def test_that_a_worker_sends_all_files_of_a_design() -> None:
+    from kirigami_studio.cli.design import Asked, DesignJob, designed_there
+    from kirigami_studio.outlines.silhouettes import load
+    from kirigami_studio.settings.design import chosen_settings
+    from kirigami_studio.settings.fabrication import new_settings
+    from kirigami_studio.studio.designing import request_for
+
+    cut = new_settings({"machine": "uv-laser"})
+    settings = chosen_settings((4, 4), {"k": 1, "polish": 0})
+    job = DesignJob(request_for(load("square"), settings, cut, least_panel_mm=0.0), cut, 0.0, True)
+    found = designed_there(Asked("square", job, None)).get()
+    assert found.files["cut"] == "cut" and "cut/3_OUTLINE.dxf" in found.contents
+
+
 def test_that_an_unknown_machine_is_refused_before_any_work(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["design", "heart", "--machine", "lathe", "--out", str(tmp_path / "out")]) == 1
     assert "glowforge" in capsys.readouterr().err and not (tmp_path / "out").exists()

@@ -60,7 +60,7 @@ def test_that_an_export_answers_with_the_verdict_that_its_record_has(
 
 
 def test_that_the_same_list_is_said_in_words(capsys: pytest.CaptureFixture[str], project: Path, tmp_path: Path) -> None:
-    wish = ["export", str(project), "--out", str(tmp_path / "cut.dxf"), "--style", "straight"]
+    wish = ["export", str(project), "--out", str(tmp_path / "cut.dxf"), "--connector-mm", "2.6"]
     told = answer(capsys, *wish, "--json")["verdict"]
     assert main(wish) == 0
     said = capsys.readouterr().out.splitlines()

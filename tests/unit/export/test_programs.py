@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,11 +16,14 @@ from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.profile import CSS_DPI, PROFILES, find_profile
+from kirigami_studio.export.profile import CSS_DPI, NAME_LAYER, PROFILES, find_profile
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import FORMATS, verify_export
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.machine import Machine, cuttable, find_machine, machines, usual_material
+from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.lattice.deployment import Deployment
 
 MakeDesign = Callable[..., Deployment]
@@ -179,3 +183,76 @@ def test_that_a_sheet_larger_than_the_canvas_is_told_how_wide_it_may_be(make_des
     assert (found.fields["bed_width_mm"], found.fields["bed_height_mm"]) == (292.0, 596.0)
     narrower = planned(make_design(4, 4), chosen, 0.98 * float(str(found.fields["largest_mm"])))
     assert not [one for one in check_plan(narrower).problems if one.code == "plan.larger_than_bed"]
+
+
+# what the page of recipes says ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def recipes(repository: Path) -> str:
+    return (repository / "docs" / "how-to" / "your-machine.md").read_text(encoding="utf-8")
+
+
+def test_that_the_table_of_programs_has_the_files_and_sizes_of_their_machines(recipes: str) -> None:
+    rows = {row[2].strip(" `"): row for row in (line.split("|")[1:-1] for line in recipes.splitlines() if "`" in line)
+            if len(row) == 5}  # fmt: skip
+    assert set(rows) == {"cricut", "silhouette", "glowforge", "xtool", "lightburn", "layers"}
+    for machine in machines().items.values():
+        if machine.profile not in rows:
+            continue
+        _, file, profile, read_at, largest = rows[machine.profile]
+        dpi = find_profile(profile.strip(" `")).svg_dpi
+        assert f"`{machine.file}`" in file, machine.key
+        assert machine.file != ".svg" or f"{dpi:g} dpi" in read_at
+        width, height = machine.reach_mm
+        if "bed" not in largest and machine.key != "silhouette-portrait":
+            assert f"{width:g} x {height:g} mm" in largest
+
+
+def test_that_colours_of_layers_and_names_are_those_of_the_recipe(
+    make_design: MakeDesign, tmp_path: Path, recipes: str
+) -> None:
+    assert "`RELIEF` magenta, `SLITS` red, `EDGE_SLITS` green, `OUTLINE` blue" in recipes
+    assert "An engraved name is black" in recipes
+    colours = {"RELIEF": "#ff00ff", "SLITS": "#ff0000", "EDGE_SLITS": "#00ff00", "OUTLINE": "#0000ff"}
+    colours[NAME_LAYER] = "#000000"
+    design, seen = make_design(4, 5), list[str]()
+    for style in (ConnectorStyle.CENTRED, ConnectorStyle.ROUND):
+        card = find_material("card-co2")
+        plan = plan_cuts(design, 250.0, material=card, options=CutOptions(style=style))
+        path = written(design, engraved(plan, "Ada"), "glowforge", tmp_path / f"{style.value}.svg")
+        for group in ElementTree.parse(path).getroot().findall(f"{NAMESPACE}g"):
+            assert {one.get("stroke") for one in group} == {colours[str(group.get("id"))]}
+            seen.append(str(group.get("id")))
+    assert set(seen) == set(colours)
+
+
+@pytest.mark.parametrize("key", ["cricut", "silhouette"])
+def test_that_a_blade_gets_no_name(key: str, make_design: MakeDesign, tmp_path: Path, recipes: str) -> None:
+    assert "A name is not engraved: the blade would cut it." in recipes
+    design = make_design(4, 5)
+    plan = engraved(plan_cuts(design, 250.0, material=find_material("card-co2")), "Ada")
+    assert plan.engraving is not None
+    found = [
+        written(design, one, key, tmp_path / f"{one.engraving is None}.svg")
+        for one in (plan, replace(plan, engraving=None))
+    ]
+    drawn = [len(list(ElementTree.parse(path).getroot().iter(f"{NAMESPACE}path"))) for path in found]
+    assert drawn[0] == drawn[1] == len(plan.paths)
+
+
+def test_that_files_of_circuitpro_lie_upon_each_other_in_the_order_of_their_numbers(
+    make_design: MakeDesign, tmp_path: Path, recipes: str
+) -> None:
+    design, chosen = make_design(4, 5), find_machine("uv-laser")
+    plan = planned(design, chosen)
+    folder = written(design, plan, chosen.profile, tmp_path / "sheet.dxf")
+    marks, order = [], []
+    for path in sorted(folder.iterdir()):
+        entities = list(readfile(path).modelspace())
+        marks.append(bbox.extents([one for one in entities if one.dxf.layer == "REGISTRATION"]))
+        order.append(path.stem.split("_", 1)[1])
+    assert all(one.extmin.isclose(marks[0].extmin) and one.extmax.isclose(marks[0].extmax) for one in marks)
+    assert order == list(dict.fromkeys(one.layer.value for one in plan.paths)) and order[-1] == "OUTLINE"
+    film = find_material("film-uv")
+    assert f"the preset says {film.passes} at {film.speed_mm_s:g} mm/s" in recipes

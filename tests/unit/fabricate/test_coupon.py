@@ -18,7 +18,6 @@ from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.coupon import (
     COMB_SLITS,
     FLAP_WIDTHS_MM,
-    SIZE_MM,
     kerf_from_gaps,
     ligament_rungs,
     plan_coupon,
@@ -48,7 +47,9 @@ def test_that_the_coupon_is_one_piece_with_nothing_wrong(key: str) -> None:
     assert report.overlap_mm == 0.0
     assert plan.paths[-1].layer is Layer.OUTLINE and plan.paths[-1].closed
     assert plan.min_connector_mm == plan.connector_mm == ligament_rungs(plan.material)[0]
-    assert max(plan.bounds_mm[0] - SIZE_MM[0], plan.bounds_mm[1] - SIZE_MM[1]) < 1.0
+    times = max(1.0, plan.material.min_ligament_mm)
+    assert plan.size_mm == pytest.approx((60.0 * times, 40.0 * times))
+    assert max(plan.bounds_mm[0] - plan.size_mm[0], plan.bounds_mm[1] - plan.size_mm[1]) < 1.0
 
 
 @pytest.mark.parametrize("key", presets())
@@ -70,9 +71,9 @@ def test_that_finished_connectors_are_as_wide_as_the_rungs_say(key: str) -> None
 def test_that_rungs_lie_round_the_smallest_ligament_of_the_material() -> None:
     for material in presets().values():
         rungs = ligament_rungs(material)
-        assert (material.min_ligament_mm in rungs) == (material.min_ligament_mm <= 1.0), "flaps have no room for more"
+        assert material.min_ligament_mm in rungs
         assert len(rungs) == 7
-        assert rungs[0] >= 0.05 and rungs[-1] <= 1.0
+        assert rungs[0] >= 0.05 and rungs[-1] <= max(1.0, material.min_ligament_mm)
         assert all(1.2 < wide / narrow < 1.6 for narrow, wide in pairwise(rungs))
 
 
@@ -135,5 +136,22 @@ def test_that_kerfs_and_ligaments_that_the_coupon_cannot_show_are_refused() -> N
         plan_coupon(find_material("card-co2"), 0.6)
     with refused(FabricationError, "coupon.ligament_out_of_range", key="card-co2", ligament_mm=200.0):
         plan_coupon(replace(find_material("card-co2"), min_ligament_mm=200.0))
-    with refused(FabricationError, "coupon.flap_too_narrow", kerf_mm=0.5):
-        plan_coupon(find_material("card-co2"), 0.5)
+    with refused(FabricationError, "coupon.flap_too_narrow", connector_mm=1.0, kerf_mm=0.5, flap_mm=3.5):
+        plan_coupon(find_material("acrylic-co2"), 0.5)
+
+
+def test_that_a_larger_coupon_takes_wider_kerfs_and_is_refused_in_its_own_millimetres() -> None:
+    wide = replace(find_material("card-co2"), min_ligament_mm=2.0)
+    assert plan_coupon(wide, 0.6).kerf_mm == 0.6
+    with refused(FabricationError, "coupon.kerf_too_wide", kerf_mm=1.2, widest_mm=1.0):
+        plan_coupon(wide, 1.2)
+    with refused(FabricationError, "coupon.flap_too_narrow", connector_mm=2.0, kerf_mm=1.0, flap_mm=7.0):
+        plan_coupon(wide, 1.0)
+
+
+def test_that_the_note_beside_a_larger_coupon_has_the_widths_that_are_cut() -> None:
+    plan = plan_coupon(find_material("felt-co2"))
+    (note,) = (note for note in plan.notes if note.code == "coupon.how_to_read_ligament")
+    assert note.fields["widths"].endswith(", 4.05")
+    widths = sorted({round(float(np.ptp(shapely.get_coordinates(arm)[:, 0])), 3) for arm, _ in flaps(plan)})
+    assert note.fields["flaps"] == ", ".join(f"{width:g}" for width in widths)

@@ -28,8 +28,8 @@ from kirigami_studio.fabricate.machine import (
     material_on,
     usual_material,
 )
+from kirigami_studio.fabricate.material import SHELF as MATERIALS
 from kirigami_studio.fabricate.material import find_material, presets, read_preset
-from kirigami_studio.fabricate.material_copies import save_copy
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet_files import read_sheet
@@ -110,7 +110,7 @@ def test_that_a_machine_is_of_a_kind_by_what_it_is_called(words: str, kind: Mach
 def test_that_an_own_material_from_before_keeps_its_bed_speeds_and_delays(own_materials: Path) -> None:
     older: dict[str, Any] = {"travel_mm_s": 321.0, "acceleration_mm_s2": 777.0, "on_delay_s": 0.25, "off_delay_s": 0.0}
     older |= {"bed_width_mm": 150.0, "bed_height_mm": 120.0}
-    path = save_copy(replace(find_material("card-co2"), key="mine", **older))
+    path = MATERIALS.save(replace(find_material("card-co2"), key="mine", **older))
     assert "travel_mm_s = 321.0" in path.read_text(encoding="utf-8")
     material = read_preset(path)
     machine = machine_of(material)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kirigami_studio.fabricate.material import default_material, find_material, presets, read_preset
-from kirigami_studio.fabricate.material_copies import changed_copy, save_copy
+from kirigami_studio.fabricate.material import SHELF, default_material, find_material, presets, read_preset
+from kirigami_studio.fabricate.material_copies import changed_copy
 from kirigami_studio.fabricate.strain import escapes
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.resources import resource
@@ -85,7 +85,7 @@ def test_that_a_copy_keeps_the_sources_of_what_it_keeps() -> None:
     old = changed_copy("film-uv", "mine", {"strain_limit": "0.2", "young_gpa": "3"})
     assert (old.break_strain, old.bend_strain, old.young_gpa) == (0.2, 0.2, 3.0)
     assert set(old.sources) == {"yield_strain"}
-    save_copy(old)
+    SHELF.save(old)
     assert find_material("mine") == old and find_material("mine").sources == old.sources
     hinge = changed_copy("cotton-co2", "linen", {"thickness_mm": "0.4"})
     assert hinge.backing and changed_copy("plywood-co2", "balsa", {"thickness_mm": "1"}).limits_note is None

@@ -12,6 +12,7 @@ import pytest
 
 from kirigami_studio.fabricate.material import (
     FOLDER_VARIABLE,
+    SHELF,
     default_material,
     find_material,
     library,
@@ -19,7 +20,7 @@ from kirigami_studio.fabricate.material import (
     presets,
     read_preset,
 )
-from kirigami_studio.fabricate.material_copies import changed_copy, delete_copy, mark_calibrated, save_copy
+from kirigami_studio.fabricate.material_copies import changed_copy, mark_calibrated
 from kirigami_studio.foundation.errors import ExportError, FabricationError
 from kirigami_studio.foundation.resources import resource
 from tests.refusals import refused
@@ -31,7 +32,7 @@ def bundled_bytes() -> dict[str, bytes]:
 
 def test_that_a_copy_is_typed_toml_and_comes_back_equal(own_materials: Path) -> None:
     copy = changed_copy("film-uv", "my-film", {"kerf_mm": 0.031, "passes": 2})
-    path = save_copy(copy)
+    path = SHELF.save(copy)
     assert path == own_materials / "my-film.toml"
     entries = tomllib.loads(path.read_text(encoding="utf-8"))
     assert entries["kerf_mm"] == 0.031
@@ -45,7 +46,7 @@ def test_that_the_library_holds_presets_and_own_materials() -> None:
     before = library()
     assert list(before.items) == list(presets())
     assert (before.own, before.faults) == (frozenset(), ())
-    save_copy(changed_copy("pet-co2", "a-pet", {}))
+    SHELF.save(changed_copy("pet-co2", "a-pet", {}))
     after = library()
     assert list(after.items) == [*presets(), "a-pet"]
     assert after.own == {"a-pet"}
@@ -53,17 +54,17 @@ def test_that_the_library_holds_presets_and_own_materials() -> None:
 
 def test_that_a_copy_with_the_key_of_a_preset_wins_until_it_is_deleted() -> None:
     before = bundled_bytes()
-    save_copy(changed_copy("film-uv", "film-uv", {"kerf_mm": 0.033}))
+    SHELF.save(changed_copy("film-uv", "film-uv", {"kerf_mm": 0.033}))
     assert find_material("film-uv").kerf_mm == default_material().kerf_mm == 0.033
     assert list(library().items) == list(presets())
     assert presets()["film-uv"].kerf_mm == 0.02
-    delete_copy("film-uv")
+    SHELF.delete("film-uv")
     assert find_material("film-uv").kerf_mm == 0.02
     assert bundled_bytes() == before
 
 
 def test_that_a_broken_own_file_is_said_and_skipped(own_materials: Path) -> None:
-    save_copy(changed_copy("film-uv", "good", {}))
+    SHELF.save(changed_copy("film-uv", "good", {}))
     text = (own_materials / "good.toml").read_text(encoding="utf-8")
     (own_materials / "bad.toml").write_text("kerf_mm = [", encoding="utf-8")
     (own_materials / "odd.toml").write_text(text.replace("kerf_mm = 0.02", "kerf_mm = -1.0"), encoding="utf-8")
@@ -81,7 +82,7 @@ def test_that_a_broken_own_file_is_said_and_skipped(own_materials: Path) -> None
 def test_that_a_missing_folder_means_no_own_materials(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "none"))
     assert library().own == frozenset()
-    save_copy(changed_copy("film-uv", "mine", {}))
+    SHELF.save(changed_copy("film-uv", "mine", {}))
     assert library().own == {"mine"}
 
 
@@ -113,9 +114,9 @@ def test_that_an_impossible_calibration_saves_nothing(by: str, kerf: float, expe
 )
 def test_that_keys_are_safe_file_names(key: str, own_materials: Path) -> None:
     for attempt in (
-        lambda: save_copy(replace(find_material("film-uv"), key=key)),
+        lambda: SHELF.save(replace(find_material("film-uv"), key=key)),
         lambda: changed_copy("film-uv", key, {}),
-        lambda: delete_copy(key),
+        lambda: SHELF.delete(key),
     ):
         with refused(FabricationError, "material.key_not_usable") as refusal:
             attempt()
@@ -126,9 +127,9 @@ def test_that_keys_are_safe_file_names(key: str, own_materials: Path) -> None:
 def test_that_bundled_presets_are_never_written_or_deleted(monkeypatch: pytest.MonkeyPatch) -> None:
     before = bundled_bytes()
     with refused(FabricationError, "material.bundled_not_deleted", key="film-uv"):
-        delete_copy("film-uv")
+        SHELF.delete("film-uv")
     monkeypatch.setenv(FOLDER_VARIABLE, str(resource("materials")))
-    for attempt in (lambda: save_copy(presets()["film-uv"]), lambda: delete_copy("film-uv")):
+    for attempt in (lambda: SHELF.save(presets()["film-uv"]), lambda: SHELF.delete("film-uv")):
         with refused(FabricationError, "material.folder_is_bundled"):
             attempt()
     assert bundled_bytes() == before
@@ -153,11 +154,11 @@ def test_that_impossible_changes_are_refused(changes: dict[str, object], expecte
 def test_that_a_failed_save_leaves_the_older_copy_alone(
     own_materials: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    save_copy(changed_copy("film-uv", "mine", {"kerf_mm": 0.03}))
+    SHELF.save(changed_copy("film-uv", "mine", {"kerf_mm": 0.03}))
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
     monkeypatch.setenv(FOLDER_VARIABLE, str(blocked))
     with refused(ExportError, "file.not_written"):
-        save_copy(changed_copy("film-uv", "mine", {}))
+        SHELF.save(changed_copy("film-uv", "mine", {}))
     monkeypatch.setenv(FOLDER_VARIABLE, str(own_materials))
     assert find_material("mine").kerf_mm == 0.03

@@ -241,10 +241,19 @@ def test_that_junctions_lie_where_the_cuts_end(design: Deployment) -> None:
     through = lines[table.hinge_through, 1] - lines[table.hinge_through, 0]
     crossed = through[:, 0] * found.through[:, 1] - through[:, 1] * found.through[:, 0]
     assert np.abs(crossed[~found.on_edge]).max() < 1e-9 * WIDTH_MM
-    straight = cut_connectors(found, np.full(table.hinge_count, 0.3), KERF_MM)
-    offset = np.sum((straight.centres[:, 0] - found.place) ** 2, axis=1) ** 0.5 * found.sine
-    expected = np.where(found.on_edge, 0.0, 0.5 * KERF_MM) + centre_height(np.array([0.3]), KERF_MM)
-    assert offset == pytest.approx(expected)
+
+
+def test_that_straight_connectors_turn_below_the_tips_of_their_slits(found: Junctions) -> None:
+    widths = np.full(len(found.node), 0.3)
+    straight = cut_connectors(found, widths, KERF_MM)
+    # The tip of the kerf is a finished width above the edge of the through cut, however its slit slants.
+    flank = np.where(found.on_edge, 0.0, 0.5 * KERF_MM)
+    tip = found.place + ((flank + widths + 0.5 * KERF_MM) / found.sine)[:, None] * found.along
+    below = straight.centres[:, 0] - tip
+    assert np.sum(below * found.through, axis=1) == pytest.approx(np.zeros(len(widths)), abs=1e-12)
+    expected = flank + centre_height(widths, KERF_MM)
+    assert np.sum((straight.centres[:, 0] - found.place) * found.normal, axis=1) == pytest.approx(expected)
+    assert np.abs(np.sum(found.along * found.through, axis=1)).max() > 0.2
 
 
 def test_that_given_centres_and_widths_are_checked(found: Junctions, design: Deployment) -> None:
@@ -315,7 +324,7 @@ def test_that_longer_connectors_are_softer_and_turn_about_their_middle(found: Ju
     film = FILM.young_mpa * FILM.thickness_mm
     assert film / other.stretching - film / one.stretching == pytest.approx(np.full(len(widths), 4.0))
     assert film / other.shearing - film / one.shearing == pytest.approx(np.full(len(widths), 64.0))
-    away = np.linalg.norm(long.centres[:, 0] - found.place, axis=1) * found.sine
+    away = np.sum((long.centres[:, 0] - found.place) * found.normal, axis=1)
     assert away == pytest.approx(np.where(found.on_edge, 0.15, 0.16))
     with pytest.raises(MechanicsError) as caught:
         cut_connectors(found, widths, KERF_MM, longer_mm=widths[1:])

@@ -1,23 +1,78 @@
-"""Jobs on artwork: read a picture, draw an SVG, paint the printed flat sheet that the moving panels are cut from."""
+"""Artwork: read from a picture in the worker, painted as a printed flat sheet, and drawn on the moving panels."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QSize, Qt
-from PySide6.QtGui import QGuiApplication, QImage, QImageWriter, QPainter
+from PySide6.QtGui import QBrush, QGuiApplication, QImage, QImageWriter, QPainter, QTransform
 from PySide6.QtSvg import QSvgRenderer
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.artwork import ArtPicture, Artwork
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.steps import Cancel
-from kirigami_studio.gui.stage.artwork_items import ShownArtwork
+from kirigami_studio.gui.widgets.paths import line_path
+from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio import importing
+
+if TYPE_CHECKING:
+    from kirigami_studio.export.artwork_patches import PrintedSheet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShownArtwork:
+    """The printed flat sheet of one design."""
+
+    artwork: Artwork
+    sheet: PrintedSheet
+    image: QImage  #: nothing where nothing is printed
+    corner: complex  #: mm; where its upper left corner lies on the flat sheet; y up
+    dots_per_mm: float
+
+
+def paint_artwork(
+    painter: QPainter,
+    shown: ShownArtwork,
+    phi: float,
+    panels: FloatArray,
+    trimmed: Mapping[int, FloatArray],
+    transform: ViewTransform,
+) -> None:
+    """Fill all panels with artwork.
+
+    Parameters
+    ----------
+    shown : ShownArtwork
+        The printed flat sheet of the design that is drawn.
+    phi : float, radians
+    panels : (K, 4, 2) float, pixels
+    trimmed : mapping of row to (P, 2) float, pixels
+        What trimming has left of panels, drawn instead of them.
+    """
+    motion = shown.sheet.motion(phi)
+    # Pixels count downwards, in the view and in the artwork: between them lie the conjugates.
+    turn = transform.scale * np.conj(motion.factor)
+    factor = turn / shown.dots_per_mm
+    shift = turn * np.conj(shown.corner) + transform.scale * np.conj(motion.shift) + complex(*transform.origin)
+    painter.save()
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+    brush = QBrush(shown.image)
+    for row, (a, b) in enumerate(zip(factor.tolist(), shift.tolist(), strict=True)):
+        ring = trimmed.get(row, panels[row])
+        if len(ring):
+            brush.setTransform(QTransform(a.real, a.imag, -a.imag, a.real, b.real, b.imag))
+            painter.fillPath(line_path(ring, closed=True), brush)
+    painter.restore()
+
 
 #: Pixels along the longer side of the flat sheet as it is shown: a view is seldom larger.
 SHOWN_SIDE = 1200
@@ -74,7 +129,6 @@ def svg_to_png(content: bytes, side: int) -> bytes:
 
     Parameters
     ----------
-    content : bytes
     side : int
         Pixels along the longer side of the document's page.
 

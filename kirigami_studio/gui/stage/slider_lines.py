@@ -1,20 +1,28 @@
-"""What lies at the two ends of the slider, and at a second target: pictures, names, sizes and matches."""
+"""The lines below the slider: its two ends, with a second target between them, and the design as cut."""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.stage.as_cut import AsCutState
+from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.layouts import row
+from kirigami_studio.gui.widgets.paths import ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.studio.two_states import TwoStates
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import AsCut
 
 #: Edge of a picture (pixels), and room between it and the words.
 PICTURE, GAP = 20, 9
@@ -30,11 +38,8 @@ class EndsLine(QWidget):
         self.start = EndButton("flatEnd", Qt.AlignmentFlag.AlignLeft)
         self.passed = EndButton("passedState", Qt.AlignmentFlag.AlignHCenter)
         self.target = EndButton("openEnd", Qt.AlignmentFlag.AlignRight)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(10)
+        row((self.start, 1), (self.passed, 1), (self.target, 1), on=self, spacing=10)
         for button in (self.start, self.passed, self.target):
-            row.addWidget(button, 1)
             button.clicked.connect(lambda _=False, button=button: self.phi_wanted.emit(button.phi))
         self.passed.hide()
         self._named = self._low = False
@@ -63,18 +68,12 @@ class EndsLine(QWidget):
 
 
 class EndButton(QAbstractButton):
-    """A small outline and the longest text that fits, aligned to a side; the start at the left is that of a sheet.
-
-    Attributes
-    ----------
-    phi : float, radians
-        The angle that it goes to.
-    """
+    """A small outline and the longest text that fits, aligned to a side; the start at the left is that of a sheet."""
 
     def __init__(self, name: str, side: Qt.AlignmentFlag) -> None:
         super().__init__()
         self.setObjectName(name)
-        self.phi = math.pi
+        self.phi = math.pi  #: radians; the angle that it goes to
         self._side = side
         self._outline: FloatArray | None = None
         self._texts: tuple[str, ...] = ("",)
@@ -92,7 +91,6 @@ class EndButton(QAbstractButton):
         self.update()
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
         self._palette = palette
         self.update()
 
@@ -106,11 +104,9 @@ class EndButton(QAbstractButton):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         if self._outline is None:
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = painter_on(self)
         if self.hasFocus() or self.underMouse():
-            painter.setPen(QPen(QColor(self._palette.accent if self.hasFocus() else self._palette.border), 1.0))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
+            ink(painter, self._palette.accent if self.hasFocus() else self._palette.border)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), 5, 5)
         text, at_left, at_right = self.drawn_text(), Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
         left, words = 2.0, QRectF(self.rect()).adjusted(PICTURE + GAP, 0, 0, 0)
@@ -132,3 +128,81 @@ def paint_end(painter: QPainter, box: QRectF, outline: FloatArray, sheet: bool, 
     transform = ViewTransform.fitting(Bounds.of(outline), box, 1.0)
     paint = paint_start_shape if sheet else paint_target_shape
     paint(painter, transform.to_pixels(outline), palette, 1.4)
+
+
+#: A sheet that is meant for an angle (radians) below this is meant to close.
+CLOSED = math.radians(0.5)
+
+
+class AsCutLine(ElidedLabel):
+    """Shows the line, with the figures behind it as a tooltip."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("asCut")
+        self.setAccessibleName(tr("As cut"))
+        self.setFixedHeight(self.fontMetrics().height() + 2)
+
+    def show_state(self, state: AsCutState) -> None:
+        """Say what is known."""
+        if state.sheet is not None:
+            found = state.sheet.as_cut
+            self.setText(*texts(found))
+            self.setToolTip(figures(found))
+        elif state.busy:
+            self.setText(tr("Closing the sheet as cut …"))
+        else:
+            self.setText(state.problem)
+        self.setAccessibleDescription(self.text())
+
+
+def texts(found: AsCut) -> tuple[str, ...]:
+    """What was found, longest text first."""
+    from kirigami_studio.studio.as_cut import Outcome
+
+    phi, jam, match = math.degrees(found.phi), found.jam_deg, found.iou
+    if found.closes:
+        if match is None:
+            return (tr("Closes as cut") if found.phi < CLOSED else tr("Opens to {phi:.0f}° as cut", phi=phi),)
+        if found.phi < CLOSED:
+            return (tr("Closes as cut: {match:.1f} %", match=100 * match),)
+        return (tr("Opens to {phi:.0f}° as cut: {match:.1f} %", phi=phi, match=100 * match),)
+    if found.nearly_closes:
+        near = tr("Comes to {jam:.0f}° as cut", jam=jam)
+        return (near if match is None else tr("Comes to {jam:.0f}° as cut: {match:.1f} %", jam=jam, match=100 * match),)
+    short = tr("Jams at {jam:.0f}°", jam=jam)
+    if found.outcome is Outcome.TOUCHING:
+        return tr("Jams at {jam:.0f}°: panels touch", jam=jam), short
+    long = tr(
+        "Jams at {jam:.0f}°: a connector would stretch by {stretch:.1f} of its width", jam=jam, stretch=found.stretch
+    )
+    return long, short
+
+
+def figures(found: AsCut) -> str:
+    """The figures behind the verdict, one in each line."""
+    from kirigami_studio.fabricate.strain import StrainFigure
+
+    lines = [texts(found)[0]]
+    if found.iou is not None and found.ideal_iou is not None:
+        lines.append(
+            tr(
+                "Match as cut, at {reached:.0f}°: {match:.1f} %; ideal, with connectors of no width: {ideal:.1f} %",
+                reached=math.degrees(found.reached),
+                match=100 * found.iou,
+                ideal=100 * found.ideal_iou,
+            )
+        )
+    lines.append(tr("Largest stretch: {stretch:.2f} of a connector's width", stretch=found.stretch))
+    if found.figure is StrainFigure.OUT_OF_PLANE:
+        strain = tr("Largest strain: {strain:.0f} % (thin sheet: it bends out of the plane)", strain=100 * found.strain)
+    else:
+        strain = tr("Largest strain: {strain:.0f} % (thick sheet: it bends in the plane)", strain=100 * found.strain)
+    lines.append(strain)
+    lines.append(
+        tr(
+            "Simulated with this material, width and connectors. Friction, plastic set and motion out of the "
+            "plane are not modelled."
+        )
+    )
+    return "\n".join(lines)
