@@ -111,8 +111,7 @@ def main() -> int:
             except Exception as error:  # every kind of failure is a fault of the design
                 found = [f"{type(error).__name__}: {error}"]
         bad += bool(found)
-        for fault in found:
-            sys.stdout.write(f"{seed}: {fault}\n")
+        sys.stdout.write(f"{seed}: {'; '.join(found) or 'as it should be'}\n")
         sys.stdout.flush()
     sys.stdout.write(f"{asked.designs} designs, {bad} bad, {time.process_time() - begun:.0f} s of processor time\n")
     return min(bad, 1)

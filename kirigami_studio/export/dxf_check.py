@@ -173,7 +173,7 @@ def _piece_report(
         problems.append(Problem.error("cut_file.pieces_cross", (x, y)))
     closed = [found.points for found in content.paths if found.closed and len(found.points) > 3]
     areas = np.array([Polygon(ring) for ring in closed], dtype=object)
-    starts = np.array([Point(*ring[0]) for ring in closed], dtype=object)
+    starts = [Point(ring[0]) for ring in closed]
     inside = shapely.STRtree(starts).query(areas, predicate="contains_properly")[1]
     pieces = len(areas) - len(np.unique(inside))
     if whole and pieces != record.pieces:
