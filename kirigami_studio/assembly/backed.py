@@ -95,7 +95,7 @@ class Jig:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Board:
-    """Tiles and their frame as they lie on the flat hinge layer: cut file and template for gluing."""
+    """Tiles and their frame on the flat hinge layer: cut file and template for gluing."""
 
     pieces: tuple[Piece, ...]  #: tiles, then the frame, each in its own frame of coordinates
     places: FloatArray  #: (P, 2) where their origins lie; the lower left corner of the frame is (0, 0)

@@ -130,7 +130,7 @@ class LayerMotion:
 
 
 def freedom(motion: LayerMotion) -> int:
-    """Count the independent small motions of a half open sheet on its pins, beside those of the whole."""
+    """Count the small motions of a half open sheet on its pins, beside those of the whole."""
     turn = 0.5 * motion.opening
     drift, spin = motion.drift[:, None], np.exp(1j * motion.sense * turn)[:, None]
     points = np.exp(-0.5j * motion.sense * turn)[:, None] * (motion.corners + (spin - 1.0) * drift)

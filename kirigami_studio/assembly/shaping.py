@@ -256,7 +256,7 @@ class Shaping:
         return _largest(shape)
 
     def with_more(self, index: int, room: BaseGeometry) -> Polygon | None:
-        """The body of a piece with all of an area that hangs on to it by a neck; None where that is nothing."""
+        """Body of a piece with all of an area that hangs on to it by a neck, or None."""
         body: Polygon = self.bodies[index]
         found = self.held_together(index, united(body, room))
         whole = body if found is None else united(found, body)

@@ -7,8 +7,8 @@ from enum import StrEnum
 
 from kirigami_studio.foundation.words import mark
 
-#: Material (mm) round a hole, unless given; the ear is that much wider on either side.
-WALL_MM = 3.0
+#: Least wall (mm) of an ear round a hole, unless its diameter is given; the wall is as wide as the hole.
+LEAST_WALL_MM = 2.0
 
 
 class Fastener(StrEnum):

@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
-from kirigami_studio.fabricate.fastener import SIZES, WALL_MM, Fastener
+from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
@@ -464,7 +464,7 @@ def construction_for(settings: FabricationSettings) -> Construction:
 
 
 def note_before_run(settings: FabricationSettings) -> Note | None:
-    """Return a word on what the construction asks for, or on the limits of one sheet; None where there is none.
+    """Return a note on the construction, or on the limits of one sheet, or None.
 
     Raises
     ------
@@ -518,7 +518,7 @@ def pin_sizes(settings: FabricationSettings) -> PinSizes:
     """
     size = SIZES[settings.fastener]
     hole = settings.pin_mm if settings.pin_mm is not None else size.hole_mm
-    ear = settings.ear_mm if settings.ear_mm is not None else hole + 2.0 * WALL_MM
+    ear = settings.ear_mm if settings.ear_mm is not None else hole + 2.0 * max(hole, LEAST_WALL_MM)
     if ear <= hole:
         raise UsageError("settings.ear_within_hole", ear_mm=ear, pin_mm=hole)
     return PinSizes(hole, ear, settings.clearance_mm, size.head_mm)

@@ -12,7 +12,6 @@ from pathlib import PurePath
 
 from kirigami_studio.foundation.plain_text import printable
 from kirigami_studio.foundation.sentences import (
-    assembly,
     designs,
     export,
     fabricate,
@@ -26,7 +25,7 @@ from kirigami_studio.foundation.words import fill, tr, tr_n
 #: Every sentence by the code of its problem; the lab adds its own when it is imported.
 SENTENCES: dict[str, str | tuple[str, str]] = {
     code: text
-    for table in (assembly, designs, export, fabricate, interface, mechanics, outlines, project)
+    for table in (designs, export, fabricate, interface, mechanics, outlines, project)
     for code, text in table.SENTENCES.items()
 }
 

@@ -1,4 +1,4 @@
-"""The beds of a pinned design side by side: pieces where they are cut, with holes and numbers."""
+"""Beds of a pinned design side by side, with pieces, holes and numbers."""
 
 from __future__ import annotations
 

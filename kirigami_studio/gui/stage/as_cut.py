@@ -80,7 +80,7 @@ class AsCutReader(QObject):
         self._say(UNKNOWN if self._session.stage is None else BUSY)
 
     def read(self, request: CutRequest, made: Planned | MadePieces) -> None:
-        """Close a sheet whose cuts are planned, unless that was done before; pins have nothing to simulate."""
+        """Close a sheet whose cuts are planned, unless that was done; pins need none of it."""
         stage = self._session.stage
         if stage is None or stage.candidate != request.candidate:
             return

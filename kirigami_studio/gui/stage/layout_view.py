@@ -220,7 +220,7 @@ class LayoutView(Canvas):
             self.update()
 
     def show_pieces(self, made: MadePieces | None) -> None:
-        """Draw the pieces of a pinned design in the place of its panels; None draws the panels again."""
+        """Draw the pieces of a pinned design in the place of its panels, or panels again."""
         self._pieces = None if made is None or self.design is None else ShownPieces.of(made, self.design)
         if self._pieces is not None and self._bounds is not None:
             self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))

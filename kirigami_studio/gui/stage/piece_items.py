@@ -1,4 +1,4 @@
-"""Paint the pieces of a pinned design: two layers, the upper one through which the lower shows, and the pins."""
+"""Paint the pieces of a pinned design: two layers, the upper one translucent, and pins."""
 
 from __future__ import annotations
 

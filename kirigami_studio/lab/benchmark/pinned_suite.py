@@ -56,7 +56,7 @@ class PinnedDesign:
 
 
 @dataclass(frozen=True, slots=True)
-class PinnedFigures:
+class PinnedTable:
     """All first designs, on sheets of one width with pins of one size.
 
     Attributes
@@ -110,7 +110,7 @@ def design_pinned(
     gap_mm: float,
     starts: Sequence[StartShape] = (RECTANGLE,),
     report: Callable[[int, int], None] = lambda done, total: None,
-) -> PinnedFigures:
+) -> PinnedTable:
     """Design every target from every start with pins, unsearched.
 
     Parameters
@@ -158,4 +158,4 @@ def design_pinned(
             )
         )
     report(len(pairs), len(pairs))
-    return PinnedFigures(width_mm, gap_mm, tuple(found))
+    return PinnedTable(width_mm, gap_mm, tuple(found))
