@@ -323,7 +323,7 @@ def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Seque
     try:
         return overlay(*shapes)
     except shapely.GEOSException:
-        return overlay(*shapes, grid_size=SNAPPED_MM)
+        return overlay(*(shapely.make_valid(shape) for shape in shapes), grid_size=SNAPPED_MM)
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:

@@ -9,6 +9,8 @@ from kirigami_studio.foundation.words import mark
 
 #: Least wall (mm) of an ear round a hole, unless its diameter is given; the wall is as wide as the hole.
 LEAST_WALL_MM = 2.0
+#: Least width of a rigid piece, in thicknesses of its sheet: it carries a pin, and bends nowhere.
+NECK_IN_THICKNESSES = 2.0 / 3.0
 
 
 class Fastener(StrEnum):

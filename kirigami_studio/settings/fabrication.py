@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
-from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, SIZES, Fastener
+from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, NECK_IN_THICKNESSES, SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
@@ -490,12 +490,15 @@ class PinSizes:
         Between pieces of one layer that pass each other.
     head_mm : float
         Diameter of the widest part of the pin.
+    neck_mm : float
+        Least width of a piece.
     """
 
     hole_mm: float
     ear_mm: float
     clearance_mm: float
     head_mm: float
+    neck_mm: float
 
     @property
     def margin_mm(self) -> float:
@@ -504,8 +507,12 @@ class PinSizes:
 
     @property
     def apart_mm(self) -> float:
-        """Least distance of pins on one piece and of those that come nearest in the closed states."""
-        return self.ear_mm + self.clearance_mm
+        """Least distance of pins in the closed states.
+
+        Two ears of neighbours, and their clearance, leave a neck between them then, and one beside a corner of 60
+        degrees whose sides both have their notch.
+        """
+        return self.ear_mm + 2.0 * self.clearance_mm + self.neck_mm
 
 
 def pin_sizes(settings: FabricationSettings) -> PinSizes:
@@ -515,13 +522,17 @@ def pin_sizes(settings: FabricationSettings) -> PinSizes:
     ------
     UsageError
         An ear that is no wider than its hole.
+    FabricationError
+        No such material.
     """
+    material = material_for(settings)
     size = SIZES[settings.fastener]
     hole = settings.pin_mm if settings.pin_mm is not None else size.hole_mm
     ear = settings.ear_mm if settings.ear_mm is not None else hole + 2.0 * max(hole, LEAST_WALL_MM)
+    neck = max(material.min_ligament_mm, NECK_IN_THICKNESSES * material.thickness_mm)
     if ear <= hole:
         raise UsageError("settings.ear_within_hole", ear_mm=ear, pin_mm=hole)
-    return PinSizes(hole, ear, settings.clearance_mm, size.head_mm)
+    return PinSizes(hole, ear, settings.clearance_mm, size.head_mm, neck)
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:

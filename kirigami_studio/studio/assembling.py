@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 
+from shapely.errors import GEOSException
+
 from kirigami_studio.assembly.checks import PinnedReport, check_pinned
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
@@ -12,12 +14,12 @@ from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     construction_for,
-    material_for,
     pin_sizes,
 )
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
@@ -41,12 +43,12 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
     UsageError
         An ear that is no wider than its hole.
     """
-    sizes, material = pin_sizes(settings), material_for(settings)
+    sizes = pin_sizes(settings)
     return PinOptions(
         pin_mm=sizes.hole_mm,
         ear_mm=sizes.ear_mm,
         clearance_mm=sizes.clearance_mm,
-        neck_mm=max(material.min_ligament_mm, material.min_panel_mm),
+        neck_mm=sizes.neck_mm,
         head_mm=sizes.head_mm,
         margin_mm=sizes.margin_mm,
     )
@@ -90,7 +92,7 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     Raises
     ------
     FabricationError
-        No such material.
+        No such material, or pieces that cannot be made.
     UsageError
         An ear that is no wider than its hole.
     """
@@ -99,8 +101,11 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     made = _KEPT.pop(key, None)
     if made is None:
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
-        plan = pinned(design, target, settings.width_mm, options)
-        report = check_pinned(plan)
+        try:
+            plan = pinned(design, target, settings.width_mm, options)
+            report = check_pinned(plan)
+        except GEOSException as error:  # floating point ended the geometry of this one design
+            raise FabricationError("pinned.not_made", reason=error) from error
         made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match))
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:

@@ -30,13 +30,13 @@ def test_that_ears_have_walls_as_wide_as_the_hole_and_clear_the_heads(fastener: 
     sizes = pin_sizes(FabricationSettings(fastener=fastener))
     assert sizes.hole_mm == SIZES[fastener].hole_mm
     assert 0.5 * (sizes.ear_mm - sizes.hole_mm) == pytest.approx(max(sizes.hole_mm, 2.0))
-    assert sizes.apart_mm == pytest.approx(sizes.ear_mm + 0.6)
+    assert sizes.apart_mm == pytest.approx(sizes.ear_mm + 2 * 0.6 + sizes.neck_mm)
     assert sizes.apart_mm > sizes.head_mm > sizes.hole_mm
 
 
 def test_that_only_pinned_sheets_keep_their_pins_apart() -> None:
     plywood = new_settings({"material": "plywood-co2", "ear_mm": 9.0, "clearance_mm": 0.5})
-    assert pin_gap_mm(plywood) == pytest.approx(9.5 * 380.0 / (380.0 - 9.0))
+    assert pin_gap_mm(plywood) == pytest.approx((9.0 + 2 * 0.5 + 3.0) * 380.0 / (380.0 - 9.0))
     assert pin_gap_mm(with_choices(plywood, {"construction": "one-sheet"})) == 0.0
     assert pin_gap_mm(new_settings({"material": "film-uv"})) == 0.0
 
