@@ -323,7 +323,13 @@ def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Seque
     try:
         return overlay(*shapes)
     except shapely.GEOSException:
-        return overlay(*(shapely.make_valid(shape) for shape in shapes), grid_size=SNAPPED_MM)
+        return overlay(*map(_valid, shapes), grid_size=SNAPPED_MM)
+
+
+def _valid(shape: BaseGeometry | Sequence[BaseGeometry]) -> BaseGeometry:
+    """The areas of a shape, or of several, without parts that overlap or have no area."""
+    parts = [shape] if isinstance(shape, BaseGeometry) else shape
+    return shapely.GeometryCollection([_areas(shapely.make_valid(part)) for part in parts]).buffer(0.0)
 
 
 def _areas(shape: BaseGeometry) -> BaseGeometry:

@@ -236,8 +236,6 @@ def ranked_as_cut(
     from kirigami_studio.studio.as_cut import estimates
     from kirigami_studio.studio.verdict import CloseLook, looking
 
-    if result.request.pinned:
-        return result  # sheets are looked at as cut for their connectors, and pins have none
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
     progress = _looking_at(0, len(everything.candidates))

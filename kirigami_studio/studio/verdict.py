@@ -461,7 +461,7 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made)
-    return CloseLook(found.problems[0] if found.level is Level.FAILS else None, made.as_cut)
+    return CloseLook(None if found.ok else found.problems[0], made.as_cut)
 
 
 def refused(error: KirigamiError) -> Verdict:

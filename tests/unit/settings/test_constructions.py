@@ -36,7 +36,7 @@ def test_that_ears_have_walls_as_wide_as_the_hole_and_clear_the_heads(fastener: 
 
 def test_that_only_pinned_sheets_keep_their_pins_apart() -> None:
     plywood = new_settings({"material": "plywood-co2", "ear_mm": 9.0, "clearance_mm": 0.5})
-    assert pin_gap_mm(plywood) == pytest.approx((9.0 + 2 * 0.5 + 3.0) * 380.0 / (380.0 - 9.0))
+    assert pin_gap_mm(plywood) == pytest.approx((9.0 + 2 * 0.5 + 2.0) * 380.0 / (380.0 - 9.0))
     assert pin_gap_mm(with_choices(plywood, {"construction": "one-sheet"})) == 0.0
     assert pin_gap_mm(new_settings({"material": "film-uv"})) == 0.0
 
