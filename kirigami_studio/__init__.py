@@ -14,7 +14,7 @@ __version__ = "0.1.0"
 
 _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),
-    "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Exported"),
+    "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Pieces", "Exported"),
     "api.designs": ("Designs", "design", "load_project", "machine_names", "material_names"),
     "api.simulation": ("Simulation",),
     "api.checked_file": ("CheckedFile", "check"),

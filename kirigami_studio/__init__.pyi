@@ -13,6 +13,7 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.design import Cuts as Cuts
     from kirigami_studio.api.design import Design as Design
     from kirigami_studio.api.design import Exported as Exported
+    from kirigami_studio.api.design import Pieces as Pieces
     from kirigami_studio.api.design import Sheet as Sheet
     from kirigami_studio.api.design import decode as decode
     from kirigami_studio.api.design import score as score

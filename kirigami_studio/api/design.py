@@ -32,6 +32,7 @@ from kirigami_studio.api.choices import (
 from kirigami_studio.api.pictures import cuts_picture, states_picture
 from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
+from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.feasibility import Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.mask_siou import mask_siou
@@ -45,6 +46,7 @@ from kirigami_studio.export.registry import export, find_writer
 from kirigami_studio.export.verification import Verification
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError
 from kirigami_studio.foundation.paper import MASK_SIZE
@@ -63,15 +65,18 @@ from kirigami_studio.studio.as_cut import AsCut, simulated
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.making import (
     CutRequest,
+    MadePieces,
     Output,
     Planned,
     chosen_candidate,
     export_job,
     judged,
+    pieces_of,
     planned,
     written,
+    written_pieces,
 )
-from kirigami_studio.studio.verdict import Level, Verdict
+from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
 
 #: Files that hold a project, whose chosen design is meant.
 PROJECTS = (SUFFIX, *CUT_FILES)
@@ -427,6 +432,30 @@ class Design:
     plan_cuts.__signature__ = explicit_signature(plan_cuts, keywords_of(*CUTS), over=True)  # type: ignore[attr-defined]
     plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
+    def make_pieces(self, **choices: Any) -> Pieces:
+        """Make the pieces of two layers on pins; takes what :meth:`plan_cuts` takes.
+
+        Raises
+        ------
+        FabricationError, UsageError
+            No such material or choice, or pieces that cannot be made.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kirigami_studio as ks
+        >>> ratios = 10 ** (0.2 * (-1.0) ** np.add.outer(range(4), range(4)))
+        >>> design = ks.decode(ratios).for_target("square")
+        >>> pieces = design.make_pieces(material="plywood-co2", width_mm=200)
+        >>> pieces.count, pieces.pins
+        (25, 40)
+        """
+        given = checked_choices({**choices}, keywords_of(*CUTS), "make_pieces")
+        wanted = {"construction": Construction.PINNED} | {name: one for name, one in given.items() if one is not None}
+        document = self.document
+        request = CutRequest.of(document, with_choices(document.fabrication, wanted))
+        return Pieces(self, request, pieces_of(request))
+
     def simulate(self, **cuts: Any) -> Simulation:
         """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
         return self.plan_cuts(**cuts).simulate()
@@ -719,6 +748,73 @@ class Cuts:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Pieces:
+    """Pieces of a design in two layers on pins, and what is to be expected of them.
+
+    Attributes
+    ----------
+    design : Design
+    """
+
+    design: Design
+    _request: CutRequest
+    _made: MadePieces
+
+    @property
+    def settings(self) -> FabricationSettings:
+        """Material, sizes of pins and ears, machine."""
+        return self._request.settings
+
+    @property
+    def assembly(self) -> Assembly:
+        """The value of the program: pieces, pins, poses at any angle."""
+        return self._made.made.assembly
+
+    @property
+    def count(self) -> int:
+        """Pieces of both layers."""
+        return len(self.assembly.pieces)
+
+    @property
+    def pins(self) -> int:
+        """Pins that join them."""
+        return len(self.assembly.hinges)
+
+    @property
+    def iou(self) -> float:
+        """Exact IoU of the assembled silhouette with the target."""
+        return self._made.report.figures.match
+
+    @property
+    def seconds(self) -> float:
+        """Estimated time of cutting all beds."""
+        return self._made.seconds
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether they are ready to cut, and why not."""
+        return self._made.verdict
+
+    def export(self, folder: str | os.PathLike[str]) -> Exported:
+        """Write cut files of both layers, assembly sheet, parts list and motion to a folder.
+
+        Raises
+        ------
+        ExportError
+            A place that cannot be written, or pieces whose files cannot be right.
+        """
+        found = written_pieces(self._request, Output(Path(folder), "cut"))
+        return Exported(found.files, found.verifications, self)
+
+    def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
+        return judge_assembled(self._request.candidate, self._made.made, verifications)
+
+    def __repr__(self) -> str:
+        level = self.verdict.words
+        return f"<Pieces of {self.design.name} in {self.settings.material}: {self.count}, {self.pins} pins, {level}>"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Exported:
     """Files that were written.
 
@@ -727,13 +823,13 @@ class Exported:
     files : tuple of Path
     verifications : tuple of Verification
         What two readers found in each DXF and SVG.
-    cuts : Cuts or None
+    cuts : Cuts, Pieces or None
         That the files were written of; None for pictures.
     """
 
     files: tuple[Path, ...]
     verifications: tuple[Verification, ...] = ()
-    cuts: Cuts | None = field(default=None)
+    cuts: Cuts | Pieces | None = field(default=None)
 
     @property
     def path(self) -> Path:

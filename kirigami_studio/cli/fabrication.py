@@ -31,8 +31,8 @@ from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     construction_for,
-    material_for,
     new_settings,
+    note_before_run,
     with_choices,
 )
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
@@ -65,9 +65,11 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     Unknown materials are refused here, before any work.
     """
     settings = new_settings(_given(arguments))
-    limits = None if construction_for(settings) is Construction.PINNED else material_for(settings).limits_note
-    if limits is not None:
-        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {limits.text}\n")
+    note = note_before_run(settings)
+    if note is not None:
+        pinned = construction_for(settings) is Construction.PINNED
+        said = tr("note: {text}", text=note.text) if pinned else f"{tr('warning')}: {note.text}"
+        sys.stderr.write(f"kirigami-studio: {said}\n")
     return settings
 
 

@@ -102,6 +102,11 @@ class Ranking:
         least = self.least_gap_mm * candidate.score.evenness.width / self.width_mm
         return not least or candidate.least_gap >= least - GAP_ROUNDING
 
+    def pins_note(self, candidate: Candidate) -> Note:
+        """Say how near the pins of a pinned sheet come."""
+        gap_mm = candidate.least_gap * self.width_mm / candidate.score.evenness.width
+        return Note.of("rank.pins_too_near", gap_mm=gap_mm, least_mm=self.least_gap_mm)
+
     def cuttable(self, candidate: Candidate) -> bool:
         """Whether it can be cut as far as is known.
 
@@ -238,8 +243,7 @@ class Ranking:
         if one in self.refusals:
             return self.refusals[one]
         if not self.pins_apart(one):
-            gap_mm = one.least_gap * self.width_mm / one.score.evenness.width
-            return Note.of("rank.pins_too_near", gap_mm=gap_mm, least_mm=self.least_gap_mm)
+            return self.pins_note(one)
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
 

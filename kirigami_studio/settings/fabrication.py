@@ -172,9 +172,8 @@ class FabricationSettings:
                 Choice(
                     Construction.BACKED,
                     mark("Tiles on a soft sheet"),
-                    mark("Rigid tiles are glued on a sheet that is cut and bends between them."),
+                    mark("The sheet that is cut is the hinge layer; tiles for it are exported as 3MF or STL to print."),
                 ),
-                Choice(Construction.PRINTED, mark("3D printed"), mark("A printer makes the parts, pins in place.")),
             ),
             option="--construction",
         ).metadata,
@@ -366,6 +365,8 @@ class FabricationSettings:
 
     def __post_init__(self) -> None:
         check(self)
+        if self.construction is Construction.PRINTED:
+            raise UsageError("settings.printed_not_fitted")
 
 
 class SheetChange(TypedDict, total=False):

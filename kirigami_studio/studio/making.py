@@ -508,11 +508,15 @@ def judged(
 
 def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     """What the exporters get about a design."""
+    from kirigami_studio.assembly.backed import TileSizes
+    from kirigami_studio.assembly.solids import PrintForm, Printing
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.project.store import packed_design
 
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
+    if made is not None and (request.settings.construction is Construction.BACKED or made.plan.material.backing):
+        job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=TileSizes(request.settings.gap_mm)))
     return replace(
         job,
         profile=request.settings.profile,

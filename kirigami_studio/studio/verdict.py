@@ -600,7 +600,10 @@ def _of_design(candidate: Candidate) -> list[Problem]:
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
-    """Panels that are too small, by the design's own sizes."""
+    """Panels that are too small, or pins too near, by the design's own sizes."""
+    if not ranking.pins_apart(candidate):
+        note = ranking.pins_note(candidate)
+        return [Problem(note.code, note.fields, Severity.ERROR)]
     if ranking.wide_enough(candidate):
         return []
     size = candidate.score.evenness.least_feature_mm(ranking.width_mm)

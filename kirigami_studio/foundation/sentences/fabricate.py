@@ -339,8 +339,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "a hinge layer can (not built yet). For one sheet cut film, paper or polypropylene."
     ),
     "plan.material_is_hinge_layer": mark(
-        "{material} is a hinge layer: alone it is too limp for panels. Glued under tiles of card or board it works "
-        "(not built yet)."
+        "{material} is a hinge layer: alone it is too limp for panels. Tiles to print for it are exported as .3mf or "
+        ".stl; glued on, they make it stiff."
     ),
     "material.near_its_limit": mark(
         "{material}: one sheet closes only with large panels, because connectors narrower than {least_mm:g} mm break. "

@@ -123,7 +123,7 @@ def test_that_what_a_material_cannot_do_is_said_before_the_run_and_its_size_is_t
     assert main(["design", *words, "--material", "plywood-co2"]) == 0
     told = capsys.readouterr()
     note = json.loads(told.out)["material_note"]
-    assert "Two pinned layers" in note and note in told.err
+    assert "two layers of pieces" in note and note in told.err
     plywood = load(tmp_path / "design.kiri").fabrication
     assert plywood.width_mm == find_material("plywood-co2").sheet_mm
     assert main(["design", *words, "--material", "card-co2", "--width-mm", "200"]) == 0

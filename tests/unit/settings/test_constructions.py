@@ -57,6 +57,12 @@ def test_that_impossible_lengths_are_refused(name: str, value: float) -> None:
     assert refused.value.code == "settings.length_out_of_range"
 
 
+def test_that_printed_pins_are_refused_with_what_can_be_printed() -> None:
+    with pytest.raises(UsageError) as refused:
+        new_settings({"construction": "printed"})
+    assert refused.value.code == "settings.printed_not_fitted"
+
+
 def test_that_an_unknown_construction_is_refused() -> None:
     with pytest.raises(UsageError) as refused:
         new_settings({"construction": "woven"})

@@ -24,6 +24,7 @@ from kirigami_studio.lab.benchmark.variants_suite import (
     spread_of,
     with_reference,
 )
+from kirigami_studio.lab.trained_weights import store_model
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -40,7 +41,7 @@ def untrained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
         shutil.copy(weights.model_folder() / name, tmp_path / name)
     torch.manual_seed(0)
     network = VelocityNetwork(weights.load_model("prior").network.shape)
-    weights.store_model("untrained", network, tmp_path, {})
+    store_model("untrained", network, tmp_path, {})
     monkeypatch.setattr(weights, "model_folder", lambda: tmp_path)
     return "untrained"
 

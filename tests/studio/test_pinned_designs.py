@@ -1,0 +1,105 @@
+"""Pinned designs by all faces: the same pieces, verdict and files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kirigami_studio as ks
+from kirigami_studio.__main__ import main
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.steps import never
+from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import construction_for, new_settings
+from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning
+from kirigami_studio.studio.verdict import Level, look_at
+
+
+@pytest.fixture(scope="module")
+def pinwheel() -> Document:
+    """A square of 3 x 3 voids whose panels alternate in size, to be cut of plywood 160 mm wide."""
+    ratios = 10 ** (0.2 * (-1.0) ** np.add.outer(range(3), range(3)))
+    sheet = Sheet(RatioField(ratios))
+    target = silhouettes.load("square")
+    candidate = Candidate(sheet, evaluate(deploy(sheet), target), 0, 0)
+    settings = new_settings({"material": "plywood-co2", "width_mm": 160.0})
+    return Document(target, DesignSettings(), (candidate,), 0, fabrication=settings)
+
+
+@pytest.fixture(scope="module")
+def made(pinwheel: Document) -> MadePieces:
+    return pieces_of(CutRequest.of(pinwheel))
+
+
+def test_that_plywood_is_made_of_pieces_on_pins_without_being_asked(pinwheel: Document) -> None:
+    assert construction_for(pinwheel.fabrication) is Construction.PINNED
+    (planned,) = planning(CutRequest.of(pinwheel), never)
+    assert isinstance(planned, MadePieces)
+
+
+def test_that_a_plain_pinwheel_is_ready_to_cut(made: MadePieces) -> None:
+    assert (len(made.made.assembly.pieces), len(made.made.assembly.hinges)) == (16, 24)
+    assert made.verdict.level is Level.READY
+    assert made.verdict.as_cut is not None and made.verdict.as_cut.closes
+    assert made.verdict.as_cut.source is Source.SIMULATION and made.verdict.as_cut.jam_deg == 0.0
+    assert made.verdict.match == made.report.figures.match > 0.98
+
+
+def test_that_estimate_and_close_look_say_that_pins_close(pinwheel: Document, made: MadePieces) -> None:
+    (candidate,), settings = pinwheel.candidates, pinwheel.fabrication
+    guess = estimate(deploy(candidate.sheet), settings, candidate.final_phi)
+    assert guess.closes and guess.source is Source.ESTIMATE and guess.strain == 0.0
+    look = look_at(candidate, settings, pinwheel.target)
+    assert look.refusal is None and look.as_cut is made.made.as_cut
+
+
+def test_that_command_line_api_and_window_write_the_same_pieces(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["export", str(project), "--out", f"{tmp_path / 'line'}/", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["ok"] and said["construction"] == "pinned" and (said["pieces"], said["pins"]) == (16, 24)
+    assert said["verdict"]["level"] == "ready_to_cut" and said["jam_from"] == "simulation"
+    *_, exported = exporting(CutRequest.of(pinwheel), Output(tmp_path / "window", "cut"), True, never)
+    found = ks.load_project(project).best.make_pieces(width_mm=160).export(tmp_path / "script")
+    names = sorted(path.name for path in (tmp_path / "line").iterdir())
+    assert {"layer-1.dxf", "layer-2.dxf", "assembly.pdf", "parts.csv", "pieces.json"} <= set(names)
+    assert found.ok and found.verdict.level is exported.verdict.level is Level.READY
+    for name in ("pieces.json", "parts.csv"):
+        contents = {(tmp_path / folder / name).read_bytes() for folder in ("line", "window", "script")}
+        assert len(contents) == 1
+
+
+def test_that_one_sheet_of_plywood_is_still_judged_as_one(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    out = str(tmp_path / "sheet.dxf")
+    main(["export", str(project), "--construction", "one-sheet", "--out", out, "--json"])
+    assert json.loads(capsys.readouterr().out)["verdict"]["level"] == "will_not_work"
+
+
+def test_that_ears_without_room_are_refused_and_nothing_is_written(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    wish = ["export", str(project), "--out", str(tmp_path / "pieces.dxf"), "--width-mm", "40", "--ear-mm", "30"]
+    assert main(wish) == 2
+    assert "40 mm" in capsys.readouterr().err
+    assert not (tmp_path / "pieces").exists()
