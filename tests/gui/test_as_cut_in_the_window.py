@@ -19,6 +19,7 @@ from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.stage.gripping import grip_places
 from kirigami_studio.gui.stage.phi_slider import MarkKind, PhiSlider, TrackPart, track_parts, value_at
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.studio.as_cut import Source
 from kirigami_studio.studio.making import planned
 
 LEFT = Qt.MouseButton.LeftButton
@@ -243,7 +244,10 @@ def test_that_every_card_tells_whether_the_design_closes(closed: MainWindow, unt
     assert len(rows) == len(designs)
     for row in rows:
         assert row.data(VERDICT_ROLE).as_cut.closes
-        assert "closes (estimate)" in row.data(Qt.ItemDataRole.ToolTipRole)
+        # The design on the stage may have been simulated meanwhile; nobody has looked at the others.
+        estimated = row.data(VERDICT_ROLE).as_cut.source is Source.ESTIMATE
+        assert estimated or row.row() == 0
+        assert ("closes (estimate)" if estimated else "closes, ") in row.data(Qt.ItemDataRole.ToolTipRole)
     pictured = closed.gallery.view.viewport().grab().toImage()
     services.fabrication.change(connector_mm=3.0)
     services.fabrication.change_options(style=ConnectorStyle.STRAIGHT)
