@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
 from kirigami_studio.gui.session.messages import Tone
@@ -213,3 +214,21 @@ def test_that_each_problem_is_followed_by_the_fix_that_was_tried(jamming: MainWi
     lines = list(state.lines)
     assert lines[lines.index(solved.text) + 1] == first.line
     assert all(lines.count(fix.line) == 1 for fix in state.advice.fixes)
+
+
+def test_that_pieces_on_pins_are_judged_and_pins_without_room_refused_without_a_search(
+    ready: MainWindow, until: Until
+) -> None:
+    keeper, fabrication = ready.services.verdict, ready.services.fabrication
+    fabrication.change(construction=Construction.PINNED, width_mm=200.0)
+    until(lambda: judged(ready) and ready.fabrication.numbers["pieces"].text().endswith("pins"))
+    assert keeper.state.verdict is not None and keeper.state.verdict.as_cut is not None
+    assert keeper.state.verdict.as_cut.closes and not keeper.state.searching
+    ready.commands["cuts"].trigger()
+    assert ready.stage.cuts.beds.isVisible() and not ready.stage.cuts.view.isVisible()
+    fabrication.change(pin_mm=9.0, ear_mm=9.0)
+    until(lambda: judged(ready) and keeper.state.verdict is not None and keeper.state.verdict.level is Level.FAILS)
+    assert not keeper.state.searching and keeper.state.advice is None
+    fabrication.change(construction=None, pin_mm=None, ear_mm=None)
+    until(lambda: judged(ready) and keeper.state.verdict is not None and keeper.state.verdict.ok)
+    assert ready.stage.cuts.view.isVisible() and not ready.stage.cuts.beds.isVisible()

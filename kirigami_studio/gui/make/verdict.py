@@ -152,6 +152,10 @@ class VerdictKeeper(QObject):
 
         self._planned = None
         verdict = Verdict((Problem.error("plan.refused", reason=sentence),))
+        if request.is_pinned:  # changes are tried on cuts of one sheet alone
+            self._job.stop()
+            self._say(VerdictState(verdict))
+            return
         steps = partial(fixing, request, verdict, *self._alternatives(request))
         self._start(tr("trying fixes"), request, verdict, steps)
         self._take(request, verdict)
