@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.machine import cuttable, find_machine, machines
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.make.library_editors import NUMBERS, MachineEditor
+from kirigami_studio.gui.make.shelf_editors import NUMBERS, MachineEditor
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.studio.making import Planned
 

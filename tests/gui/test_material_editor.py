@@ -14,8 +14,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.coupon import kerf_from_gaps
 from kirigami_studio.fabricate.material import library, presets
-from kirigami_studio.gui.make.library_editors import MaterialEditor
 from kirigami_studio.gui.make.material_form import NUMBERS, MaterialForm
+from kirigami_studio.gui.make.shelf_editors import MaterialEditor
 from kirigami_studio.gui.window.main_window import MainWindow
 
 Until = Callable[[Callable[[], bool]], None]

@@ -46,7 +46,7 @@ from kirigami_studio.settings.fabrication import FabricationSettings, constructi
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.timing import CutTimes
-    from kirigami_studio.gui.make.library_editors import MachineEditor
+    from kirigami_studio.gui.make.shelf_editors import MachineEditor
     from kirigami_studio.studio.making import MadePieces, Planned
 
 #: Settings that are shown at once.
@@ -206,7 +206,7 @@ class FabricationPanel(Card):
 
     def _edit_machines(self) -> None:
         """Open the machine editor, or bring it to the front."""
-        from kirigami_studio.gui.make.library_editors import MachineEditor
+        from kirigami_studio.gui.make.shelf_editors import MachineEditor
 
         if self._machine_editor is None:
             self._machine_editor = MachineEditor(self.window(), self.machine.currentData())

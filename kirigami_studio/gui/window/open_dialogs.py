@@ -23,7 +23,7 @@ from kirigami_studio.studio.making import ExportedFiles
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
     from kirigami_studio.gui.make.export_report import ExportReport
-    from kirigami_studio.gui.make.library_editors import MaterialEditor
+    from kirigami_studio.gui.make.shelf_editors import MaterialEditor
     from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.target.outline_board import OutlineBoard, StartBoard
     from kirigami_studio.gui.target.part_picker import PartPicker
@@ -82,7 +82,7 @@ class Dialogs(QObject):
 
     def show_materials(self) -> None:
         """Open the material editor, or bring it to the front."""
-        from kirigami_studio.gui.make.library_editors import MaterialEditor
+        from kirigami_studio.gui.make.shelf_editors import MaterialEditor
 
         key = self._services.session.document.fabrication.material
         if self.materials is None:

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
 from kirigami_studio.fabricate.coupon import plan_coupon
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.material import FOLDER_VARIABLE, find_material
-from kirigami_studio.gui.make.library_editors import MaterialEditor
+from kirigami_studio.gui.make.shelf_editors import MaterialEditor
 from kirigami_studio.lab.demonstrations.offscreen_session import (
     OffscreenSession,
     SessionError,
