@@ -60,7 +60,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import cleaned_name
 from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, with_choices
+from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, is_pinned, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.making import (
@@ -450,8 +450,7 @@ class Design:
         >>> pieces.count, pieces.pins
         (25, 40)
         """
-        given = checked_choices({**choices}, keywords_of(*CUTS), "make_pieces")
-        wanted = {"construction": Construction.PINNED} | {name: one for name, one in given.items() if one is not None}
+        wanted = {"construction": Construction.PINNED} | _given(choices, "make_pieces")
         document = self.document
         request = CutRequest.of(document, with_choices(document.fabrication, wanted))
         return Pieces(self, request, pieces_of(request))
@@ -466,8 +465,8 @@ class Design:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files; ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the
-            closed sheet; ``.gif``: its motion.
+            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name; ``.stl``,
+            ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion.
 
         Returns
         -------
@@ -482,6 +481,11 @@ class Design:
         goal = Path(path)
         find_writer(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
+            deciding = {
+                name: cuts[name] for name in ("construction", "material", "machine") if cuts.get(name) is not None
+            }
+            if is_pinned(with_choices(self.document.fabrication, deciding)):
+                return self.make_pieces(**cuts)._written(Output(goal))
             return self.plan_cuts(**cuts).export(goal)
         return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
 
@@ -803,7 +807,10 @@ class Pieces:
         ExportError
             A place that cannot be written, or pieces whose files cannot be right.
         """
-        found = written_pieces(self._request, Output(Path(folder), "cut"))
+        return self._written(Output(Path(folder), "cut"))
+
+    def _written(self, output: Output) -> Exported:
+        found = written_pieces(self._request, output)
         return Exported(found.files, found.verifications, self)
 
     def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
@@ -850,6 +857,12 @@ class Exported:
         names = ", ".join(path.name for path in self.files)
         read = "" if not self.verifications else ", verified by two readers" if self.ok else ", NOT as planned"
         return f"<Exported {names}{read}>"
+
+
+def _given(choices: Mapping[str, Any], function: str) -> dict[str, Any]:
+    """Choices that were given, by the names of settings."""
+    given = checked_choices({**choices}, keywords_of(*CUTS), function)
+    return {name: one for name, one in given.items() if one is not None}
 
 
 def _plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:

@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
@@ -86,8 +87,7 @@ def design(arguments: argparse.Namespace) -> int:
 
     def tell(name: str, design: DesignOutcome, files: dict[str, str]) -> None:
         warnings = [*warn(name, design.result.request.target), *(note.text for note in design.notes)]
-        answer = summary(design.result) | {"files": files, "warnings": warnings}
-        answer["construction"] = construction_for(fabrication).value
+        answer = summary(design.result, construction_for(fabrication)) | {"files": files, "warnings": warnings}
         if limits is not None:
             answer["material_note"] = limits.text
         answer |= {"ok": design.verdict.ok, "verdict": design.verdict.to_json(), **jam_json(design.verdict.as_cut)}
@@ -271,15 +271,16 @@ def second_target(arguments: argparse.Namespace) -> SecondTarget | None:
     return SecondTarget(read_target(arguments.also), **given)
 
 
-def summary(result: Result) -> dict[str, object]:
+def summary(result: Result, construction: Construction) -> dict[str, object]:
     """The JSON answer of ``design`` without the files.
 
     Runs with a budget say whether it ended them, and those
     that chose their grid say why."""
-    entries = candidates_json(result)
+    entries = candidates_json(result, construction)
     answer: dict[str, object] = {
         "candidates": entries,
         "best": entries[0],
+        "construction": construction.value,
         "target_outline": [result.request.target.points.tolist()],
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
@@ -310,12 +311,14 @@ def summary(result: Result) -> dict[str, object]:
     return answer
 
 
-def candidates_json(result: Result) -> list[dict[str, object]]:
+def candidates_json(result: Result, construction: Construction) -> list[dict[str, object]]:
     """The entries of ``candidates``, best first, each with its rank's reason and its group."""
+    kind = {"family": "closed", "construction": construction.value}
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, ranking, result.as_cut.get(candidate)) | {"rank_reason": reason.text, "group": group}
+        candidate_json(candidate, ranking, result.as_cut.get(candidate))
+        | {"rank_reason": reason.text, "group": group, **kind}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
@@ -373,7 +376,7 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     }
     assert document is not None  # a design that was just made has a project
     save(document, paths["project"])
-    listing = {"candidates": candidates_json(design.result)}
+    listing = {"candidates": candidates_json(design.result, construction_for(request.settings))}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     made, refusal = None, ""
     if request.is_pinned:

@@ -21,7 +21,6 @@ from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
@@ -30,7 +29,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
-    construction_for,
+    is_pinned,
     new_settings,
     note_before_run,
     with_choices,
@@ -67,8 +66,7 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     settings = new_settings(_given(arguments))
     note = note_before_run(settings)
     if note is not None:
-        pinned = construction_for(settings) is Construction.PINNED
-        said = tr("note: {text}", text=note.text) if pinned else f"{tr('warning')}: {note.text}"
+        said = tr("note: {text}", text=note.text) if is_pinned(settings) else f"{tr('warning')}: {note.text}"
         sys.stderr.write(f"kirigami-studio: {said}\n")
     return settings
 
@@ -84,10 +82,11 @@ def export(arguments: argparse.Namespace) -> int:
     settings = overridden(document.fabrication, arguments)
     request = CutRequest.of(document, settings)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
-    if request.is_pinned and writes_pieces(output):
-        return _export_pieces(written_pieces(request, output), as_json=arguments.json)
-    if not arguments.all:
+    angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
+    if not arguments.all and not (request.is_pinned and writes_pieces(output)):
         find_writer(arguments.out)
+    if request.is_pinned:
+        return _export_pieces(written_pieces(request, output, angle), as_json=arguments.json)
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
@@ -101,7 +100,6 @@ def export(arguments: argparse.Namespace) -> int:
     if arguments.as_cut:
         sheet = simulated(request.candidate, plan, settings.width_mm, request.target, request.deployment)
         request, motion = replace(request, as_cut=sheet.as_cut), sheet.motion
-    angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
     found = written(request, made, output, closed(request, made), motion, picture_phi=angle)
     verdict = found.verdict
     assert verdict is not None  # planned sheets are judged

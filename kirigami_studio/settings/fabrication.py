@@ -472,11 +472,23 @@ def note_before_run(settings: FabricationSettings) -> Note | None:
     FabricationError
         No such material.
     """
-    material = material_for(settings)
-    if construction_for(settings) is Construction.PINNED:
+    return note_on(material_for(settings), settings)
+
+
+def note_on(material: Material, settings: FabricationSettings) -> Note | None:
+    """Return the same note for a material that is known, whatever the settings name."""
+    if (settings.construction or material.construction) is Construction.PINNED:
         fastener = tr(SIZES[settings.fastener].name)
         return Note.of("construction.pinned", material=tr(material.name), fastener=fastener)
     return material.limits_note
+
+
+def is_pinned(settings: FabricationSettings) -> bool:
+    """Whether the sheet is made of pieces on pins; an unknown material is not, unless asked for."""
+    try:
+        return construction_for(settings) is Construction.PINNED
+    except FabricationError:
+        return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -546,7 +558,7 @@ def pin_gap_mm(settings: FabricationSettings) -> float:
     UsageError
         An ear that is no wider than its hole, or a sheet that has no room for the margin.
     """
-    if construction_for(settings) is not Construction.PINNED:
+    if not is_pinned(settings):
         return 0.0
     sizes = pin_sizes(settings)
     inside = settings.width_mm - 2.0 * sizes.margin_mm

@@ -24,7 +24,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.hinged_cuts import HOLED
 from kirigami_studio.fabricate.making_room import long_enough
-from kirigami_studio.fabricate.material import Construction, Material
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
@@ -56,7 +56,7 @@ from kirigami_studio.mechanics.connectors import (
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, material_for
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, material_for
 
 MPA_PER_GPA = 1e3
 #: A sheet within this (radians) of being closed has closed.
@@ -369,7 +369,7 @@ def estimate(
         No such material, or widths that make no sense.
     """
     chosen = material_for(settings) if material is None else material
-    if construction_for(settings) is Construction.PINNED:
+    if is_pinned(settings):
         return motion_on_pins(phi)
     sheet = _unplanned_sheet(deployment, settings, chosen)
     found = estimate_stretch(deployment, sheet, settings.width_mm)

@@ -13,24 +13,14 @@ from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
-from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import (
-    FabricationSettings,
-    construction_for,
-    pin_sizes,
-)
+from kirigami_studio.settings.fabrication import FabricationSettings, pin_sizes
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
 MOST_KEPT = 16
-
-
-def is_pinned(settings: FabricationSettings) -> bool:
-    """Whether a sheet of these settings is made of pieces on pins."""
-    return construction_for(settings) is Construction.PINNED
 
 
 def pin_options(settings: FabricationSettings) -> PinOptions:

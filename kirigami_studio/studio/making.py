@@ -6,7 +6,6 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -33,7 +32,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
-    construction_for,
+    is_pinned,
     machine_for,
     material_for,
     pin_sizes,
@@ -246,7 +245,7 @@ class CutRequest:
     @property
     def is_pinned(self) -> bool:
         """Whether it is made of pieces on pins."""
-        return construction_for(self.settings) is Construction.PINNED
+        return is_pinned(self.settings)
 
     @property
     def facts(self) -> Mapping[str, str]:
@@ -328,12 +327,12 @@ class MadePieces:
         """Findings of the check of the pieces."""
         return self.made.report
 
-    @cached_property
+    @property
     def works(self) -> tuple[Work, ...]:
         """Length and time of the cuts of each bed."""
         return self.job.works
 
-    @cached_property
+    @property
     def flat_size_mm(self) -> tuple[float, float]:
         """Width and height of the flat assembly."""
         left, bottom, right, top = self.made.plan.flat.bounds
@@ -404,20 +403,30 @@ def judged_pieces(request: CutRequest) -> Verdict:
         return refused(error)
 
 
-def written_pieces(request: CutRequest, output: Output) -> ExportedFiles:
-    """Write the folder of a pinned design, read its files back, and judge it.
+def written_pieces(request: CutRequest, output: Output, picture_phi: float | None = None) -> ExportedFiles:
+    """Write the folder of a pinned design, read its files back, and judge it; or a picture of it.
 
-    A file's name stands for the folder without its extension, which gets cut files of that kind alone.
+    A file's name stands for the folder without its extension, which gets cut files of that kind alone.  Pictures show
+    the ideal motion, which is that of the pieces, at ``picture_phi`` (radians) or the target angle.
 
     Raises
     ------
     ExportError
-        An unwritable place, or a file that did not pass its own re-reading.
+        An unwritable place, a kind of file that pieces have none of, or one that did not pass its own re-reading.
     """
     from kirigami_studio.export.assembly_files import KINDS, write_assembly
     from kirigami_studio.studio.verdict import judge_assembled
 
-    pieces, kind = pieces_of(request), output.path.suffix.lower()
+    kind = output.path.suffix.lower()
+    if output.name is None and kind and not kind_of(kind).cuts:
+        from kirigami_studio.export.registry import export
+
+        place = export(replace(export_job(request, None), picture_phi=picture_phi), output.path)
+        made = pieces_of(request)
+        return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
+    if output.name is None and kind not in ("", ".pdf", *KINDS):
+        raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *KINDS)))
+    pieces = pieces_of(request)
     one = output.name is None and kind in KINDS
     folder = output.path.with_suffix("") if output.name is None else output.path
 
@@ -800,11 +809,14 @@ def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDe
     importing.import_as_cut()
     for request in requests:
         try:
-            made = planned(request, cancel)
-        except FabricationError:
+            if request.is_pinned:
+                seconds = pieces_of(request).seconds
+            else:
+                made = planned(request, cancel)
+                seconds = (made.plan.times if made.work is None else made.work.times).total
+        except (FabricationError, UsageError):
             continue  # which planning explains once it is chosen
-        times = made.plan.times if made.work is None else made.work.times
-        yield TimedDesign(request.candidate, request.settings, times.total)
+        yield TimedDesign(request.candidate, request.settings, seconds)
 
 
 def estimating(

@@ -25,7 +25,7 @@ from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
 from kirigami_studio.studio.as_cut import (
     CLOSE_TO,
     ESTIMATE_CLOSES,
@@ -35,7 +35,7 @@ from kirigami_studio.studio.as_cut import (
     jam_json,
     simulate,
 )
-from kirigami_studio.studio.assembling import Assembled, assembled, is_pinned
+from kirigami_studio.studio.assembling import Assembled, assembled
 from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:

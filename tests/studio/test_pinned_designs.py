@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from kirigami_studio.__main__ import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -21,9 +23,9 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import construction_for, new_settings
+from kirigami_studio.settings.fabrication import construction_for, is_pinned, new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
-from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning
+from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning, timing
 from kirigami_studio.studio.verdict import Level, look_at
 
 
@@ -103,3 +105,41 @@ def test_that_ears_without_room_are_refused_and_nothing_is_written(
     assert main(wish) == 2
     assert "40 mm" in capsys.readouterr().err
     assert not (tmp_path / "pieces").exists()
+
+
+def test_that_script_and_command_line_write_pieces_under_the_name_of_a_file(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    found = ks.load_project(project).best.export(tmp_path / "script.svg", material="plywood-co2", width_mm=160)
+    assert found.ok and found.cuts is not None and found.verdict is not None and found.verdict.ok
+    assert main(["export", str(project), "--out", str(tmp_path / "line.svg"), "--json"]) == 0
+    capsys.readouterr()
+    names = [sorted(path.name for path in (tmp_path / one).iterdir()) for one in ("script", "line")]
+    assert names[0] == names[1] and "layer-1.svg" in names[0] and "layer-1.dxf" not in names[0]
+
+
+def test_that_pictures_tell_the_verdict_on_the_pieces_and_solids_are_refused(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["export", str(project), "--out", str(tmp_path / "half.png"), "--at-deg", "90", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["files"] == [str(tmp_path / "half.png")] and said["verdict"]["level"] == "ready_to_cut"
+    assert (tmp_path / "half.png").stat().st_size > 1000
+    with pytest.raises(ExportError) as refused:
+        list(exporting(CutRequest.of(pinwheel), Output(tmp_path / "square.3mf"), True, never))
+    assert refused.value.code == "pieces.no_such_file"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["half.png", "square.kiri"]
+
+
+def test_that_the_time_of_a_pinned_design_is_that_of_its_beds(pinwheel: Document, made: MadePieces) -> None:
+    (timed,) = timing((CutRequest.of(pinwheel),), never)
+    assert timed.seconds == pytest.approx(made.seconds) and timed.seconds > 10.0
+
+
+def test_that_a_sheet_of_an_unknown_material_is_not_pinned_unless_asked_for(pinwheel: Document) -> None:
+    gone = replace(pinwheel.fabrication, material="nothing-anybody-has")
+    assert not is_pinned(gone) and is_pinned(replace(gone, construction=Construction.PINNED))

@@ -9,6 +9,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.no_plan": mark("A cut file needs a cut plan: choose a material and a sheet width first."),
     "export.with_fixes": mark("{reason} {fixes}"),
     "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
+    "pieces.no_such_file": mark("Pieces on pins are not written as {extension:.20}. Use a folder, or one of {known}."),
     "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
     "profile.only_red_is_cut": mark(

@@ -19,7 +19,6 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
-from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.make.machine_chooser import MachineChooser
@@ -41,7 +40,7 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -268,8 +267,7 @@ class FabricationPanel(Card):
         }
         self.form.show(shown)
         self.construction.choose(settings.construction)
-        pinned = material is not None and construction_for(settings) is Construction.PINNED
-        self.lengths["connector_mm"].setEnabled(not pinned)
+        self.lengths["connector_mm"].setEnabled(not is_pinned(settings))
         self.options.show_settings(settings)
         extension = ".pdf" if material is not None and material.by_hand else ".dxf"
         if settings.machine:

@@ -14,7 +14,7 @@ from kirigami_studio.settings.fabrication import (
     machine_changes,
     machine_for,
     material_changes,
-    note_before_run,
+    note_on,
     stored_machine,
     stored_material,
 )
@@ -75,7 +75,7 @@ class MachineChooser(QObject):
                 thickness_mm=material.thickness_mm,
                 note=tr(material.note),
             )
-            note = note_before_run(settings)
+            note = note_on(material, settings)
             self.material.setToolTip(about if note is None else f"{note.text}\n{about}")
             cutter = machine or machine_for(settings)
             self.machine.setToolTip(_about_machine(cutter))
@@ -102,7 +102,7 @@ class MachineChooser(QObject):
                 for key, _ in listed:
                     self.material.addItem("", key)
         for row, (_, material) in enumerate(listed):
-            note = note_before_run(FabricationSettings(material=material.key))
+            note = note_on(material, FabricationSettings())
             self.material.setItemText(row, tr(material.name))
             self.material.setItemData(row, None if note is None else note.text, Qt.ItemDataRole.ToolTipRole)
         return offered

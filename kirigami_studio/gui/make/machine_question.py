@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, Q
 from kirigami_studio.fabricate.machine import Machine, MachineKind, cuttable, machines
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
-from kirigami_studio.settings.fabrication import FabricationSettings, note_before_run
+from kirigami_studio.settings.fabrication import FabricationSettings, note_on
 
 #: Kinds of machines in the order in which they are offered, with their names on the buttons.
 KINDS = (
@@ -81,8 +81,9 @@ class CuttingQuestion(QFrame):
             (material.limits_note is not None, tr(material.name), key) for key, material in cuttable(machine).items()
         ]
         for _, name, key in sorted(taken):
-            action, note = menu.addAction(name), note_before_run(FabricationSettings(material=key))
-            action.setToolTip(tr(find_material(key).note) if note is None else note.text)
+            action, material = menu.addAction(name), find_material(key)
+            note = note_on(material, FabricationSettings())
+            action.setToolTip(tr(material.note) if note is None else note.text)
             action.triggered.connect(lambda _=False, key=key: self.answered.emit(machine.key, key))
 
     def _arrange(self) -> None:
