@@ -465,8 +465,8 @@ class Design:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name; ``.stl``,
-            ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion.
+            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name;
+            ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion.
 
         Returns
         -------

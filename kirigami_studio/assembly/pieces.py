@@ -111,6 +111,11 @@ class Assembly:
         """Pieces by their ids."""
         return {piece.id: piece for piece in self.pieces}
 
+    @property
+    def left_out(self) -> int:
+        """How many nodes that two panels share have no pin."""
+        return len(np.unique(self.deployment.topology.void_nodes)) - len(self.hinges)
+
     def poses(self, phi: float) -> FloatArray:
         """Place of every piece at angle ``phi``, in the order of the pieces.
 

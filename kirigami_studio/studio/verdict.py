@@ -526,6 +526,8 @@ def judge_assembled(candidate: Candidate, made: Assembled, verifications: Sequen
         *made.report.problems,
     ]
     notes = [note for one in verifications for note in one.warnings]
+    if made.assembly.left_out:
+        notes.append(Note.of("pinned.pins_left_out", count=made.assembly.left_out))
     told = {problem.text for problem in problems}
     return Verdict(
         _worst_first(problems),

@@ -466,6 +466,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "A sheet of {width_mm:g} mm has no room for a margin of {margin_mm:g} mm. Make the sheet wider or the pins "
         "smaller."
     ),
+    "pinned.pins_left_out": mark_n(
+        "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
+        "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
+    ),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "

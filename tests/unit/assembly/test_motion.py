@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.assembly.motion import LayerMotion, swept_discs, swept_hulls
+from kirigami_studio.assembly.motion import LayerMotion, freedom, swept_discs, swept_hulls
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -85,3 +86,21 @@ def test_that_swept_hulls_grown_by_their_tolerance_contain_the_polygon_on_its_wa
         assert area.covers(shapely.Polygon(as_points(there)))
     near = swept_hulls(corners, drift, turn, tolerance, (0.0, 0.0, 5.0, 5.0))
     assert 0 < len(near) < len(hulls)
+
+
+def test_that_pins_leave_one_motion_and_panels_at_corners_need_both_of_theirs(motion: LayerMotion) -> None:
+    assert freedom(motion) == 1
+    at_corner = int(motion.nodes[0][motion.hinged[0]][0])
+    alone = replace(motion, hinged=motion.hinged & (motion.nodes != at_corner))
+    assert freedom(alone) == 2
+    assert motion.without([at_corner]) is motion and motion.without([]) is motion
+
+
+def test_that_as_many_pins_are_left_out_as_one_motion_allows(motion: LayerMotion) -> None:
+    every = np.unique(motion.nodes[motion.hinged])
+    fewer = motion.without(every.tolist())
+    left = np.unique(fewer.nodes[fewer.hinged])
+    assert freedom(fewer) == 1 and len(left) < len(every)
+    assert 2 * len(left) >= 3 * len(motion.layer) - 4  # two conditions a pin; three shifts of the whole and one motion
+    for node in left.tolist():
+        assert freedom(replace(fewer, hinged=fewer.hinged & (fewer.nodes != node))) > 1

@@ -10,6 +10,7 @@ import pytest
 import shapely
 
 from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
+from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
@@ -217,3 +218,13 @@ def test_that_extensions_keep_clear_of_ears_that_pass_beyond_their_panels() -> N
     design, target = pinwheel(4, 4, 0.2, 0.7, 5)
     assembly = pinned(design, target, WIDTH_MM, PinOptions(reach_mm=30.0)).assembly
     assert max(overlap_at(assembly, float(phi)) for phi in np.linspace(math.pi, 0.0, 41)) < 1e-6
+
+
+def test_that_pins_without_a_wall_are_left_out_and_the_pieces_are_sound_then(monkeypatch: pytest.MonkeyPatch) -> None:
+    design, options = pinwheel(4, 4, 0.2, 0.6), PinOptions(pin_mm=1.6, ear_mm=5.6, neck_mm=2.0, head_mm=5.0)
+    plan = pinned(*design, 130.0, options)
+    report = check_pinned(plan, 5)
+    assert plan.assembly.left_out == 4 and len(plan.assembly.hinges) == 36
+    assert report.problems == () and report.figures.wall_mm > options.asked_wall_mm - 0.02
+    monkeypatch.setattr(LayerMotion, "without", lambda motion, nodes: motion)
+    assert check_pinned(pinned(*design, 130.0, options), 5).problems != ()
