@@ -50,9 +50,11 @@ help:
 
 setup: $(STAMP) $(CATALOGUES)
 
-# Catalogues as gettext reads them.
+# Catalogues as gettext reads them, compiled as setup.py does: pybabel takes "30 % of" for a placeholder, and fails.
+COMPILE := import sys; from babel.messages import mofile, pofile; \
+  mofile.write_mo(open(sys.argv[2], "wb"), pofile.read_po(open(sys.argv[1], "rb")))
 %.mo: %.po | $(STAMP)
-	$(BIN)/pybabel -q compile -i $< -o $@
+	@$(BIN)/python -c '$(COMPILE)' $< $@
 
 # torch first and by itself: only it needs the extra index, and only once.  System libraries come meanwhile.
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
