@@ -64,9 +64,7 @@ class LayerMotion:
     opening: float
 
     @classmethod
-    def of(
-        cls, deployment: Deployment, cell_mm: float, phi_target: float, in_one_plane: bool = False
-    ) -> LayerMotion:
+    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, in_one_plane: bool = False) -> LayerMotion:
         """The motion of a design from flat to its target angle."""
         panels = all_panels(*deployment.sheet.grid)
         even, odd = as_plane(deployment.even_part) * cell_mm, as_plane(deployment.odd_part) * cell_mm

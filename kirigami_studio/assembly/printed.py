@@ -222,12 +222,14 @@ class PinJoint:
         return 0.5 * pins.ear_mm - PRINTED_WALL_MM - pins.beside_mm
 
     def bodies(self) -> tuple[Manifold, Manifold, Manifold]:
-        """The three areas turned about the axis; no corner of the first is at one of the others."""
+        """The three areas turned about the axis; no corner of one is at one of the others, nor of an ear of a piece."""
         pin, round_pin, round_ring = (
             Manifold.revolve(CrossSection(_rings(area, GRID_MM), FillRule.Positive), ROUND_SEGMENTS)
             for area in (self.pin, self.round_pin, self.round_ring)
         )
-        return pin.rotate((0.0, 0.0, 180.0 / ROUND_SEGMENTS)), round_pin, round_ring
+        half = 180.0 / ROUND_SEGMENTS
+        round_pin, round_ring = (one.rotate((0.0, 0.0, 0.5 * half)) for one in (round_pin, round_ring))
+        return pin.rotate((0.0, 0.0, half)), round_pin, round_ring
 
 
 def pinned_solids(assembly: Assembly, thickness_mm: float, pins: PrintedPins) -> tuple[Solid, ...]:

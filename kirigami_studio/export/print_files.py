@@ -23,8 +23,6 @@ from kirigami_studio.export import assembly_files
 from kirigami_studio.export.assembly_files import AssemblyFiles, pieces_json
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.layer_files import whole_folder
-from kirigami_studio.export.meshes import KINDS as MESHES
-from kirigami_studio.export.meshes import write_plate
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.fabricate.cut_plan import design_hash
@@ -36,7 +34,7 @@ from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 
 #: Kinds of files that are written, the one for slicers first.
-KINDS = (".3mf", *(kind for kind in MESHES if kind != ".3mf"))
+KINDS = (".3mf", ".stl", ".obj")
 PIECES, SHEET = assembly_files.PIECES, assembly_files.SHEET
 OWN_NAME = re.compile(rf"plate-[1-9]\d*\.(3mf|stl|obj)|{assembly_files.OWN_NAME.pattern}")
 STEPS = (
@@ -60,31 +58,19 @@ class PrintedPlate:
     ----------
     number : int
         From 1.
-    solids : tuple of Solid
-        Their lowest corner at the origin.
     placed : tuple of (Piece, LaidShape)
-        The pieces and their places on it.
+        The pieces and their places; the smallest coordinates of all outlines are 0.
+    size_mm : (width, depth)
     """
 
     number: int
-    solids: Plate
     placed: tuple[tuple[Piece, LaidShape], ...]
+    size_mm: tuple[float, float]
 
     @property
     def name(self) -> str:
         """Stem of its files."""
         return f"plate-{self.number}"
-
-    @property
-    def size_mm(self) -> FloatArray:
-        """Width, depth and height (3,)."""
-        found: FloatArray = np.max([solid.high for solid in self.solids], axis=0)
-        return found
-
-    @property
-    def volume_mm3(self) -> float:
-        """Of all solids."""
-        return sum(solid.volume_mm3 for solid in self.solids)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,23 +115,34 @@ class PrintJob:
 
     @cached_property
     def plates(self) -> tuple[PrintedPlate, ...]:
-        """Solids on the plates of the printer.
+        """Pieces on the plates of the printer, as they lie in the flat sheet."""
+        pieces, shifts = self.assembly.pieces, self.assembly.poses(np.pi)[:, :2]
+        points = np.concatenate([piece.outline + shift for piece, shift in zip(pieces, shifts, strict=True)])
+        low, (width, depth) = points.min(axis=0), np.ptp(points, axis=0).tolist()
+        places = [LaidShape(index, shift - low, 0.0) for index, shift in enumerate(shifts)]
+        return (PrintedPlate(1, tuple(zip(pieces, places, strict=True)), (width, depth)),)
+
+    @cached_property
+    def solids(self) -> tuple[Plate, ...]:
+        """Bodies of each plate, their lowest corner at the origin.
 
         Raises
         ------
         FabricationError
             A piece whose surface does not close.
         """
-        pieces, poses = self.assembly.pieces, self.assembly.poses(np.pi)
-        solids = pinned_solids(self.assembly, self.thickness_mm, self.pins)
-        low = np.min([solid.low for solid in solids], axis=0)[:2]
-        places = [LaidShape(index, pose[:2] - low, 0.0) for index, pose in enumerate(poses)]
-        return (PrintedPlate(1, at_origin(solids), tuple(zip(pieces, places, strict=True))),)
+        found = {solid.name: solid for solid in pinned_solids(self.assembly, self.thickness_mm, self.pins)}
+        return tuple(at_origin([found[piece.id] for piece, _ in plate.placed]) for plate in self.plates)
+
+    @property
+    def printed(self) -> tuple[tuple[PrintedPlate, Plate], ...]:
+        """Plates with their bodies."""
+        return tuple(zip(self.plates, self.solids, strict=True))
 
     @property
     def volume_mm3(self) -> float:
         """Of all plates, without what infill saves."""
-        return sum(plate.volume_mm3 for plate in self.plates)
+        return sum(solid.volume_mm3 for plate in self.solids for solid in plate)
 
     @property
     def about(self) -> str:
@@ -167,8 +164,7 @@ class PrintJob:
     def lines(self) -> tuple[str, ...]:
         """Figures of the print in sentences."""
         plates = [
-            f"{plate.name}: {plate.size_mm[0]:.1f} x {plate.size_mm[1]:.1f} mm on the plate, "
-            f"{len(plate.placed)} pieces"
+            f"{plate.name}: {plate.size_mm[0]:.1f} x {plate.size_mm[1]:.1f} mm on the plate, {len(plate.placed)} pieces"
             for plate in self.plates
         ]
         pins = self.pins
@@ -189,16 +185,19 @@ def write_print(
     judged: Callable[[Sequence[Verification]], str] | None = None,
 ) -> AssemblyFiles:
     """Write the whole folder; parameters and errors as of ``write_assembly``."""
+    from kirigami_studio.export.meshes import write_plate  # with libraries that few need
+
     home = Path(folder)
-    _ = job.plates  # refused before a folder is made
+    _ = job.solids  # refused before a folder is made
     if judged is not None:  # what is read back is as planned, or nothing is written
-        job = replace(job, verdict=judged([_verification(job, plate, home, ".3mf") for plate in job.plates]))
+        expected = [_verification(plate, bodies, home, ".3mf") for plate, bodies in job.printed]
+        job = replace(job, verdict=judged(expected))
     verified = []
     with whole_folder(home, OWN_NAME) as fresh:
-        for plate in job.plates:
+        for plate, bodies in job.printed:
             for kind in kinds:
-                write_plate(plate.solids, fresh / f"{plate.name}{kind}", job.about)
-                verified.append(_verification(job, plate, home, kind))
+                write_plate(bodies, fresh / f"{plate.name}{kind}", job.about)
+                verified.append(_verification(plate, bodies, home, kind))
         write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
         steps = tuple(step.format(layer_mm=LAYER_MM) for step in STEPS)
         about = {"title": job.name or "Printed kirigami", "subject": job.about}
@@ -208,18 +207,9 @@ def write_print(
     return AssemblyFiles(tuple(home / name for name in names), tuple(verified))
 
 
-def _verification(job: PrintJob, plate: PrintedPlate, home: Path, kind: str) -> Verification:
+def _verification(plate: PrintedPlate, bodies: Plate, home: Path, kind: str) -> Verification:
     """What reading back has shown of a plate's file, which is there only where it holds."""
-    width, depth, height = plate.size_mm.tolist()
-    values = {"bodies": len(plate.solids), "volume_cm3": plate.volume_mm3 / 1000.0, "height_mm": height}
-    return Verification(
-        path=home / f"{plate.name}{kind}",
-        ok=True,
-        size_mm=(width, depth),
-        pieces=len(plate.solids),
-        cut_length_mm=0.0,
-        seconds_low=0.0,
-        seconds_high=0.0,
-        findings=(Finding.judged(True, "mesh.as_planned", **values),),
-        warnings=(),
-    )
+    width, depth, height = np.max([solid.high for solid in bodies], axis=0).tolist()
+    volume = sum(solid.volume_mm3 for solid in bodies) / 1000.0
+    found = Finding.judged(True, "mesh.as_planned", bodies=len(bodies), volume_cm3=volume, height_mm=height)
+    return Verification(home / f"{plate.name}{kind}", True, (width, depth), len(bodies), 0.0, 0.0, 0.0, (found,), ())

@@ -63,7 +63,7 @@ _WORDS = {
 #: What the names of machines of a kind have in them; the first that fits decides.
 _SIGNS = {
     MachineKind.HAND: ("by hand", "scissors"),
-    MachineKind.PRINTER: ("3d printer", "fdm"),
+    MachineKind.PRINTER: ("3d print", "fdm", "fff"),
     MachineKind.DIODE: ("diode",),
     MachineKind.CO2: ("co2", "co₂"),
     MachineKind.UV: ("uv ", "uv-", "ultraviolet", "green"),

@@ -24,6 +24,8 @@ from kirigami_studio.foundation.words import mark
 
 #: The preset that a new project starts with.
 DEFAULT_PRESET = "film-uv"
+#: The preset of sheets that are to be printed, where none is named.
+PRINTED_PRESET = "pla-print"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
 #: The machine of materials that are printed.

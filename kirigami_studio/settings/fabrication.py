@@ -19,6 +19,7 @@ from kirigami_studio.fabricate.fastener import (
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
+    MachineKind,
     cuttable,
     find_machine,
     machine_of,
@@ -28,6 +29,7 @@ from kirigami_studio.fabricate.machine import (
 )
 from kirigami_studio.fabricate.material import (
     DEFAULT_PRESET,
+    PRINTED_PRESET,
     Construction,
     Material,
     default_material,
@@ -646,6 +648,20 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
     return changes
 
 
+def construction_changes(settings: FabricationSettings, given: Mapping[str, Any]) -> FabricationChange:
+    """Changes that come with a construction: sheets are printed of what printers take."""
+    if given.get("construction") != Construction.PRINTED or given.get("material") is not None:
+        return {}
+    try:
+        if MachineKind.of(material_for(settings).machine) is MachineKind.PRINTER:
+            return {}
+    except FabricationError:
+        pass
+    machine = named_machine(settings)
+    keeps = machine is None or machine.kind is MachineKind.PRINTER
+    return material_changes(settings, PRINTED_PRESET) | ({} if keeps else {"machine": "", "profile": "any"})
+
+
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     """Settings without a project: the given material, or one that the machine cuts.
 
@@ -657,6 +673,8 @@ def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     if given.get("machine") is not None and given.get("material") is None:
         changes = machine_changes(usual, find_machine(given["machine"]))
         usual = replace(usual, material=changes.get("material", usual.material))
+    if given.get("construction") == Construction.PRINTED and given.get("material") is None:
+        usual = replace(usual, material=PRINTED_PRESET)
     material = material_for(with_choices(usual, given))
     own_style = replace(usual.options, style=material.style)
     return with_choices(replace(usual, width_mm=material.sheet_mm, options=own_style), given)
@@ -679,7 +697,8 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     FabricationError
         No such material or machine.
     """
-    changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
+    named = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
+    changes: dict[str, Any] = {**construction_changes(saved, named), **named}
     if "material" in given:
         changes["material"] = find_material(given["material"]).key
     if given.get("machine"):

@@ -441,6 +441,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "At {angle_deg:.0f} degrees pieces come nearer to each other than their clearance of {clearance_mm:g} mm, and "
         "may fuse or rub. Choose another design."
     ),
+    "printed.material_is_cut": mark("{material} is cut, not printed. Choose a material of a 3D printer, such as PLA."),
     "printed.assembly_larger_than_bed": mark(
         "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
         "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."
