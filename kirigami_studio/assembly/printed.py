@@ -190,7 +190,8 @@ class PinJoint:
         height = slope * (foot - neck) + 0.5 * (thickness_mm - least)
         above, top = 2.0 * thickness_mm, thickness_mm
         rim = height + slope * (ear - neck)
-        pin = [(0.0, 0.0), (foot, 0.0), (neck, height), (ear, rim), (ear, top), (0.0, top)]
+        disc = ear / math.cos(math.pi / ROUND_SEGMENTS)  # holds all of the ear of its piece
+        pin = [(0.0, 0.0), (foot, 0.0), (neck, height), (disc, rim + slope * (disc - ear)), (disc, top), (0.0, top)]
         high = [(0.0, -above), (foot, -above), (foot, 0.0), (neck, height), (ear, rim), (ear, above), (0.0, above)]
         both = high + [(-x, z) for x, z in reversed(high[1:-1])]
         room = shapely.buffer(Polygon(both), gap, join_style="mitre", mitre_limit=MITRE)
