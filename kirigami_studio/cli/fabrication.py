@@ -212,10 +212,8 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
         return 0 if found.ok else 1
     counts = {"folder": found.path, "pieces": len(assembly.pieces), "beds": len(beds), "pins": len(assembly.hinges)}
     if printing is not None:
-        words = mark(
-            "{folder}: {pieces} pieces on {beds} plates, {pins} joints, {volume:.1f} cm3, {thickness:g} mm thick"
-        )
-        say(tr(words, **counts, volume=printing.volume_mm3 / 1000.0, thickness=printing.thickness_mm))
+        words = mark("{folder}: {pieces} pieces, {pins} joints, {beds} plates, {volume:.1f} cm3, {height:g} mm high")
+        say(tr(words, **counts, volume=printing.volume_mm3 / 1000.0, height=printing.thickness_mm))
     else:
         words = mark("{folder}: {pieces} pieces on {beds} beds, {pins} pins, cut {cut:.1f} mm, about {seconds:.0f} s")
         say(tr(words, **counts, cut=pieces.cut_length_mm, seconds=pieces.seconds))
