@@ -468,13 +468,8 @@ class Design:
         ----------
         path : path
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name;
-<<<<<<< HEAD
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
-            sheet; ``.gif``: its motion.
-=======
-            ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion;
-            ``.html``: a page to share.
->>>>>>> main
+            sheet; ``.gif``: its motion; ``.html``: a page to share.
 
         Returns
         -------
