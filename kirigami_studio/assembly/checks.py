@@ -12,6 +12,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray
+from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.evaluate.boundary import as_plane, as_points
@@ -189,18 +190,12 @@ def placed_bodies(assembly: Assembly, bodies: Sequence[BaseGeometry], phi: float
 
 def largest_overlap(assembly: Assembly, angles: Sequence[float]) -> tuple[float, float]:
     """Largest overlap within a layer, mm2, over some angles (radians), and where it is."""
-    bodies = [body_of(piece) for piece in assembly.pieces]
+    poses = np.array([assembly.poses(phi) for phi in angles])
     layer = np.array([piece.layer for piece in assembly.pieces])
-    worst, at = 0.0, math.pi
-    for phi in angles:
-        placed = placed_bodies(assembly, bodies, phi)
-        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
-        close = (one < other) & (layer[one] == layer[other])
-        shared = shapely.area(shapely.intersection(placed[one[close]], placed[other[close]]))
-        total = max(float(shared[layer[one[close]] == number].sum()) for number in (1, 2))
-        if total > worst:
-            worst, at = total, phi
-    return worst, at
+    bodies = np.array([body_of(piece) for piece in assembly.pieces], dtype=object)
+    found = [one for number in (1, 2) for one in passing(bodies[layer == number], poses[:, layer == number]).overlaps]
+    worst = max(found, key=lambda one: one.area_mm2, default=None)
+    return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])
 
 
 def wall_mm(piece: Piece, body: Polygon) -> float:

@@ -366,6 +366,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
     if target is None:
         raise ProjectError("export.no_chosen_design")
     made, material, sizes = assembled(request.candidate, settings, target), material_for(settings), pin_sizes(settings)
+    verdict = judge_assembled(request.candidate, made)
     job = AssemblyJob(
         made.assembly,
         material,
@@ -383,8 +384,9 @@ def pieces_of(request: CutRequest) -> MadePieces:
         target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        verdict=verdict.level.value,
     )
-    return MadePieces(made, job, judge_assembled(request.candidate, made))
+    return MadePieces(made, job, verdict)
 
 
 def writes_pieces(output: Output) -> bool:
