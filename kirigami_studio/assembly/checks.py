@@ -12,6 +12,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray
+from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.evaluate.boundary import as_plane, as_points
@@ -197,22 +198,16 @@ def largest_overlap(plan: PinnedPlan, bodies: Sequence[Polygon], angles: Sequenc
     Pieces in one plane are looked at outside of their joints, and have to keep their clearance.
     """
     assembly, options = plan.assembly, plan.options
+    poses = np.array([assembly.poses(phi) for phi in angles])
     plane, shapes = np.array([piece.layer for piece in assembly.pieces]), np.array(bodies, dtype=object)
     if options.in_one_plane:
         plane = np.ones_like(plane)
         joint = 0.5 * options.ear_mm + options.clearance_mm
         pins = [shapely.multipoints([hole.centre for hole in piece.holes]).buffer(joint) for piece in assembly.pieces]
         shapes = shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM)
-    worst, at = 0.0, math.pi
-    for phi in angles:
-        placed = placed_bodies(assembly, shapes, phi)
-        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
-        close = (one < other) & (plane[one] == plane[other])
-        shared = shapely.area(shapely.intersection(placed[one[close]], placed[other[close]]))
-        total = max(float(shared[plane[one[close]] == number].sum()) for number in (1, 2))
-        if total > worst:
-            worst, at = total, phi
-    return worst, at
+    found = [one for number in (1, 2) for one in passing(shapes[plane == number], poses[:, plane == number]).overlaps]
+    worst = max(found, key=lambda one: one.area_mm2, default=None)
+    return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])
 
 
 def wall_mm(piece: Piece, body: Polygon) -> float:
