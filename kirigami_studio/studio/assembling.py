@@ -7,17 +7,19 @@ from dataclasses import dataclass
 
 from shapely.errors import GEOSException
 
-from kirigami_studio.assembly.checks import PinnedReport, check_pinned
+from kirigami_studio.assembly.checks import PinnedReport, bed_problems, check_pinned
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, pin_sizes
+from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, pin_sizes
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+from kirigami_studio.studio.cutting import kerf_mm
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
 MOST_KEPT = 16
@@ -101,3 +103,15 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)
     return made
+
+
+def beyond_the_bed(made: Assembled, settings: FabricationSettings) -> list[Problem]:
+    """Problems of pieces that are larger than the bed of the machine.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    bed, kerf = machine_for(settings).reach_mm, kerf_mm(settings, material_for(settings))
+    return bed_problems(made.assembly, bed, kerf, settings.width_mm, pin_sizes(settings).ear_mm)

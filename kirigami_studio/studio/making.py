@@ -38,7 +38,7 @@ from kirigami_studio.settings.fabrication import (
     pin_sizes,
 )
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import refuse_errors
+from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
@@ -366,13 +366,13 @@ def pieces_of(request: CutRequest) -> MadePieces:
     if target is None:
         raise ProjectError("export.no_chosen_design")
     made, material, sizes = assembled(request.candidate, settings, target), material_for(settings), pin_sizes(settings)
-    verdict = judge_assembled(request.candidate, made)
+    verdict = judge_assembled(request.candidate, made, settings)
     job = AssemblyJob(
         made.assembly,
         material,
         machine_for(settings),
         settings.fastener,
-        material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm,
+        kerf_mm(settings, material),
         sizes.hole_mm,
         sizes.ear_mm,
         sizes.clearance_mm,
@@ -433,7 +433,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     folder = output.path.with_suffix("") if output.name is None else output.path
 
     def level(verifications: Sequence[Verification]) -> str:
-        return judge_assembled(request.candidate, pieces.made, verifications).level.value
+        return judge_assembled(request.candidate, pieces.made, request.settings, verifications).level.value
 
     try:
         found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
@@ -442,7 +442,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         if broken is None:
             raise
         raise ExportError("export.cannot_be_cut", reason=broken.text) from error
-    verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
+    verdict = judge_assembled(request.candidate, pieces.made, request.settings, found.verifications)
     return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 
