@@ -123,7 +123,7 @@ class Shaping:
         """The part of a shape between necks that has most pins, and of those the largest."""
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
         half = 0.5 * self.options.neck_mm
-        cores = shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)).tolist()
+        cores = shapely.get_parts(shapely.buffer(shape, -half)).tolist()
         if not cores:
             return _largest(shape)
         core = max(cores, key=lambda one: (int(np.sum(shapely.contains(one, centres))), float(one.area)))
@@ -240,7 +240,7 @@ class Shaping:
         """
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
         half = 0.5 * float(self.neck_mm[index])
-        for core in shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)):
+        for core in shapely.get_parts(shapely.buffer(shape, -half)):
             if np.all(shapely.contains(core, centres)):
                 whole = shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape)
                 return _tidy(_largest(whole), 0.25 * math.pi * self.options.ear_mm**2)
