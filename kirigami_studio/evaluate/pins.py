@@ -15,12 +15,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, vstack
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -80,6 +80,20 @@ def pin_distances(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
     return PinDistances(matrix, way, np.hypot(way[:, 0], way[:, 1]))
 
 
+def with_notches(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
+    """Measure all pins, and those whose ears have notches in one panel, on two of its sides with pins between.
+
+    The latter count where both of them lie upon the panel's sides; the size of others is infinite.
+    """
+    matrix, passed, sides = _ways_and_notches(rows, columns)
+    way = matrix @ nodes
+    size = np.hypot(way[:, 0], way[:, 1])
+    start, end, behind = nodes[sides].transpose(1, 0, 2)
+    notched = np.square(end - start).sum(axis=1) > np.square(behind - start).sum(axis=1)
+    size[len(size) - len(passed) :][~notched[passed].all(axis=1)] = np.inf
+    return PinDistances(matrix, way, size)
+
+
 def least_pin_distance(deployment: Deployment) -> float:
     """The least of :func:`pin_distances`, unit cells."""
     return float(pin_distances(deployment.compact, *deployment.sheet.grid).size.min())
@@ -110,10 +124,58 @@ def _ways(rows: int, columns: int) -> csr_matrix:
                 if node != corner and pair not in rigid:
                     ways.setdefault((pair, False), {node: 1, corner: -1})
                     ways.setdefault((pair, True), closed | {corner: closed.get(corner, 0) - 1})
-    row = np.repeat(np.arange(len(ways)), [len(way) for way in ways.values()])
-    column = [node for way in ways.values() for node in way]
-    factor = [float(factor) for way in ways.values() for factor in way.values()]
-    return csr_matrix((factor, (row, column)), shape=(len(ways), tables.node_count))
+    return _sums(list(ways.values()), tables.node_count)
+
+
+def _sums(sums: list[dict[int, int]], node_count: int) -> csr_matrix:
+    """Matrix (F, N) of sums of nodes."""
+    row = np.repeat(np.arange(len(sums)), [len(one) for one in sums])
+    column = [node for one in sums for node in one]
+    factor = [float(factor) for one in sums for factor in one.values()]
+    return csr_matrix((factor, (row, column)), shape=(len(sums), node_count))
+
+
+@lru_cache(maxsize=64)
+def _ways_and_notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, IntArray]:
+    """Make the matrix of :func:`with_notches`.
+
+    Returns
+    -------
+    matrix : (F + K, N) sparse
+        Ways between pins, then those between notches on two sides of a panel.
+    passed : (K, 2) int
+        The two sides of each of the latter.
+    sides : (S, 3) int
+        Nodes at start and end of a side of a void, and the void's node beside its start.  A side has its notches where
+        it is longer than that from the start to the third node.
+    """
+    tables = topology(rows, columns)
+    pinned = set(tables.void_nodes.ravel().tolist())
+    behind = {}
+    for corners in tables.void_nodes.reshape(-1, 4).tolist():
+        for place in range(4):
+            start, end, far, near = (corners[(place + step) % 4] for step in range(4))
+            behind[start, end], behind[end, start] = (near, far), (far, near)
+    sides: list[tuple[int, int, int]] = []
+    sums: list[dict[int, int]] = []
+    passed: list[tuple[int, int]] = []
+    for corners in tables.panel_nodes.reshape(-1, 4).tolist():
+        places: dict[int, tuple[int, tuple[dict[int, int], ...]]] = {}
+        for place in range(4):
+            start, end = corners[place], corners[(place + 1) % 4]
+            if (start, end) in behind:
+                near, far = behind[start, end]
+                # Flat, the node beside the start is near the end; at phi = 0, turned half about the end, the other.
+                places[place] = len(sides), ({near: 1}, {end: 2, far: -1})
+                sides.append((start, end, near))
+        for one, other in combinations(places, 2):
+            between = {corners[place] for place in range(one + 1, other + 1)}
+            if between & pinned and (set(corners) - between) & pinned:
+                for here, there in product(places[one][1], places[other][1]):
+                    sums.append({node: here.get(node, 0) - there.get(node, 0) for node in here.keys() | there.keys()})
+                    passed.append((places[one][0], places[other][0]))
+    matrix = vstack([_ways(rows, columns), _sums(sums, tables.node_count)], format="csr")
+    return matrix, np.array(passed), np.array(sides)
 
 
 def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[int]]) -> dict[int, dict[int, int]]:

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import PinDistances, pin_distances
+from kirigami_studio.evaluate.pins import PinDistances, with_notches
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -30,7 +30,7 @@ from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.even_panels import EvenPanels
-from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
+from kirigami_studio.polish.junctions import OPEN, SHARPEST, JunctionAngles, junctions, pin_corners
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
@@ -51,7 +51,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
-ALL_APART = pin_distances(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+ALL_APART = with_notches(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
@@ -173,10 +173,12 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        close = ALL_APART
+        close, sharp = ALL_APART, NO_JUNCTIONS
         if self.gap:
-            close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
+            close = with_notches(nodes, self.model.rows, self.model.columns).below(self.gap)
             cost += shortage(close, self.gap, self._gap_penalty)
+            sharp = pin_corners(nodes, self.model.rows, self.model.columns).shallower(SHARPEST)
+            cost += self._gap_penalty * float(np.square(sharp.sine - SHARPEST).sum())
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -185,7 +187,7 @@ class Objective:
         if self.even is not None and self._each_large:
             large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
             cost += self._each_large * float(np.square(large.area - LARGE).sum())
-        return Look(state, decoded, outline, matching, second, small, close, shallow, large, excess, gaps, cost)
+        return Look(state, decoded, outline, matching, second, small, close, sharp, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -287,6 +289,7 @@ class Objective:
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
                 (self._gap_penalty, look.close.size - self.gap, look.close.reach),
+                (self._gap_penalty, look.sharp.sine - SHARPEST, look.sharp.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
@@ -331,7 +334,8 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes  #: Edges and necks below the least size
-    close: PinDistances  #: Distances between pins below the least one
+    close: PinDistances  #: Distances between pins, and between notches, below the least one
+    sharp: JunctionAngles  #: Corners of panels at pins that are sharper than they should be
     shallow: JunctionAngles  #: Where cuts meet at shallow angles, if the phase asks for open junctions
     large: PanelAreas  #: Panels that are large, if the phase asks for even ones
     excess: float  #: Share of a round start's area that chords cut off beyond what is allowed
