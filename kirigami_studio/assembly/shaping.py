@@ -28,6 +28,9 @@ COARSE = 0.25
 NARROWER = (0.75, 0.5, 0.25, 0.05)
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
+#: Discs of straps are so much larger, mm, than half a neck, and so far apart: a row of them is a neck wide.  Their
+#: notches are larger by the scallops between.
+STRAP_MORE, STRAP_STEP, STRAP_SCALLOP = 0.06, 0.6, 0.03
 #: Times that pins are left out, and notches cut anew.
 ROUNDS = 6
 #: Grid (mm) of overlays that fail in floating point, where edges nearly coincide.
@@ -95,26 +98,42 @@ class Shaping:
         return made
 
     def _begin(self, deployment: Deployment) -> None:
-        """Cut the notches; ears that would cut a piece through become smaller, halfway first."""
+        """Cut the notches; where a piece would be cut through, straps are given up, then ears become smaller, halfway
+        first.
+        """
         motion, options = self.motion, self.options
         panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
         owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
-        for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
+        radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
+        straps = _Straps.of(motion, options)
+        while True:
             ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-            every = np.concatenate([np.arange(len(panels)), owner])
-            whole = _united_by(np.concatenate([panels, ears]), every, len(panels))
+            every = np.concatenate([np.arange(len(panels)), owner, straps.ear // 4])
+            whole = _united_by(np.concatenate([panels, ears, discs(straps.centre, straps.radius)]), every, len(panels))
             areas = self._swept_ears(mover, seen)
             meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-            notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
-            shapes = _less(whole, notches)
+            strap, passed = straps.passing(mover, seen)
+            more = self._swept(straps.ear[strap], passed, straps.centre[strap], straps.radius + STRAP_SCALLOP)
+            met = np.any(shapely.intersects(more, whole[passed][:, None]), axis=1)
+            cut = np.concatenate([areas[meets].ravel(), more[met].ravel()])
+            notched = np.repeat(np.concatenate([seen[meets], passed[met]]), areas.shape[1])
+            shapes = _less(whole, _united_by(cut, notched, len(panels)))
             held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
             narrow = [index for index, one in enumerate(held) if one is None]
+            given_up = straps.ear[strap[met & np.isin(passed, narrow)]]
+            if len(given_up):
+                straps = straps.without(given_up)
+                continue
             cutting = mover[meets & np.isin(seen, narrow)]
-            if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
+            if not len(cutting) or not radii or np.all(self.ear_radius.ravel()[cutting] <= radii[0]):
                 break
-            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
+            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radii.pop(0))
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
+        for ear in np.unique(straps.ear).tolist():
+            layer = motion.layer[ear // 4] - 1
+            hull = shapely.union_all(discs(straps.centre[straps.ear == ear], straps.radius)).convex_hull
+            self._parts[layer] = self._parts[layer].with_more(ear // 4, _convex_parts(hull))
         for index, one in enumerate(held):
             self._find_weak(index, self._most_pinned(index, shapes[index]) if one is None else one)
             self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
@@ -183,11 +202,14 @@ class Shaping:
 
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
+        return self._swept(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
+
+    def _swept(self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float) -> GeometryArray:
+        """The same of discs that move with the ears' panels."""
         motion = self.motion
-        radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
+        grown = np.broadcast_to(radius + self.options.clearance_mm, centre.shape)
         drift = motion.drift[ear // 4] - motion.drift[seen]
-        turn = motion.sense[seen] * motion.opening
-        return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
+        return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
@@ -273,6 +295,50 @@ class Shaping:
     def placed(self, turn: float) -> GeometryArray:
         """All pieces at t = ``turn``, in the frame of the deployment, mm."""
         return self.motion.placed(self.bodies, np.arange(len(self.bodies)), turn)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Straps:
+    """Discs that lead from ears at sharp corners to where the panel is as wide as a neck.
+
+    An ear of radius r hangs on 2 r sin(w / 2) of a panel with the angle w there.
+    """
+
+    ear: IntArray  #: (D,); the ear of each disc, as the flat index of its corner
+    centre: ComplexArray  #: (D,), mm
+    radius: float  #: mm
+
+    @classmethod
+    def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
+        """Straps of all corners with pins that need one; none reaches the ears of other pins."""
+        before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
+        half = 0.5 * np.abs(np.angle(before / after))
+        radius = 0.5 * options.neck_mm + STRAP_MORE
+        needed = motion.hinged & (options.ear_mm * np.sin(half) < options.neck_mm)
+        ears = np.flatnonzero(needed)
+        inwards = (before / np.abs(before) + after / np.abs(after)).ravel()[ears]
+        inwards /= np.abs(inwards)
+        first = 0.5 * options.ear_mm - radius
+        most = 0.5 * options.ear_mm + options.clearance_mm + 0.5 * options.neck_mm
+        last = np.minimum(0.5 * options.neck_mm / np.sin(half.ravel()[ears]), most)
+        steps = np.ceil((last - first) / STRAP_STEP).astype(np.int64).clip(1) + 1
+        share = np.concatenate([np.linspace(0.0, 1.0, count) for count in steps] or [np.zeros(0)])
+        along = first + share * np.repeat(last - first, steps)
+        ear = np.repeat(ears, steps)
+        return cls(ear, motion.corners.ravel()[ear] + along * np.repeat(inwards, steps), radius)
+
+    def without(self, ears: IntArray) -> _Straps:
+        """The others."""
+        kept = ~np.isin(self.ear, ears)
+        return _Straps(self.ear[kept], self.centre[kept], self.radius)
+
+    def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:
+        """Discs (numbers), and the panels that they may touch, of ears and the panels that these may."""
+        order = np.argsort(mover, kind="stable")
+        first, last = (np.searchsorted(mover[order], self.ear, side=side) for side in ("left", "right"))
+        pairs = [order[one:other] for one, other in zip(first, last, strict=True)]
+        number = np.repeat(np.arange(len(self.ear)), last - first)
+        return number, seen[np.concatenate([np.zeros(0, dtype=np.int64), *pairs])]
 
 
 class _ConvexParts:

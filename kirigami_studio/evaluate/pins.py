@@ -18,8 +18,9 @@ from functools import lru_cache
 from itertools import combinations, product
 
 import numpy as np
-from scipy.sparse import csr_matrix, vstack
+from scipy.sparse import csr_matrix
 
+from kirigami_studio.evaluate.evenness import PanelSizes, distances_to_lines
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -28,6 +29,9 @@ from kirigami_studio.lattice.topology import topology
 
 #: Gaps (unit cells) are kept when they lack no more than this: rounding a sheet takes less.
 GAP_ROUNDING = 1e-6
+#: How near to another side of its panel a notch may have its middle, relative to how near two of them may: for ears
+#: of 2.8 necks' width that pass each other by 0.3 necks.
+TO_A_SIDE = 0.614
 
 
 @lru_cache(maxsize=64)
@@ -80,18 +84,46 @@ def pin_distances(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
     return PinDistances(matrix, way, np.hypot(way[:, 0], way[:, 1]))
 
 
-def with_notches(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
-    """Measure all pins, and those whose ears have notches in one panel, on two of its sides with pins between.
+@dataclass(frozen=True, slots=True, eq=False)
+class NotchNecks:
+    """Necks that notches leave in panels, between two of them, and between one and another side of the panel.
 
-    The latter count where both of them lie upon the panel's sides; the size of others is infinite.
+    Each is listed as the distance of the middles of ears that leaves as much: see :data:`TO_A_SIDE`.
     """
-    matrix, passed, sides = _ways_and_notches(rows, columns)
-    way = matrix @ nodes
-    size = np.hypot(way[:, 0], way[:, 1])
+
+    sizes: PanelSizes  #: exact distances; the places of notches count as nodes behind those of the sheet
+    scale: FloatArray  #: (F,); how much larger each is listed
+    places: csr_matrix  #: (K, N) sparse; reads the places of notches off the compact nodes
+
+    @property
+    def size(self) -> FloatArray:
+        """(F,), unit cells."""
+        return self.sizes.size * self.scale
+
+    def below(self, least: float) -> NotchNecks:
+        """Those that are smaller than ``least``."""
+        chosen = self.size < least
+        return NotchNecks(self.sizes.some(chosen), self.scale[chosen], self.places)
+
+    def reach(self, node_count: int) -> tuple[FloatArray, FloatArray]:
+        """Matrices (F, N) that read changes of the sizes off motions of the nodes in x and in y."""
+        along = self.sizes.reach(node_count + self.places.shape[0])
+        x, y = ((one[:, :node_count] + one[:, node_count:] @ self.places) * self.scale[:, None] for one in along)
+        return x, y
+
+
+def notch_necks(nodes: FloatArray, rows: int, columns: int) -> NotchNecks:
+    """Measure the necks beside all notches of an m x n grid with compact ``nodes`` (N, 2), unit cells.
+
+    They are those on whose both sides a panel has pins.
+    """
+    places, sides, table, scale = _notches(rows, columns)
     start, end, behind = nodes[sides].transpose(1, 0, 2)
     notched = np.square(end - start).sum(axis=1) > np.square(behind - start).sum(axis=1)
-    size[len(size) - len(passed) :][~notched[passed].all(axis=1)] = np.inf
-    return PinDistances(matrix, way, size)
+    notched = np.concatenate([np.ones(len(nodes), dtype=np.bool_), np.repeat(notched, 2)])
+    corner, start, end = table[:, notched[table].all(axis=0)]
+    sizes = distances_to_lines(np.concatenate([nodes, places @ nodes]), corner, start, end)
+    return NotchNecks(sizes, scale[notched[table].all(axis=0)], places)
 
 
 def least_pin_distance(deployment: Deployment) -> float:
@@ -136,21 +168,24 @@ def _sums(sums: list[dict[int, int]], node_count: int) -> csr_matrix:
 
 
 @lru_cache(maxsize=64)
-def _ways_and_notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, IntArray]:
-    """Make the matrix of :func:`with_notches`.
+def _notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, IntArray, FloatArray]:
+    """Places of notches, and between which of them, and which sides, there are necks.
 
     Returns
     -------
-    matrix : (F + K, N) sparse
-        Ways between pins, then those between notches on two sides of a panel.
-    passed : (K, 2) int
-        The two sides of each of the latter.
+    places : (2 S, N) sparse
+        Those of each side of a panel in a void, near its end and near its start.
     sides : (S, 3) int
-        Nodes at start and end of a side of a void, and the void's node beside its start.  A side has its notches where
-        it is longer than that from the start to the third node.
+        Nodes at start and end of the side, and the void's node beside its start.  A side has its notches where it is
+        longer than that from the start to the third node.
+    table : (3, F) int
+        A notch, and both ends of the line that the neck goes to: nodes, then places.  Another notch is a line of no
+        length.
+    scale : (F,) float
+        See :class:`NotchNecks`.
     """
     tables = topology(rows, columns)
-    pinned = set(tables.void_nodes.ravel().tolist())
+    pinned, count = set(tables.void_nodes.ravel().tolist()), tables.node_count
     behind = {}
     for corners in tables.void_nodes.reshape(-1, 4).tolist():
         for place in range(4):
@@ -158,24 +193,25 @@ def _ways_and_notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, In
             behind[start, end], behind[end, start] = (near, far), (far, near)
     sides: list[tuple[int, int, int]] = []
     sums: list[dict[int, int]] = []
-    passed: list[tuple[int, int]] = []
+    necks: list[tuple[int, int, int, float]] = []
     for corners in tables.panel_nodes.reshape(-1, 4).tolist():
-        places: dict[int, tuple[int, tuple[dict[int, int], ...]]] = {}
-        for place in range(4):
-            start, end = corners[place], corners[(place + 1) % 4]
+        ends = [(corners[place], corners[(place + 1) % 4]) for place in range(4)]
+        notches: list[tuple[int, ...]] = [()] * 4
+        for place, (start, end) in enumerate(ends):
             if (start, end) in behind:
                 near, far = behind[start, end]
+                notches[place] = (count + len(sums), count + len(sums) + 1)
                 # Flat, the node beside the start is near the end; at phi = 0, turned half about the end, the other.
-                places[place] = len(sides), ({near: 1}, {end: 2, far: -1})
+                sums += [{near: 1}, {end: 2, far: -1}]
                 sides.append((start, end, near))
-        for one, other in combinations(places, 2):
+        for one, other in combinations(range(4), 2):
             between = {corners[place] for place in range(one + 1, other + 1)}
             if between & pinned and (set(corners) - between) & pinned:
-                for here, there in product(places[one][1], places[other][1]):
-                    sums.append({node: here.get(node, 0) - there.get(node, 0) for node in here.keys() | there.keys()})
-                    passed.append((places[one][0], places[other][0]))
-    matrix = vstack([_ways(rows, columns), _sums(sums, tables.node_count)], format="csr")
-    return matrix, np.array(passed), np.array(sides)
+                necks += [(here, there, there, 1.0) for here, there in product(notches[one], notches[other])]
+                necks += [(here, *ends[other], 1.0 / TO_A_SIDE) for here in notches[one]]
+                necks += [(here, *ends[one], 1.0 / TO_A_SIDE) for here in notches[other]]
+    *table, scale = zip(*necks, strict=True)
+    return _sums(sums, count), np.array(sides), np.array(table), np.array(scale)
 
 
 def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[int]]) -> dict[int, dict[int, int]]:

@@ -11,7 +11,6 @@ mean exact IoU that is lower by 0.0003 and the same evenness.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -22,9 +21,6 @@ from kirigami_studio.lattice.topology import topology
 
 #: Sine of the angle, 60 degrees, from which on a junction is open enough.
 OPEN = 0.75**0.5
-#: The same of a panel's corner at a pin: an angle of 42 degrees.  A notch in one of its sides, at the least distance of
-#: pins, leaves a neck to the other side from 38 degrees on, and an ear of 2.8 necks' width hangs on one from 42 on.
-SHARPEST = math.sin(math.radians(42.0))
 #: Weight of the term over that of even panels: 30 would open half of all shallow junctions for 0.0005 of IoU and an
 #: unevenness (CV of panel areas) that is higher by 0.03.
 OVER_EVEN = 10.0

@@ -10,29 +10,27 @@ conditions (sequential quadratic programming: Nocedal and Wright, Numerical Opti
 ``foundation.shortest_step``.  A step counts if it lowers the cost plus the missing sizes, weighted above every
 multiplier.  Where that does not end with all sizes kept, the nearest sheet that keeps them is looked for.
 
-Of pinned sheets, distances between notches and the corners at pins are kept as well, see ``evaluate.pins``: where no
-sheet near by keeps these, those of the pins are.
+Of pinned sheets, necks beside notches and corners at pins are kept as well, see ``pin_room``: where no sheet near by
+keeps these, those of the pins are.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
-from kirigami_studio.evaluate.evenness import panel_sizes
-from kirigami_studio.evaluate.pins import PinDistances, pin_distances, with_notches
+from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
-from kirigami_studio.polish.junctions import SHARPEST, pin_corners
 from kirigami_studio.polish.normal_equations import FLOOR
 from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
+from kirigami_studio.polish.pin_room import PinRoom, pin_room
 
-#: Reads changes of sizes off motions of so many nodes, see ``PinDistances.reach``.
-Reach = Callable[[int], tuple[FloatArray, FloatArray]]
 #: How far above the least size (unit cells) steps aim, and what counts as kept: rounding a sheet takes less.
 AIM, KEPT = 2e-6, 5e-7
 #: Sizes up to this much (unit cells) above the least one are looked at in a step; and how much one step is to add.
@@ -99,8 +97,8 @@ def with_kept_sizes(
     descent.run(max(steps, LEAST_STEPS), cancel, sizes_alone=False)
     if not descent.is_kept:
         descent.run(SIZE_STEPS, cancel, sizes_alone=True)
-    if not descent.is_kept and descent.corners:
-        descent.corners = False
+    if not descent.is_kept and gap:
+        descent.pins_alone = True
         descent.run(SIZE_STEPS, cancel, sizes_alone=True)
     return Sized(descent.here if descent.is_kept else first, descent.is_kept, descent.steps, descent.evaluations)
 
@@ -118,7 +116,7 @@ class _SizeDescent:
     ) -> None:
         self.objective, self.bounds = objective, bounds
         self.least, self.gap = least
-        self.corners = self.gap > 0.0
+        self.pins_alone = False
         self.here, self._stiffness = objective.look(state), stiffness
         self.steps, self.evaluations = 0, 1
         self._guarded = self._is_clear(self.here)
@@ -180,27 +178,20 @@ class _SizeDescent:
         sizes = panel_sizes(look.decoded.nodes, model.rows, model.columns).size
         if not self.gap:
             return sizes
-        nodes, grid = look.decoded.nodes, (model.rows, model.columns)
-        found = [sizes, self._apart(nodes, *grid).size - self.gap + self.least]
-        if self.corners:
-            found.append(pin_corners(nodes, *grid).sine - SHARPEST + self.least)
-        return np.concatenate(found)
+        return np.concatenate([sizes, self._room(look.decoded.nodes).spare + self.least])
 
-    @property
-    def _apart(self) -> Callable[[FloatArray, int, int], PinDistances]:
-        return with_notches if self.corners else pin_distances
+    def _room(self, nodes: FloatArray, spare: float = math.inf) -> PinRoom:
+        model = self.objective.model
+        return pin_room(nodes, model.rows, model.columns, self.gap, spare, pins_alone=self.pins_alone)
 
-    def near(self, nodes: FloatArray) -> Iterator[tuple[FloatArray, Reach, float]]:
-        """Sizes near the least one, their reach, and the least one: of panels, then of pins and corners."""
-        grid = self.objective.model.rows, self.objective.model.columns
-        sizes = panel_sizes(nodes, *grid).distinct().below(self.least + NEAR)
-        yield sizes.size, sizes.reach, self.least
+    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes | PinRoom, FloatArray]]:
+        """Sizes near the least one, and how far above it they are: of panels, then of room for pins."""
+        rows, columns = self.objective.model.rows, self.objective.model.columns
+        sizes = panel_sizes(nodes, rows, columns).distinct().below(self.least + NEAR)
+        yield sizes, sizes.size - self.least
         if self.gap:
-            pins = self._apart(nodes, *grid).below(self.gap + NEAR)
-            yield pins.size, pins.reach, self.gap
-        if self.corners:
-            sharp = pin_corners(nodes, *grid).shallower(SHARPEST + NEAR)
-            yield sharp.sine, sharp.reach, SHARPEST
+            room = self._room(nodes, NEAR)
+            yield room, room.spare
 
     def _moved(self, step: FloatArray) -> Look:
         state = self.here.state.copy()
@@ -233,11 +224,11 @@ class _SizeProblem:
         derivatives = None if sizes_alone else descent.slopes()
         motion = model.node_motion(here.decoded) if derivatives is None else derivatives.motion
         near = list(descent.near(here.decoded.nodes))
-        reaches = [reach(model.node_count) for _, reach, _ in near]
+        reaches = [sizes.reach(model.node_count) for sizes, _ in near]
         along_x, along_y = (np.concatenate([reach[axis] for reach in reaches]) for axis in (0, 1))
         slopes = np.zeros((len(along_x), basis.size + poses))
         slopes[:, :-poses] = motion.slopes(along_x, along_y, basis)
-        added = np.concatenate([np.minimum(least + AIM - size, MOST_ADDED) for size, _, least in near])
+        added = np.concatenate([np.minimum(AIM - spare, MOST_ADDED) for _, spare in near])
         shape = here.state[:-poses]
         if derivatives is None:
             count = basis.size + poses

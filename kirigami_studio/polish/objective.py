@@ -22,7 +22,6 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import PinDistances, with_notches
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -30,11 +29,12 @@ from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.even_panels import EvenPanels
-from kirigami_studio.polish.junctions import OPEN, SHARPEST, JunctionAngles, junctions, pin_corners
+from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
+from kirigami_studio.polish.pin_room import PinRoom, pin_room
 from kirigami_studio.polish.preferences import FieldPreferenceTerms
 from kirigami_studio.polish.sensitivity import CompactLayout, NodeMotion, OutlineModel
 from kirigami_studio.polish.transport_map import TransportTerm
@@ -51,7 +51,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
-ALL_APART = with_notches(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+ALL_APART = pin_room(topology(2, 2).uniform_nodes, 2, 2, 0.0, 0.0, pins_alone=True)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
@@ -173,12 +173,10 @@ class Objective:
         if self.least:
             small = panel_sizes(nodes, self.model.rows, self.model.columns).below(self.least)
             cost += shortage(small, self.least)
-        close, sharp = ALL_APART, NO_JUNCTIONS
+        close = ALL_APART
         if self.gap:
-            close = with_notches(nodes, self.model.rows, self.model.columns).below(self.gap)
-            cost += shortage(close, self.gap, self._gap_penalty)
-            sharp = pin_corners(nodes, self.model.rows, self.model.columns).shallower(SHARPEST)
-            cost += self._gap_penalty * float(np.square(sharp.sine - SHARPEST).sum())
+            close = pin_room(nodes, self.model.rows, self.model.columns, self.gap, 0.0)
+            cost += self._gap_penalty * float(np.square(close.spare).sum())
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -187,7 +185,7 @@ class Objective:
         if self.even is not None and self._each_large:
             large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
             cost += self._each_large * float(np.square(large.area - LARGE).sum())
-        return Look(state, decoded, outline, matching, second, small, close, sharp, shallow, large, excess, gaps, cost)
+        return Look(state, decoded, outline, matching, second, small, close, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -288,8 +286,7 @@ class Objective:
             (weight**0.5, beyond, reach(count))
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
-                (self._gap_penalty, look.close.size - self.gap, look.close.reach),
-                (self._gap_penalty, look.sharp.sine - SHARPEST, look.sharp.reach),
+                (self._gap_penalty, look.close.spare, look.close.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
@@ -334,8 +331,7 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes  #: Edges and necks below the least size
-    close: PinDistances  #: Distances between pins, and between notches, below the least one
-    sharp: JunctionAngles  #: Corners of panels at pins that are sharper than they should be
+    close: PinRoom  #: Where pins have less room than they need
     shallow: JunctionAngles  #: Where cuts meet at shallow angles, if the phase asks for open junctions
     large: PanelAreas  #: Panels that are large, if the phase asks for even ones
     excess: float  #: Share of a round start's area that chords cut off beyond what is allowed
