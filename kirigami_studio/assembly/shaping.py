@@ -106,7 +106,7 @@ class Shaping:
         owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
         radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
-        straps = _Straps.of(motion, options)
+        straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         while True:
             ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
             every = np.concatenate([np.arange(len(panels)), owner, straps.ear // 4])
@@ -121,9 +121,9 @@ class Shaping:
             shapes = _less(whole, _united_by(cut, notched, len(panels)))
             held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
             narrow = [index for index, one in enumerate(held) if one is None]
-            given_up = straps.ear[strap[met & np.isin(passed, narrow)]]
+            given_up = strap[met & np.isin(passed, narrow)]
             if len(given_up):
-                straps = straps.without(given_up)
+                straps = straps.without(np.flatnonzero(np.isin(straps.ear, straps.ear[given_up])))
                 continue
             cutting = mover[meets & np.isin(seen, narrow)]
             if not len(cutting) or not radii or np.all(self.ear_radius.ravel()[cutting] <= radii[0]):
@@ -310,7 +310,7 @@ class _Straps:
 
     @classmethod
     def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
-        """Straps of all corners with pins that need one; none reaches the ears of other pins."""
+        """Straps of all corners with pins that need one."""
         before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
         half = 0.5 * np.abs(np.angle(before / after))
         radius = 0.5 * options.neck_mm + STRAP_MORE
@@ -319,17 +319,25 @@ class _Straps:
         inwards = (before / np.abs(before) + after / np.abs(after)).ravel()[ears]
         inwards /= np.abs(inwards)
         first = 0.5 * options.ear_mm - radius
-        most = 0.5 * options.ear_mm + options.clearance_mm + 0.5 * options.neck_mm
-        last = np.minimum(0.5 * options.neck_mm / np.sin(half.ravel()[ears]), most)
+        last = np.minimum(0.5 * options.neck_mm / np.sin(half.ravel()[ears]), options.ear_mm + options.clearance_mm)
         steps = np.ceil((last - first) / STRAP_STEP).astype(np.int64).clip(1) + 1
         share = np.concatenate([np.linspace(0.0, 1.0, count) for count in steps] or [np.zeros(0)])
         along = first + share * np.repeat(last - first, steps)
         ear = np.repeat(ears, steps)
         return cls(ear, motion.corners.ravel()[ear] + along * np.repeat(inwards, steps), radius)
 
-    def without(self, ears: IntArray) -> _Straps:
-        """The others."""
-        kept = ~np.isin(self.ear, ears)
+    def clear_of_walls(self, motion: LayerMotion, options: PinOptions, mover: IntArray, seen: IntArray) -> _Straps:
+        """Those discs whose notches leave the walls of all pins that they may pass; see :meth:`passing`."""
+        number, passed = self.passing(mover, seen)
+        number, panel = np.repeat(number, 4), np.repeat(passed, 4)
+        pins = motion.corners[passed].ravel()
+        apart = motion.distance_on_arc(pins, self.centre[number], self.ear[number] // 4, panel)
+        least = self.radius + options.clearance_mm + STRAP_SCALLOP + 0.5 * options.pin_mm + options.asked_wall_mm
+        return self.without(number[(apart < least) & motion.hinged[passed].ravel()])
+
+    def without(self, discs: IntArray) -> _Straps:
+        """The others than these discs (numbers)."""
+        kept = ~np.isin(np.arange(len(self.ear)), discs)
         return _Straps(self.ear[kept], self.centre[kept], self.radius)
 
     def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:

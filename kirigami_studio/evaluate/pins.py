@@ -185,7 +185,7 @@ def _notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, IntArray, F
         See :class:`NotchNecks`.
     """
     tables = topology(rows, columns)
-    pinned, count = set(tables.void_nodes.ravel().tolist()), tables.node_count
+    pinned, count, uniform = set(tables.void_nodes.ravel().tolist()), tables.node_count, tables.uniform_nodes
     behind = {}
     for corners in tables.void_nodes.reshape(-1, 4).tolist():
         for place in range(4):
@@ -201,8 +201,10 @@ def _notches(rows: int, columns: int) -> tuple[csr_matrix, IntArray, IntArray, F
             if (start, end) in behind:
                 near, far = behind[start, end]
                 notches[place] = (count + len(sums), count + len(sums) + 1)
-                # Flat, the node beside the start is near the end; at phi = 0, turned half about the end, the other.
-                sums += [{near: 1}, {end: 2, far: -1}]
+                # Of the void's two other nodes one lies on the side while flat; at phi = 0 it is the other, which the
+                # motion turns half about the side's own end.  Nodes of the uniform sheet that agree say which is which.
+                flat = abs(uniform[near] - uniform[end]).max() < abs(uniform[far] - uniform[start]).max()
+                sums += [{near: 1}, {end: 2, far: -1}] if flat else [{far: 1}, {start: 2, near: -1}]
                 sides.append((start, end, near))
         for one, other in combinations(range(4), 2):
             between = {corners[place] for place in range(one + 1, other + 1)}
