@@ -43,6 +43,31 @@ TOO_SMALL = 1e-3
 STRAIGHT = 0.002
 
 
+#: Index of a panel, its own ears and those that pass it, and their radii; the straps of all.
+_Notching = tuple[int, bytes, bytes, bytes, bytes, bytes]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Notched:
+    """A panel with its ears, less its notches.
+
+    Attributes
+    ----------
+    shape : geometry
+    held : Polygon or None
+        The part of it that hangs together by necks as asked for.
+    movers : (N,) int
+        Ears that cut it, as flat indices of corners.
+    strapped : (M,) int
+        Ears whose straps do.
+    """
+
+    shape: BaseGeometry
+    held: Polygon | None
+    movers: IntArray
+    strapped: IntArray
+
+
 @dataclass(eq=False)
 class Shaping:
     """The pieces of one design in the flat sheet, mm; they change while rims are shaped.
@@ -69,10 +94,12 @@ class Shaping:
     broken: set[int] = field(default_factory=set)
     weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or no neck to their piece
     cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
+    _swept: dict[int, tuple[IntArray, GeometryArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
-        self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
+        planes = np.unique(self.motion.plane).tolist()
+        members = {plane: np.flatnonzero(self.motion.plane == plane) for plane in planes}
+        self._parts = {plane: _ConvexParts(one, self.motion.corners[one]) for plane, one in members.items()}
         self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
         self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
@@ -83,9 +110,15 @@ class Shaping:
 
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target)
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
         made = cls(motion, options)
-        made._begin(deployment)
+        blanks = polygons(motion.corners)
+        if options.in_one_plane:  # any two sides may meet
+            blanks = shapely.buffer(blanks, -0.5 * options.clearance_mm, join_style="mitre")
+        else:
+            blanks = _less(blanks, made._rubbing_sides(deployment))
+        known: dict[_Notching, _Notched] = {}
+        made._begin(blanks, known)
         for _ in range(ROUNDS):
             fewer = motion.without(made.weak)
             if fewer is motion:
@@ -94,49 +127,93 @@ class Shaping:
                 break
             motion = fewer
             made = cls(motion, options)
-            made._begin(deployment)
+            made._begin(blanks, known)
         return made
 
-    def _begin(self, deployment: Deployment) -> None:
-        """Cut the notches; where a piece would be cut through, straps are given up, then ears become smaller, halfway
-        first.
+    def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
+        """Cut the notches into panels; where they would cut a piece through, straps go, then ears get smaller.
+
+        Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
         """
         motion, options = self.motion, self.options
-        panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
-        owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
+        order = np.argsort(seen, kind="stable")
+        passing = np.split(mover[order], np.cumsum(np.bincount(seen, minlength=len(blanks)))[:-1])
+        self._straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
-        straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         while True:
-            ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-            every = np.concatenate([np.arange(len(panels)), owner, straps.ear // 4])
-            whole = _united_by(np.concatenate([panels, ears, discs(straps.centre, straps.radius)]), every, len(panels))
-            areas = self._swept_ears(mover, seen)
-            meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-            strap, passed = straps.passing(mover, seen)
-            more = self._swept(straps.ear[strap], passed, straps.centre[strap], straps.radius + STRAP_SCALLOP)
-            met = np.any(shapely.intersects(more, whole[passed][:, None]), axis=1)
-            cut = np.concatenate([areas[meets].ravel(), more[met].ravel()])
-            notched = np.repeat(np.concatenate([seen[meets], passed[met]]), areas.shape[1])
-            shapes = _less(whole, _united_by(cut, notched, len(panels)))
-            held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
-            narrow = [index for index, one in enumerate(held) if one is None]
-            given_up = strap[met & np.isin(passed, narrow)]
-            if len(given_up):
-                straps = straps.without(np.flatnonzero(np.isin(straps.ear, straps.ear[given_up])))
+            keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
+            fresh = [index for index, key in enumerate(keys) if key not in known]
+            known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
+            notched = [known[key] for key in keys]
+            narrow = [one for one in notched if one.held is None]
+            given_up = np.isin(self._straps.ear, [ear for one in narrow for ear in one.strapped.tolist()])
+            if given_up.any():
+                self._straps = self._straps.some(~given_up)
                 continue
-            cutting = mover[meets & np.isin(seen, narrow)]
+            cutting = np.concatenate([np.zeros(0, dtype=np.int64), *(one.movers for one in narrow)])
             if not len(cutting) or not radii or np.all(self.ear_radius.ravel()[cutting] <= radii[0]):
                 break
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radii.pop(0))
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
-        for ear in np.unique(straps.ear).tolist():
-            layer = motion.layer[ear // 4] - 1
-            hull = shapely.union_all(discs(straps.centre[straps.ear == ear], straps.radius)).convex_hull
-            self._parts[layer] = self._parts[layer].with_more(ear // 4, _convex_parts(hull))
-        for index, one in enumerate(held):
-            self._find_weak(index, self._most_pinned(index, shapes[index]) if one is None else one)
-            self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
+        for ear in np.unique(self._straps.ear).tolist():
+            own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
+            plane = int(motion.plane[ear // 4])
+            parts = _convex_parts(shapely.union_all(own).convex_hull)
+            self._parts[plane] = self._parts[plane].with_more(ear // 4, parts)
+        for index, one in enumerate(notched):
+            self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
+            self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
+
+    def _notching(self, index: int, movers: IntArray) -> _Notching:
+        """All that the notches of a panel depend on: its own ears, those that pass it, and their straps."""
+        radius = self.ear_radius.ravel()
+        own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
+        straps = self._straps.centre[np.isin(self._straps.ear, np.concatenate([own, movers]))]
+        ears = own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
+        return index, *ears, straps.tobytes()
+
+    def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
+        """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
+        motion = self.motion
+        owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
+        ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+        place, straps = np.zeros(len(blanks), dtype=np.int64), self._straps
+        place[fresh] = np.arange(len(fresh))
+        strapped = np.isin(straps.ear // 4, fresh)
+        parts = np.concatenate([blanks[fresh], ears, discs(straps.centre[strapped], straps.radius)])
+        owners = np.concatenate([np.arange(len(fresh)), place[owner], place[straps.ear[strapped] // 4]])
+        whole = _united_by(parts, owners, len(fresh))
+        mover = np.concatenate([np.zeros(0, dtype=np.int64), *(passing[index] for index in fresh)])
+        seen = np.repeat(np.array(fresh, dtype=np.int64), [len(passing[index]) for index in fresh])
+        number, passed = straps.passing(mover, seen)
+        areas = np.concatenate(
+            [
+                self._swept_ears(mover, seen),
+                self._sweep(straps.ear[number], passed, straps.centre[number], straps.radius + STRAP_SCALLOP),
+            ]
+        )
+        mover, seen, is_strap = (
+            np.concatenate(both)
+            for both in (
+                (mover, straps.ear[number]),
+                (seen, passed),
+                (np.zeros(len(mover), dtype=np.bool_), np.ones(len(number), dtype=np.bool_)),
+            )
+        )
+        shapely.prepare(whole)
+        meets = np.any(shapely.intersects(whole[place[seen]][:, None], areas), axis=1)
+        notches = _united_by(areas[meets].ravel(), np.repeat(place[seen[meets]], areas.shape[1]), len(fresh))
+        shapes = _less(whole, notches)
+        return [
+            _Notched(
+                shape,
+                self.held_together(index, shape),
+                mover[meets & (seen == index) & ~is_strap],
+                mover[meets & (seen == index) & is_strap],
+            )
+            for index, shape in zip(fresh, shapes, strict=True)
+        ]
 
     def _most_pinned(self, index: int, shape: BaseGeometry) -> Polygon:
         """The part of a shape between necks that has most pins, and of those the largest."""
@@ -181,18 +258,19 @@ class Shaping:
 
     @cached_property
     def pairs(self) -> IntArray:
-        """Pairs (K, 2) of pieces of one layer that may come near each other; the second is passed."""
+        """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
         return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
-        """Ears, as flat indices of corners, and the panels of their layer that they may touch."""
+        """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
         motion, options = self.motion, self.options
         one, other = self.pairs.T
         ear = (4 * one[:, None] + np.arange(4)).ravel()
         seen = np.repeat(other, 4)
-        hinged = motion.hinged.ravel()[ear]
-        ear, seen = ear[hinged], seen[hinged]
+        # An ear on a panel's own node is shaped to it by the joint.
+        passing = motion.hinged.ravel()[ear] & np.all(motion.nodes[seen] != motion.nodes.ravel()[ear, None], axis=1)
+        ear, seen = ear[passing], seen[passing]
         middle = motion.corners.mean(axis=1)
         radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
         radius += options.ear_mm + options.clearance_mm + options.reach_mm
@@ -202,18 +280,28 @@ class Shaping:
 
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
-        return self._swept(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
+        return self._sweep(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
 
-    def _swept(self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float) -> GeometryArray:
-        """The same of discs that move with the ears' panels."""
+    def _sweep(self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float) -> GeometryArray:
+        """The same of other discs of the ears' panels."""
+        if not len(ear):
+            return np.empty((0, 3), dtype=object)
         motion = self.motion
         grown = np.broadcast_to(radius + self.options.clearance_mm, centre.shape)
-        drift = motion.drift[ear // 4] - motion.drift[seen]
+        drift = motion.seen_drift(ear // 4, seen, centre)
         return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
+
+    def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
+        """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
+        if index not in self._swept:
+            mover, seen = self._passing_ears
+            mover = mover[seen == index]
+            self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
+        return self._swept[index]
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Two ears in one layer (flat indices of corners), and their least distance, mm.
+        """Two ears in one plane (flat indices of corners), and their least distance, mm.
 
         Of each pair of pieces that pass each other, both ways round.
         """
@@ -226,7 +314,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window that others need in the layer of piece ``index``, seen from it."""
+        """The area near a window that others need in the plane of piece ``index``, seen from it."""
         motion, options = self.motion, self.options
         if window.is_empty:
             return Polygon()
@@ -240,18 +328,19 @@ class Shaping:
             seen = np.full(len(mover), index)
             return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= half + grown + radius
 
-        parts = self._parts[motion.layer[index] - 1]
+        parts = self._parts[int(motion.plane[index])]
         moving = parts.owner != index
         moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
-        drifts = motion.drift[parts.owner[moving]] - motion.drift[index]
+        owner = parts.owner[moving]
+        drifts = motion.seen_drift(owner, np.full(len(owner), index), parts.corners[moving])
         hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, box)
         zone = window.buffer(grown)
         shapely.prepare(zone)
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
-        mover, seen = self._passing_ears
-        mover = mover[seen == index]
-        mover = mover[near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)]
-        ears = self._swept_ears(mover, np.full(len(mover), index)).ravel()
+        mover, swept = self._sweeps(index)
+        ears = swept[
+            near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)
+        ].ravel()
         touching = ears[shapely.intersects(zone, ears)]
         return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
 
@@ -284,12 +373,12 @@ class Shaping:
         whole = body if found is None else united(found, body)
         return whole if found is not None and isinstance(whole, Polygon) else None
 
-    def add(self, index: int, shape: Polygon) -> None:
-        """Give a piece a larger shape; it is kept in mind by all that move past it later."""
-        added = shapely.get_parts(less(shape, self.bodies[index]))
-        parts = [convex for part in added[shapely.area(added) > TOO_SMALL] for convex in _convex_parts(part)]
-        layer = self.motion.layer[index] - 1
-        self._parts[layer] = self._parts[layer].with_more(index, parts)
+    def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
+        """Give a piece a larger shape; what was added is kept in mind by all that move past it later."""
+        new = shapely.get_parts(added)
+        parts = [convex for part in new[shapely.area(new) > TOO_SMALL] for convex in _convex_parts(part)]
+        plane = int(self.motion.plane[index])
+        self._parts[plane] = self._parts[plane].with_more(index, parts)
         self.bodies[index] = shape
 
     def placed(self, turn: float) -> GeometryArray:
@@ -310,11 +399,11 @@ class _Straps:
 
     @classmethod
     def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
-        """Straps of all corners with pins that need one."""
+        """Straps of all corners with pins that need one; none in a single plane, where partners turn beside them."""
         before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
         half = 0.5 * np.abs(np.angle(before / after))
         radius = 0.5 * options.neck_mm + STRAP_MORE
-        needed = motion.hinged & (options.ear_mm * np.sin(half) < options.neck_mm)
+        needed = motion.hinged & (options.ear_mm * np.sin(half) < options.neck_mm) & (not options.in_one_plane)
         ears = np.flatnonzero(needed)
         inwards = (before / np.abs(before) + after / np.abs(after)).ravel()[ears]
         inwards /= np.abs(inwards)
@@ -333,12 +422,12 @@ class _Straps:
         pins = motion.corners[passed].ravel()
         apart = motion.distance_on_arc(pins, self.centre[number], self.ear[number] // 4, panel)
         least = self.radius + options.clearance_mm + STRAP_SCALLOP + 0.5 * options.pin_mm + options.asked_wall_mm
-        return self.without(number[(apart < least) & motion.hinged[passed].ravel()])
+        near = number[(apart < least) & motion.hinged[passed].ravel()]
+        return self.some(~np.isin(np.arange(len(self.ear)), near))
 
-    def without(self, discs: IntArray) -> _Straps:
-        """The others than these discs (numbers)."""
-        kept = ~np.isin(np.arange(len(self.ear)), discs)
-        return _Straps(self.ear[kept], self.centre[kept], self.radius)
+    def some(self, chosen: BoolArray) -> _Straps:
+        """Those discs that are chosen."""
+        return _Straps(self.ear[chosen], self.centre[chosen], self.radius)
 
     def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:
         """Discs (numbers), and the panels that they may touch, of ears and the panels that these may."""
