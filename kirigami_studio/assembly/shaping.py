@@ -43,8 +43,8 @@ TOO_SMALL = 1e-3
 STRAIGHT = 0.002
 
 
-#: Index of a panel, its own ears and those that pass it, with their radii, and places of straps, own and passing.
-_Notching = tuple[int, bytes, bytes, bytes, bytes, bytes, bytes]
+#: Index of a panel, its own ears and those that pass it, and their radii; the straps of all.
+_Notching = tuple[int, bytes, bytes, bytes, bytes, bytes]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,14 +58,14 @@ class _Notched:
         The part of it that hangs together by necks as asked for.
     movers : (N,) int
         Ears that cut it, as flat indices of corners.
-    straps : (S,) int
-        Ears whose straps cut it.
+    strapped : (M,) int
+        Ears whose straps do.
     """
 
     shape: BaseGeometry
     held: Polygon | None
     movers: IntArray
-    straps: IntArray
+    strapped: IntArray
 
 
 @dataclass(eq=False)
@@ -131,86 +131,86 @@ class Shaping:
         return made
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
-        """Cut the notches into panels, less straps and smaller ears where they cut one through.
+        """Cut the notches into panels; where they would cut a piece through, straps go, then ears get smaller.
 
-        Straps are given up first, then ears become smaller, halfway first.  Panels that have the same ears and straps,
-        and are passed by the same ones, as one in ``known`` are cut as that.
+        Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
         """
         motion, options = self.motion, self.options
         mover, seen = self._passing_ears
-        passing = _by_panel(mover, seen, len(blanks))
+        order = np.argsort(seen, kind="stable")
+        passing = np.split(mover[order], np.cumsum(np.bincount(seen, minlength=len(blanks)))[:-1])
+        self._straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
-        straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         while True:
-            past = _by_panel(*straps.passing(mover, seen), len(blanks))
-            keys = [self._notching(index, movers, straps, past[index]) for index, movers in enumerate(passing)]
+            keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
             fresh = [index for index, key in enumerate(keys) if key not in known]
-            found = self._notched(fresh, blanks, passing, straps, past)
-            known |= zip([keys[index] for index in fresh], found, strict=True)
+            known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
             notched = [known[key] for key in keys]
             narrow = [one for one in notched if one.held is None]
-            given_up = _joined([one.straps for one in narrow])
-            if len(given_up):
-                straps = straps.without(np.flatnonzero(np.isin(straps.ear, given_up)))
+            given_up = np.isin(self._straps.ear, [ear for one in narrow for ear in one.strapped.tolist()])
+            if given_up.any():
+                self._straps = self._straps.some(~given_up)
                 continue
-            cutting = _joined([one.movers for one in narrow])
+            cutting = np.concatenate([np.zeros(0, dtype=np.int64), *(one.movers for one in narrow)])
             if not len(cutting) or not radii or np.all(self.ear_radius.ravel()[cutting] <= radii[0]):
                 break
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radii.pop(0))
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
-        for ear in np.unique(straps.ear).tolist():
+        for ear in np.unique(self._straps.ear).tolist():
+            own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
             plane = int(motion.plane[ear // 4])
-            hull = shapely.union_all(discs(straps.centre[straps.ear == ear], straps.radius)).convex_hull
-            self._parts[plane] = self._parts[plane].with_more(ear // 4, _convex_parts(hull))
+            parts = _convex_parts(shapely.union_all(own).convex_hull)
+            self._parts[plane] = self._parts[plane].with_more(ear // 4, parts)
         for index, one in enumerate(notched):
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
             self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
 
-    def _notching(self, index: int, movers: IntArray, straps: _Straps, past: IntArray) -> _Notching:
-        """All that the notches of a panel depend on: its own ears and straps, and those that pass it."""
+    def _notching(self, index: int, movers: IntArray) -> _Notching:
+        """All that the notches of a panel depend on: its own ears, those that pass it, and their straps."""
         radius = self.ear_radius.ravel()
         own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
+        straps = self._straps.centre[np.isin(self._straps.ear, np.concatenate([own, movers]))]
         ears = own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
-        return index, *ears, straps.centre[straps.ear // 4 == index].tobytes(), straps.centre[past].tobytes()
+        return index, *ears, straps.tobytes()
 
-    def _notched(
-        self,
-        fresh: Sequence[int],
-        blanks: GeometryArray,
-        passing: Sequence[IntArray],
-        straps: _Straps,
-        past: Sequence[IntArray],
-    ) -> list[_Notched]:
-        """Cut the notches of some panels; ``passing`` ears and ``past`` discs of straps may touch each."""
-        motion, of_fresh = self.motion, np.isin(np.arange(len(blanks)), fresh)
-        owner, corner = np.nonzero(motion.hinged & of_fresh[:, None])
-        own = np.flatnonzero(of_fresh[straps.ear // 4])
+    def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
+        """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
+        motion = self.motion
+        owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
         ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-        place = np.zeros(len(blanks), dtype=np.int64)
+        place, straps = np.zeros(len(blanks), dtype=np.int64), self._straps
         place[fresh] = np.arange(len(fresh))
-        whole = _united_by(
-            np.concatenate([blanks[fresh], ears, discs(straps.centre[own], straps.radius)]),
-            np.concatenate([np.arange(len(fresh)), place[owner], place[straps.ear[own] // 4]]),
-            len(fresh),
+        strapped = np.isin(straps.ear // 4, fresh)
+        parts = np.concatenate([blanks[fresh], ears, discs(straps.centre[strapped], straps.radius)])
+        owners = np.concatenate([np.arange(len(fresh)), place[owner], place[straps.ear[strapped] // 4]])
+        whole = _united_by(parts, owners, len(fresh))
+        mover = np.concatenate([np.zeros(0, dtype=np.int64), *(passing[index] for index in fresh)])
+        seen = np.repeat(np.array(fresh, dtype=np.int64), [len(passing[index]) for index in fresh])
+        number, passed = straps.passing(mover, seen)
+        areas = np.concatenate(
+            [
+                self._swept_ears(mover, seen),
+                self._sweep(straps.ear[number], passed, straps.centre[number], straps.radius + STRAP_SCALLOP),
+            ]
+        )
+        mover, seen, is_strap = (
+            np.concatenate(both)
+            for both in (
+                (mover, straps.ear[number]),
+                (seen, passed),
+                (np.zeros(len(mover), dtype=np.bool_), np.ones(len(number), dtype=np.bool_)),
+            )
         )
         shapely.prepare(whole)
-        mover, strap = _joined([passing[index] for index in fresh]), _joined([past[index] for index in fresh])
-        panels = np.array(fresh, dtype=np.int64)
-        seen = np.repeat(panels, [len(passing[index]) for index in fresh])
-        passed = np.repeat(panels, [len(past[index]) for index in fresh])
-        areas = self._swept_ears(mover, seen)
-        more = self._swept_discs(straps.ear[strap], passed, straps.centre[strap], straps.radius + STRAP_SCALLOP)
         meets = np.any(shapely.intersects(whole[place[seen]][:, None], areas), axis=1)
-        met = np.any(shapely.intersects(whole[place[passed]][:, None], more), axis=1)
-        cut = np.concatenate([areas[meets].ravel(), more[met].ravel()])
-        owners = np.repeat(np.concatenate([place[seen[meets]], place[passed[met]]]), areas.shape[1])
-        shapes = _less(whole, _united_by(cut, owners, len(fresh)))
+        notches = _united_by(areas[meets].ravel(), np.repeat(place[seen[meets]], areas.shape[1]), len(fresh))
+        shapes = _less(whole, notches)
         return [
             _Notched(
                 shape,
                 self.held_together(index, shape),
-                mover[meets & (seen == index)],
-                straps.ear[strap[met & (passed == index)]],
+                mover[meets & (seen == index) & ~is_strap],
+                mover[meets & (seen == index) & is_strap],
             )
             for index, shape in zip(fresh, shapes, strict=True)
         ]
@@ -280,15 +280,13 @@ class Shaping:
 
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
-        return self._swept_discs(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
+        return self._sweep(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
 
-    def _swept_discs(
-        self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float
-    ) -> GeometryArray:
-        """The same of discs that move with the ears' panels."""
-        motion = self.motion
+    def _sweep(self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float) -> GeometryArray:
+        """The same of other discs of the ears' panels."""
         if not len(ear):
             return np.empty((0, 3), dtype=object)
+        motion = self.motion
         grown = np.broadcast_to(radius + self.options.clearance_mm, centre.shape)
         drift = motion.seen_drift(ear // 4, seen, centre)
         return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
@@ -401,11 +399,10 @@ class _Straps:
 
     @classmethod
     def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
-        """Straps of all corners with pins that need one."""
+        """Straps of all corners with pins that need one; none in a single plane, where partners turn beside them."""
         before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
         half = 0.5 * np.abs(np.angle(before / after))
         radius = 0.5 * options.neck_mm + STRAP_MORE
-        # In one plane the neighbour at a joint is where a strap would be.
         needed = motion.hinged & (options.ear_mm * np.sin(half) < options.neck_mm) & (not options.in_one_plane)
         ears = np.flatnonzero(needed)
         inwards = (before / np.abs(before) + after / np.abs(after)).ravel()[ears]
@@ -425,12 +422,12 @@ class _Straps:
         pins = motion.corners[passed].ravel()
         apart = motion.distance_on_arc(pins, self.centre[number], self.ear[number] // 4, panel)
         least = self.radius + options.clearance_mm + STRAP_SCALLOP + 0.5 * options.pin_mm + options.asked_wall_mm
-        return self.without(number[(apart < least) & motion.hinged[passed].ravel()])
+        near = number[(apart < least) & motion.hinged[passed].ravel()]
+        return self.some(~np.isin(np.arange(len(self.ear)), near))
 
-    def without(self, discs: IntArray) -> _Straps:
-        """The others than these discs (numbers)."""
-        kept = ~np.isin(np.arange(len(self.ear)), discs)
-        return _Straps(self.ear[kept], self.centre[kept], self.radius)
+    def some(self, chosen: BoolArray) -> _Straps:
+        """Those discs that are chosen."""
+        return _Straps(self.ear[chosen], self.centre[chosen], self.radius)
 
     def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:
         """Discs (numbers), and the panels that they may touch, of ears and the panels that these may."""
@@ -439,17 +436,6 @@ class _Straps:
         pairs = [order[one:other] for one, other in zip(first, last, strict=True)]
         number = np.repeat(np.arange(len(self.ear)), last - first)
         return number, seen[np.concatenate([np.zeros(0, dtype=np.int64), *pairs])]
-
-
-def _by_panel(moving: IntArray, panel: IntArray, count: int) -> list[IntArray]:
-    """Numbers ``moving`` in lists of the panels that they may touch."""
-    order = np.argsort(panel, kind="stable")
-    return np.split(moving[order], np.cumsum(np.bincount(panel, minlength=count))[:-1])
-
-
-def _joined(numbers: Sequence[IntArray]) -> IntArray:
-    """Numbers of several lists in one."""
-    return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
 
 
 class _ConvexParts:

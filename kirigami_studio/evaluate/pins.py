@@ -6,6 +6,11 @@ apart.  They come nearest in the two closed states, flat and at phi = 0, where a
 other: opposite corners of the void are then |a - b| apart.  In both states the way from a pin to one near by is a sum
 of nodes of the flat sheet.
 
+An ear that reaches over a side of a panel of its own layer has a notch there.  Of a void, the longer sides have two,
+in the two closed states: one |a - b| from either end.  Notches leave necks between them, and pins that are far enough
+apart do not suffice for these: at a corner of angle w whose sides have notches at distances g and h, the notches are
+only sqrt(g^2 + h^2 - 2 g h cos w) apart.
+
 The *hand* of a pinwheel is the sign of a - b at even voids; odd voids have the other one.  Large and small panels
 then alternate and whirl about each other.
 """

@@ -547,8 +547,8 @@ class PinSizes:
     def apart_mm(self) -> float:
         """Least distance of pins in the closed states.
 
-        Two ears of neighbours, and their clearance, leave a neck between them then, and one beside a corner of 60
-        degrees whose sides both have their notch.
+        Two ears of neighbours, and their clearance, leave a neck between them then.  Fits keep as much between the
+        notches in two sides of a panel.
         """
         return self.ear_mm + 2.0 * self.clearance_mm + self.neck_mm
 
