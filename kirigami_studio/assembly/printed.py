@@ -206,8 +206,8 @@ class PinJoint:
         return cls(
             Polygon(pin),
             Polygon(seam_pin),
-            Polygon(cap),
-            Polygon(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
+            _polygon(cap),
+            _polygon(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
             Polygon(ring),
         )
 
@@ -241,6 +241,12 @@ class PinJoint:
         half = 180.0 / ROUND_SEGMENTS
         round_pin, round_ring = (one.rotate((0.0, 0.0, 0.5 * half)) for one in (round_pin, round_ring))
         return pin.rotate((0.0, 0.0, half)), seam_pin.rotate((0.0, 0.0, half)), round_pin, round_ring
+
+
+def _polygon(shape: BaseGeometry) -> Polygon:
+    """The shape, which is one polygon."""
+    (found,) = (part for part in shapely.get_parts(shape) if isinstance(part, Polygon))
+    return found
 
 
 def _revolved(area: Polygon) -> Manifold:
