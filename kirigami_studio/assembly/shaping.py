@@ -40,6 +40,28 @@ TOO_SMALL = 1e-3
 STRAIGHT = 0.002
 
 
+#: Index of a panel, its own ears and those that pass it, and their radii.
+_Notching = tuple[int, bytes, bytes, bytes, bytes]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Notched:
+    """A panel with its ears, less its notches.
+
+    Attributes
+    ----------
+    shape : geometry
+    held : Polygon or None
+        The part of it that hangs together by necks as asked for.
+    movers : (N,) int
+        Ears that cut it, as flat indices of corners.
+    """
+
+    shape: BaseGeometry
+    held: Polygon | None
+    movers: IntArray
+
+
 @dataclass(eq=False)
 class Shaping:
     """The pieces of one design in the flat sheet, mm; they change while rims are shaped.
@@ -66,6 +88,7 @@ class Shaping:
     broken: set[int] = field(default_factory=set)
     weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or no neck to their piece
     cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
+    _swept: dict[int, tuple[IntArray, GeometryArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         planes = np.unique(self.motion.plane).tolist()
@@ -83,7 +106,13 @@ class Shaping:
         """
         motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
         made = cls(motion, options)
-        made._begin(deployment)
+        blanks = polygons(motion.corners)
+        if options.in_one_plane:  # any two sides may meet
+            blanks = shapely.buffer(blanks, -0.5 * options.clearance_mm, join_style="mitre")
+        else:
+            blanks = _less(blanks, made._rubbing_sides(deployment))
+        known: dict[_Notching, _Notched] = {}
+        made._begin(blanks, known)
         for _ in range(ROUNDS):
             fewer = motion.without(made.weak)
             if fewer is motion:
@@ -92,37 +121,60 @@ class Shaping:
                 break
             motion = fewer
             made = cls(motion, options)
-            made._begin(deployment)
+            made._begin(blanks, known)
         return made
 
-    def _begin(self, deployment: Deployment) -> None:
-        """Cut the notches; ears that would cut a piece through become smaller, halfway first."""
+    def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
+        """Cut the notches into panels; ears that would cut a piece through become smaller, halfway first.
+
+        Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
+        """
         motion, options = self.motion, self.options
-        panels = polygons(motion.corners)
-        if options.in_one_plane:  # any two sides may meet
-            panels = shapely.buffer(panels, -0.5 * options.clearance_mm, join_style="mitre")
-        else:
-            panels = _less(panels, self._rubbing_sides(deployment))
-        owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
+        order = np.argsort(seen, kind="stable")
+        passing = np.split(mover[order], np.cumsum(np.bincount(seen, minlength=len(blanks)))[:-1])
         for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
-            ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-            every = np.concatenate([np.arange(len(panels)), owner])
-            whole = _united_by(np.concatenate([panels, ears]), every, len(panels))
-            areas = self._swept_ears(mover, seen)
-            meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-            notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
-            shapes = _less(whole, notches)
-            held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
-            narrow = [index for index, one in enumerate(held) if one is None]
-            cutting = mover[meets & np.isin(seen, narrow)]
+            keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
+            fresh = [index for index, key in enumerate(keys) if key not in known]
+            known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
+            notched = [known[key] for key in keys]
+            narrow = [one.movers for one in notched if one.held is None]
+            cutting = np.concatenate(narrow) if narrow else np.zeros(0, dtype=np.int64)
             if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
                 break
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
-        for index, one in enumerate(held):
-            self._find_weak(index, self._most_pinned(index, shapes[index]) if one is None else one)
-            self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
+        for index, one in enumerate(notched):
+            self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
+            self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
+
+    def _notching(self, index: int, movers: IntArray) -> _Notching:
+        """All that the notches of a panel depend on: its own ears, and those that pass it."""
+        radius = self.ear_radius.ravel()
+        own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
+        return index, own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
+
+    def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
+        """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
+        motion = self.motion
+        owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
+        ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+        place = np.zeros(len(blanks), dtype=np.int64)
+        place[fresh] = np.arange(len(fresh))
+        whole = _united_by(
+            np.concatenate([blanks[fresh], ears]), np.concatenate([np.arange(len(fresh)), place[owner]]), len(fresh)
+        )
+        mover = np.concatenate([passing[index] for index in fresh]) if len(fresh) else np.zeros(0, dtype=np.int64)
+        seen = np.repeat(np.array(fresh, dtype=np.int64), [len(passing[index]) for index in fresh])
+        areas = self._swept_ears(mover, seen)
+        shapely.prepare(whole)
+        meets = np.any(shapely.intersects(whole[place[seen]][:, None], areas), axis=1)
+        notches = _united_by(areas[meets].ravel(), np.repeat(place[seen[meets]], areas.shape[1]), len(fresh))
+        shapes = _less(whole, notches)
+        return [
+            _Notched(shape, self.held_together(index, shape), mover[meets & (seen == index)])
+            for index, shape in zip(fresh, shapes, strict=True)
+        ]
 
     def _most_pinned(self, index: int, shape: BaseGeometry) -> Polygon:
         """The part of a shape between necks that has most pins, and of those the largest."""
@@ -190,10 +242,20 @@ class Shaping:
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
         motion = self.motion
+        if not len(ear):
+            return np.empty((0, 3), dtype=object)
         radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
         drift = motion.seen_drift(ear // 4, seen, motion.corners.ravel()[ear])
         turn = motion.sense[seen] * motion.opening
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
+
+    def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
+        """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
+        if index not in self._swept:
+            mover, seen = self._passing_ears
+            mover = mover[seen == index]
+            self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
+        return self._swept[index]
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
@@ -233,10 +295,10 @@ class Shaping:
         zone = window.buffer(grown)
         shapely.prepare(zone)
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
-        mover, seen = self._passing_ears
-        mover = mover[seen == index]
-        mover = mover[near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)]
-        ears = self._swept_ears(mover, np.full(len(mover), index)).ravel()
+        mover, swept = self._sweeps(index)
+        ears = swept[
+            near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)
+        ].ravel()
         touching = ears[shapely.intersects(zone, ears)]
         return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
 
@@ -269,10 +331,10 @@ class Shaping:
         whole = body if found is None else united(found, body)
         return whole if found is not None and isinstance(whole, Polygon) else None
 
-    def add(self, index: int, shape: Polygon) -> None:
-        """Give a piece a larger shape; it is kept in mind by all that move past it later."""
-        added = shapely.get_parts(less(shape, self.bodies[index]))
-        parts = [convex for part in added[shapely.area(added) > TOO_SMALL] for convex in _convex_parts(part)]
+    def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
+        """Give a piece a larger shape; what was added is kept in mind by all that move past it later."""
+        new = shapely.get_parts(added)
+        parts = [convex for part in new[shapely.area(new) > TOO_SMALL] for convex in _convex_parts(part)]
         plane = int(self.motion.plane[index])
         self._parts[plane] = self._parts[plane].with_more(index, parts)
         self.bodies[index] = shape
