@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from dataclasses import dataclass, replace
 
-import shapely
 from shapely.errors import GEOSException
 
-from kirigami_studio.assembly.checks import PinnedReport, bed_problems, body_of, check_pinned, placed_bodies
+from kirigami_studio.assembly.checks import PinnedReport, bed_problems, check_pinned
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.assembly.plates import flat_bounds, parts_for, seams, size_of
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.fabricate.findings import Problem
@@ -70,13 +69,15 @@ def print_problems(plan: PinnedPlan, material: Material, machine: Machine) -> tu
     """Problems of printing the pieces of a plan at once."""
     if MachineKind.of(material.machine) is not MachineKind.PRINTER:
         return (Problem.error("printed.material_is_cut", material=material.name),)
-    bodies = placed_bodies(plan.assembly, [body_of(piece) for piece in plan.assembly.pieces], math.pi)
-    left, bottom, right, top = shapely.total_bounds(bodies).tolist()
-    size, bed = (right - left, top - bottom), machine.reach_mm
-    if not any(0.0 < most < side for side, most in zip(size, bed, strict=True)):
+    parts = parts_for(plan.assembly, machine.reach_mm)
+    if parts is None:
+        size, bed = size_of(flat_bounds(plan.assembly)), machine.reach_mm
+        values = {"width_mm": size[0], "depth_mm": size[1], "bed_width_mm": bed[0], "bed_depth_mm": bed[1]}
+        return (Problem.error("printed.assembly_larger_than_bed", **values),)
+    if len(parts) == 1:
         return ()
-    values = {"width_mm": size[0], "depth_mm": size[1], "bed_width_mm": bed[0], "bed_depth_mm": bed[1]}
-    return (Problem.error("printed.assembly_larger_than_bed", **values),)
+    values = {"count": len(parts), "caps": len(seams(plan.assembly, parts))}
+    return (Problem.warning("printed.joined_by_hand", **values),)
 
 
 _KEPT: OrderedDict[tuple[object, ...], Assembled] = OrderedDict()

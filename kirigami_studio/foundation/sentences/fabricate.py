@@ -456,8 +456,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "printed.material_is_cut": mark("{material} is cut, not printed. Choose a material of a 3D printer, such as PLA."),
     "printed.assembly_larger_than_bed": mark(
-        "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
-        "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."
+        "The print is {width_mm:.1f} x {depth_mm:.1f} mm, and cannot be divided into plates of {bed_width_mm:g} x "
+        "{bed_depth_mm:g} mm. Make the sheet smaller, or choose a larger printer."
+    ),
+    "printed.joined_by_hand": mark(
+        "The print takes {count} plates, which are joined by hand at {caps} pins, with caps glued on. Make the sheet "
+        "narrower, or choose a larger printer, to print it at once."
     ),
     "printed.falls_apart": mark(
         "The sheet is in {pieces} pieces after cutting, and cannot be printed as one. Widen the connectors."
