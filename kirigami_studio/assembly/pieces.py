@@ -55,6 +55,8 @@ class Piece:
         Where its number has most room.
     label_mm : float
         Largest height of the number there.
+    marks : tuple of (K, 2) float, mm
+        Open lines to engrave, where tabs are stuck on.
     """
 
     id: str
@@ -65,6 +67,7 @@ class Piece:
     openings: tuple[FloatArray, ...] = ()
     label_at: FloatArray | tuple[float, float] = (0.0, 0.0)
     label_mm: float = 3.0
+    marks: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

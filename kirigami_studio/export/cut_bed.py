@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
@@ -38,6 +38,8 @@ BEAM_CHORDS = 64
 CORNER_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Distance of numbers from the marks of tabs, mm.
+CLEAR_OF_MARK_MM = 0.5
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
@@ -56,7 +58,7 @@ class PieceCuts:
     openings : tuple of (K, 2) float
         Those of the piece first, clockwise; then notches that the beam cannot enter by their mouths.
     number : tuple of (P, 2) float
-        Open strokes; none where the number has no room.
+        Open strokes; none where the number has no room, and the piece no marks.
     """
 
     piece: Piece
@@ -84,9 +86,13 @@ class PieceCuts:
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
         rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
         area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
+        marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
+        lines = tuple(shapely.get_coordinates(line) for line in marks if isinstance(line, LineString) and line.length)
+        if piece.marks:  # the number keeps out of them
+            area = area.difference(shapely.union_all([Polygon(mark).buffer(CLEAR_OF_MARK_MM) for mark in piece.marks]))
         parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
         free = max(parts, key=lambda part: part.area, default=Polygon())
-        return cls(piece, outline, holes, openings, written_in(free, piece.id))
+        return cls(piece, outline, holes, openings, (*written_in(free, piece.id), *lines))
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:

@@ -10,6 +10,8 @@ from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
 from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, NECK_IN_THICKNESSES, SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.hold import LEAST_WALL_MM as LEAST_HOLD_WALL_MM
+from kirigami_studio.fabricate.hold import MOST_WALL_MM, HoldKind, HoldOptions, HoldWhen
 from kirigami_studio.fabricate.machine import (
     Machine,
     cuttable,
@@ -75,6 +77,12 @@ class FabricationSettings:
         Between ears and pieces that pass each other in one layer, and between printed parts that turn.
     gap_mm : float
         By which the tiles of backed sheets are smaller than their panels, all round.
+    hold : HoldKind
+        What keeps the sheet in an end state.
+    hold_when : HoldWhen
+        In which.
+    magnet_mm, magnet_height_mm : float
+        Diameter and height of magnets that hold it.
     connector_mm : float or None
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
@@ -226,6 +234,50 @@ class FabricationSettings:
             "--gap-mm",
             0.0,
             20.0,
+        ),
+    )
+    hold: HoldKind = field(
+        default=HoldKind.NONE,
+        metadata=Setting(
+            about=mark("What keeps the sheet open, or flat, where panels meet in that state alone."),
+            help="what keeps the sheet in its end state: holes or marks where panels meet in that state alone",
+            code="settings.no_such_choice",
+            undo=mark("Change what holds the sheet"),
+            label=mark("Held by"),
+            choices=(
+                Choice(HoldKind.NONE, mark("Nothing"), mark("The sheet stays as friction lets it.")),
+                Choice(HoldKind.MAGNETS, mark("Magnets"), mark("Discs in round holes; a list tells their poles.")),
+                Choice(HoldKind.EYELETS, mark("Eyelets"), mark("Holes for a spare pin, a ring or a cord.")),
+                Choice(HoldKind.STITCHES, mark("Stitches"), mark("Two small holes on either side of an edge.")),
+                Choice(HoldKind.TABS, mark("Adhesive tabs"), mark("Engraved marks where tape goes over an edge.")),
+            ),
+            option="--hold",
+        ).metadata,
+    )
+    hold_when: HoldWhen = field(
+        default=HoldWhen.OPEN,
+        metadata=Setting(
+            about=mark("The state that magnets, eyelets, stitches or tabs keep."),
+            help="the state that --hold keeps",
+            code="settings.no_such_choice",
+            undo=mark("Change what holds the sheet"),
+            label=mark("Held when"),
+            choices=(
+                Choice(HoldWhen.OPEN, mark("Open"), mark("As the target.")),
+                Choice(HoldWhen.FLAT, mark("Flat"), mark("As it is cut.")),
+                Choice(HoldWhen.BOTH, mark("Open and flat"), mark("Places for either.")),
+            ),
+            option="--hold-when",
+        ).metadata,
+    )
+    magnet_mm: float = field(
+        default=5.0,
+        metadata=_millimetres(mark("Diameter of the disc magnets, mm."), mark("Magnet, mm"), "--magnet-mm", 1.0, 30.0),
+    )
+    magnet_height_mm: float = field(
+        default=2.0,
+        metadata=_millimetres(
+            mark("Height of the disc magnets, mm."), mark("Magnet height, mm"), "--magnet-height-mm", 0.5, 20.0
         ),
     )
     connector_mm: float | None = field(
@@ -381,6 +433,10 @@ class SheetChange(TypedDict, total=False):
     ear_mm: float | None
     clearance_mm: float
     gap_mm: float
+    hold: HoldKind | str
+    hold_when: HoldWhen | str
+    magnet_mm: float
+    magnet_height_mm: float
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
@@ -546,6 +602,18 @@ def pin_sizes(settings: FabricationSettings) -> PinSizes:
     if ear <= hole:
         raise UsageError("settings.ear_within_hole", ear_mm=ear, pin_mm=hole)
     return PinSizes(hole, ear, settings.clearance_mm, size.head_mm, neck)
+
+
+def hold_options(settings: FabricationSettings) -> HoldOptions:
+    """Parts that hold the sheet, with the wall that its material needs round holes.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    wall = min(max(material_for(settings).min_ligament_mm, LEAST_HOLD_WALL_MM), MOST_WALL_MM)
+    return HoldOptions(settings.hold, settings.hold_when, settings.magnet_mm, settings.magnet_height_mm, wall)
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from shapely.errors import GEOSException
 
 from kirigami_studio.assembly.checks import PinnedReport, check_pinned
+from kirigami_studio.assembly.holding import HeldPlaces, held, with_places
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
@@ -16,7 +17,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, pin_sizes
+from kirigami_studio.settings.fabrication import FabricationSettings, hold_options, pin_sizes
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
@@ -54,11 +55,14 @@ class Assembled:
     report : PinnedReport
     as_cut : AsCut
         Its motion: exact, on pins that bend nothing.
+    held : HeldPlaces
+        Places that hold it in its end states; their holes are in the pieces.
     """
 
     plan: PinnedPlan
     report: PinnedReport
     as_cut: AsCut
+    held: HeldPlaces = field(default_factory=HeldPlaces)
 
     @property
     def assembly(self) -> Assembly:
@@ -86,17 +90,20 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     UsageError
         An ear that is no wider than its hole.
     """
-    options = pin_options(settings)
-    key = (candidate, target, settings.width_mm, options)
+    options, hold = pin_options(settings), hold_options(settings)
+    key = (candidate, target, settings.width_mm, options, hold)
     made = _KEPT.pop(key, None)
     if made is None:
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
         try:
             plan = pinned(design, target, settings.width_mm, options)
             report = check_pinned(plan)
+            places = held(plan, hold)
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
-        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match))
+        plan = replace(plan, assembly=with_places(plan.assembly, places.places))
+        report = replace(report, problems=(*report.problems, *places.problems))
+        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places)
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)

@@ -32,6 +32,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     is_pinned,
     machine_for,
     material_for,
@@ -381,6 +382,8 @@ def pieces_of(request: CutRequest) -> MadePieces:
         paper=settings.paper,
         order=settings.options.order,
         target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
+        hold=hold_options(settings),
+        holds=made.held.places,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )

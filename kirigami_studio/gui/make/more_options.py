@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
@@ -92,6 +93,9 @@ class MoreOptions(QWidget):
         self.cuts.show_settings(settings.options)
         self.files.show_settings(settings)
         self._show_pins(settings)
+        self.files.fields["hold_when"].setEnabled(settings.hold is not HoldKind.NONE)
+        for name in ("magnet_mm", "magnet_height_mm"):
+            self.files.fields[name].setEnabled(settings.hold is HoldKind.MAGNETS)
         self.tab_mm.setEnabled(settings.options.tabs > 0)
         self.copy_gap.setEnabled(settings.options.copies != 1)
 
