@@ -47,21 +47,12 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
 
 @dataclass(frozen=True, eq=False)
 class Assembled:
-    """The pieces of a design, and what their check found.
-
-    Attributes
-    ----------
-    plan : PinnedPlan
-    report : PinnedReport
-    as_cut : AsCut
-        Its motion: exact, on pins that bend nothing.
-    held : HeldPlaces
-        Places that hold it in its end states; their holes are in the pieces.
-    """
+    """The pieces of a design, and what their check found."""
 
     plan: PinnedPlan
     report: PinnedReport
-    as_cut: AsCut
+    as_cut: AsCut  #: Its motion: exact, on pins that bend nothing
+    #: Places that hold it in its end states; their holes are in the pieces.
     held: HeldPlaces = field(default_factory=HeldPlaces)
 
     @property
