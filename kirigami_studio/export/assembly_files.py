@@ -23,10 +23,12 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.cut_bed import CutBed, laid_on_beds, too_large
+from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent, bent_otherwise, largest_shift
 from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
@@ -63,7 +65,9 @@ ALIKE_MM = 1e-9
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
-OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
+OWN_NAME = re.compile(
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+)
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
 
@@ -104,6 +108,8 @@ class AssemblyJob:
         Parts that hold it in its end states.
     holds : tuple of HoldPlace
         Where they are.
+    drive : DriveParts or None
+        Board and arms that move it.
     """
 
     assembly: Assembly
@@ -127,6 +133,12 @@ class AssemblyJob:
     verdict: str = ""
     hold: HoldOptions = field(default_factory=HoldOptions)
     holds: tuple[HoldPlace, ...] = ()
+    drive: DriveParts | None = None
+
+    @property
+    def whole(self) -> Assembly:
+        """The assembly with the parts of its drive."""
+        return self.assembly if self.drive is None else self.drive.assembly
 
     @cached_property
     def beds(self) -> tuple[CutBed, ...]:
@@ -137,7 +149,7 @@ class AssemblyJob:
         FabricationError
             A hole or an opening that is narrower than the kerf.
         """
-        return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
+        return laid_on_beds(self.whole.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
     @property
     def allowed_mm(self) -> float:
@@ -236,11 +248,11 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             found, pieces = _bed_written(job, bed, fresh, home, kind)
             verified.append(found)
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces})
-    record = pieces_json(job.assembly, holds=job.holds)
+    record = pieces_json(job.whole, holds=job.holds)
     write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds)
+    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:
@@ -399,11 +411,11 @@ def _motion_verified(
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.assembly, holds=job.holds)
+    right = record == pieces_json(job.whole, holds=job.holds)
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
     known: list[tuple[Mapping[str, FoundPiece], list[Finding]]] = []
     for kind, pieces in by_kind.items():
-        if not right or set(pieces) != set(job.assembly.by_id):
+        if not right or set(pieces) != set(job.whole.by_id):
             continue
         # Files of one design mostly hold the same numbers: those are moved once.
         moved = next((found for other, found in known if same_pieces(pieces, other, ALIKE_MM)), None)
@@ -417,7 +429,7 @@ def _motion_verified(
         path=goal,
         ok=all(finding.ok for finding in findings),
         size_mm=(width, height),
-        pieces=len(job.assembly.pieces),
+        pieces=len(job.whole.pieces),
         cut_length_mm=sum(work.cut_length_mm for work in job.works),
         seconds_low=sum(work.times.low for work in job.works),
         seconds_high=sum(work.times.high for work in job.works),
@@ -490,7 +502,10 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
         found.append(pins)
     found += [
         PartLine(line.item, count=line.count, diameter_mm=line.diameter_mm, length_mm=line.length_mm, note=line.note)
-        for line in hold_lines(job.holds, job.hold)
+        for line in (
+            *hold_lines(job.holds, job.hold),
+            *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
+        )
     ]
     sheet = f"{job.material.name}; area of the rectangles round what is cut"
     found.append(
@@ -504,8 +519,8 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
     found.append(
         PartLine(
             "all cuts",
-            count=len(job.assembly.pieces),
-            area_mm2=sum(map(_area, job.assembly.pieces)),
+            count=len(job.whole.pieces),
+            area_mm2=sum(map(_area, job.whole.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.works),
             seconds=sum(work.times.total for work in job.works),
             note=f"on {job.machine.name}",

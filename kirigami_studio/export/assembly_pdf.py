@@ -20,10 +20,12 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Hinge
 from kirigami_studio.export import picture
 from kirigami_studio.export.cut_bed import CutBed
+from kirigami_studio.export.drive_files import drive_steps
 from kirigami_studio.export.hold_files import HOLD_STEPS
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, PAPERS, Paper, Size, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.pdf import ROUNDING_MM, SAME_LENGTH, length_in_cell, read_pages
@@ -44,9 +46,13 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
-#: Fill and edge of the pieces of each layer: the first solid, the other lighter.
-FILLS: Mapping[int, Colour] = {1: picture.PANEL, 2: (236, 242, 248)}
-EDGES: Mapping[int, Colour] = {1: picture.PANEL_EDGE, 2: (120, 146, 178)}
+#: Fill and edge of the pieces of each layer: the first solid, the other lighter; then arms, board and handle.
+FILLS: Mapping[int, Colour] = {
+    1: picture.PANEL, 2: (236, 242, 248), 3: (255, 224, 178), 4: (245, 239, 227), 5: (255, 240, 214),
+}  # fmt: skip
+EDGES: Mapping[int, Colour] = {
+    1: picture.PANEL_EDGE, 2: (120, 146, 178), 3: (176, 112, 32), 4: (140, 120, 90), 5: (190, 150, 90),
+}  # fmt: skip
 PIN: Colour = picture.TARGET_EDGE
 #: Places that hold the sheet, and how far their numbers stand beside them (points).
 HOLD: Colour = (178, 34, 34)
@@ -90,6 +96,8 @@ class AssemblySheet:
         Target outline behind the opened sheet.
     holds : sequence of HoldPlace
         Places that hold the sheet, shown in their states.
+    drive : DriveParts or None
+        Board and arms that move it, which have a page of their own.
     """
 
     assembly: Assembly
@@ -98,6 +106,7 @@ class AssemblySheet:
     lines: Sequence[str]
     target: FloatArray | None = None
     holds: Sequence[HoldPlace] = ()
+    drive: DriveParts | None = None
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -128,6 +137,9 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     canvas.setLineJoin(1)
     _first_page(canvas, sheet, upright)
     before = 1 + _pages_of_pins(canvas, sheet, flat, upright) + _pages_of_beds(canvas, sheet.beds, upright)
+    if sheet.drive is not None:
+        _page_of_drive(canvas, sheet.drive, upright)
+        before += 1
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
     about = f"{sheet.about['title']}, flat, at true size: {flat.size[0]:.1f} x {flat.size[1]:.1f} mm"
     draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
@@ -454,6 +466,30 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
         canvas.showPage()
         pages += 1
     return pages
+
+
+def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
+    """Show board and arms at both ends of the motion, with the pieces that they move."""
+    top = _title(canvas, "Board and arms, seen from the front", page)
+    width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
+    parts = drive.parts
+    ends = ((math.pi, "Flat"), (parts.phi_target, f"Opened, {math.degrees(parts.phi_target):.0f} degrees"))
+    drawings = [_Drawing.of(parts, phi) for phi, _ in ends]
+    scale = min(_fitting(drawing, (width, 0.42 * page[1])) for drawing in drawings)
+    for number, (drawing, (_, words)) in enumerate(zip(drawings, ends, strict=True)):
+        left = MARGIN_MM + number * (width + GAP_MM)
+        _ink(canvas)
+        canvas.setFont("Helvetica-Bold", HEAD_POINTS)
+        canvas.drawString(left * mm, top * mm, words)
+        _draw(canvas, drawing, scale, np.array([left, top - 4.0 - scale * drawing.size[1]]))
+    y = top - 4.0 - scale * max(drawing.size[1] for drawing in drawings) - GAP_MM
+    column = _Column(canvas, MARGIN_MM, y, page[0] - 2.0 * MARGIN_MM)
+    column.text(f"Pictures at 1 : {1.0 / scale:.1f}. {drive.fixed} is fixed to the board.")
+    for number, line in enumerate(drive_steps(drive), start=1):
+        column.text(line, f"{number}.")
+    _ink(canvas)
+    draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
+    canvas.showPage()
 
 
 def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:

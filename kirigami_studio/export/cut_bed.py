@@ -38,6 +38,8 @@ BEAM_CHORDS = 64
 CORNER_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Layers of a sheet, and the stem of the file of all parts behind them.
+LAYERS, BOARD = 2, "board"
 #: Distance of numbers from the marks of tabs, mm.
 CLEAR_OF_MARK_MM = 0.5
 #: Chords of a quarter circle where the room round holes is measured.
@@ -162,8 +164,9 @@ class CutBed:
 
     @property
     def name(self) -> str:
-        """Stem of its file: ``layer-1``, ``layer-1-b2``."""
-        return f"layer-{self.layer}" + (f"-b{self.number}" if self.number > 1 else "")
+        """Stem of its file: ``layer-1``, ``layer-1-b2``, ``board``."""
+        stem = BOARD if self.layer > LAYERS else f"layer-{self.layer}"
+        return stem + (f"-b{self.number}" if self.number > 1 else "")
 
     @property
     def size_mm(self) -> tuple[float, float]:
@@ -249,8 +252,10 @@ def laid_on_beds(
         As :meth:`PieceCuts.of`.
     """
     found = []
-    for layer in sorted({piece.layer for piece in pieces}):
-        cuts = [PieceCuts.of(piece, kerf_mm) for piece in pieces if piece.layer == layer]
+    # The parts of a drive lie together, whatever their layers.
+    sheets = [min(piece.layer, LAYERS + 1) for piece in pieces]
+    for layer in sorted(set(sheets)):
+        cuts = [PieceCuts.of(piece, kerf_mm) for piece, sheet in zip(pieces, sheets, strict=True) if sheet == layer]
         beds = nested([one.outline for one in cuts], bed, kerf_mm + WEB_MM, margin_mm)
         for number, places in enumerate(beds, start=1):
             here = tuple(cuts[place.shape] for place in places)

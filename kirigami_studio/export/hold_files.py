@@ -87,7 +87,7 @@ def _placed(ends: Sequence[FloatArray], names: Sequence[str], poses: Mapping[str
 
 
 @dataclass(frozen=True, slots=True)
-class HoldLine:
+class PartsEntry:
     """Parts of one state in the parts list: how many, how wide and high, and a note."""
 
     item: str
@@ -97,7 +97,7 @@ class HoldLine:
     note: str
 
 
-def hold_lines(places: Sequence[HoldPlace], options: HoldOptions) -> list[HoldLine]:
+def hold_lines(places: Sequence[HoldPlace], options: HoldOptions) -> list[PartsEntry]:
     """Lines of the parts list."""
     found = []
     for state in HeldState:
@@ -110,13 +110,13 @@ def hold_lines(places: Sequence[HoldPlace], options: HoldOptions) -> list[HoldLi
             beside = [place.apart_mm for place in here if not place.through]
             pull = f"about {options.pull_n(max(beside)):.2f} N a pair side by side; " if beside else ""
             note = f"keep it {state.value}: {pull}holes {options.hole_mm:g} mm; {where}"
-            found.append(HoldLine("magnets", count, options.magnet_mm, options.magnet_height_mm, note))
+            found.append(PartsEntry("magnets", count, options.magnet_mm, options.magnet_height_mm, note))
         elif options.kind is HoldKind.TABS:
-            found.append(HoldLine("tabs", count, None, None, f"keep it {state.value}: adhesive tape; {where}"))
+            found.append(PartsEntry("tabs", count, None, None, f"keep it {state.value}: adhesive tape; {where}"))
         else:
             means = "thread" if options.kind is HoldKind.STITCHES else "with a spare pin, a ring or a cord"
             note = f"keep it {state.value}: {means}; {where}"
-            found.append(HoldLine(options.kind.value, count, options.hole_mm, None, note))
+            found.append(PartsEntry(options.kind.value, count, options.hole_mm, None, note))
     return found
 
 

@@ -8,6 +8,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, NECK_IN_THICKNESSES, SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.hold import LEAST_WALL_MM as LEAST_HOLD_WALL_MM
@@ -77,12 +78,14 @@ class FabricationSettings:
         Between ears and pieces that pass each other in one layer, and between printed parts that turn.
     gap_mm : float
         By which the tiles of backed sheets are smaller than their panels, all round.
-    hold : HoldKind
+    held_by : HoldKind
         What keeps the sheet in an end state.
-    hold_when : HoldWhen
+    held_when : HoldWhen
         In which.
     magnet_mm, magnet_height_mm : float
         Diameter and height of magnets that hold it.
+    moved_by : DriveKind
+        What turns a pinned sheet from behind.
     connector_mm : float or None
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
@@ -236,7 +239,7 @@ class FabricationSettings:
             20.0,
         ),
     )
-    hold: HoldKind = field(
+    held_by: HoldKind = field(
         default=HoldKind.NONE,
         metadata=Setting(
             about=mark("What keeps the sheet open, or flat, where panels meet in that state alone."),
@@ -254,7 +257,7 @@ class FabricationSettings:
             option="--hold",
         ).metadata,
     )
-    hold_when: HoldWhen = field(
+    held_when: HoldWhen = field(
         default=HoldWhen.OPEN,
         metadata=Setting(
             about=mark("The state that magnets, eyelets, stitches or tabs keep."),
@@ -279,6 +282,22 @@ class FabricationSettings:
         metadata=_millimetres(
             mark("Height of the disc magnets, mm."), mark("Magnet height, mm"), "--magnet-height-mm", 0.5, 20.0
         ),
+    )
+    moved_by: DriveKind = field(
+        default=DriveKind.NONE,
+        metadata=Setting(
+            about=mark("A board behind two layers on pins, with arms that open and close them."),
+            help="a board behind two layers on pins, with arms that open and close them",
+            code="settings.no_such_choice",
+            undo=mark("Change the drive"),
+            label=mark("Moved by"),
+            choices=(
+                Choice(DriveKind.NONE, mark("Hand"), mark("No board.")),
+                Choice(DriveKind.CRANK, mark("Crank"), mark("A handle behind the board turns an arm.")),
+                Choice(DriveKind.SERVO, mark("Servo"), mark("A small servo (SG90) in the board turns an arm.")),
+            ),
+            option="--drive",
+        ).metadata,
     )
     connector_mm: float | None = field(
         default=None,
@@ -433,10 +452,11 @@ class SheetChange(TypedDict, total=False):
     ear_mm: float | None
     clearance_mm: float
     gap_mm: float
-    hold: HoldKind | str
-    hold_when: HoldWhen | str
+    held_by: HoldKind | str
+    held_when: HoldWhen | str
     magnet_mm: float
     magnet_height_mm: float
+    moved_by: DriveKind | str
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
@@ -613,7 +633,7 @@ def hold_options(settings: FabricationSettings) -> HoldOptions:
         No such material.
     """
     wall = min(max(material_for(settings).min_ligament_mm, LEAST_HOLD_WALL_MM), MOST_WALL_MM)
-    return HoldOptions(settings.hold, settings.hold_when, settings.magnet_mm, settings.magnet_height_mm, wall)
+    return HoldOptions(settings.held_by, settings.held_when, settings.magnet_mm, settings.magnet_height_mm, wall)
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:

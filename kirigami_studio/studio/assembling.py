@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from shapely.errors import GEOSException
 
 from kirigami_studio.assembly.checks import PinnedReport, check_pinned
+from kirigami_studio.assembly.driving import DriveParts, driven
 from kirigami_studio.assembly.holding import HeldPlaces, held, with_places
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
@@ -54,6 +55,7 @@ class Assembled:
     as_cut: AsCut  #: Its motion: exact, on pins that bend nothing
     #: Places that hold it in its end states; their holes are in the pieces.
     held: HeldPlaces = field(default_factory=HeldPlaces)
+    drive: DriveParts | None = None  #: board and arms that move it
 
     @property
     def assembly(self) -> Assembly:
@@ -82,7 +84,7 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
         An ear that is no wider than its hole.
     """
     options, hold = pin_options(settings), hold_options(settings)
-    key = (candidate, target, settings.width_mm, options, hold)
+    key = (candidate, target, settings.width_mm, options, hold, settings.moved_by)
     made = _KEPT.pop(key, None)
     if made is None:
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
@@ -93,8 +95,9 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))
-        report = replace(report, problems=(*report.problems, *places.problems))
-        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places)
+        drive, refused = driven(plan, settings.moved_by)
+        report = replace(report, problems=(*report.problems, *places.problems, *refused))
+        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places, drive)
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)

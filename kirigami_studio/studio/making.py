@@ -308,6 +308,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
         target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
         hold=hold_options(settings),
         holds=made.held.places,
+        drive=made.drive,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )

@@ -93,9 +93,6 @@ class MoreOptions(QWidget):
         self.cuts.show_settings(settings.options)
         self.files.show_settings(settings)
         self._show_pins(settings)
-        self.files.fields["hold_when"].setEnabled(settings.hold is not HoldKind.NONE)
-        for name in ("magnet_mm", "magnet_height_mm"):
-            self.files.fields[name].setEnabled(settings.hold is HoldKind.MAGNETS)
         self.tab_mm.setEnabled(settings.options.tabs > 0)
         self.copy_gap.setEnabled(settings.options.copies != 1)
 
@@ -107,8 +104,11 @@ class MoreOptions(QWidget):
             return
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm})
         pinned = construction is Construction.PINNED
-        for name in ("fastener", "pin_mm", "ear_mm"):
+        for name in ("fastener", "pin_mm", "ear_mm", "held_by", "moved_by"):
             self.files.fields[name].setEnabled(pinned)
+        self.files.fields["held_when"].setEnabled(pinned and settings.held_by is not HoldKind.NONE)
+        for name in ("magnet_mm", "magnet_height_mm"):
+            self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
         self.files.fields["clearance_mm"].setEnabled(pinned or construction is Construction.PRINTED)
         self.files.fields["gap_mm"].setEnabled(construction is Construction.BACKED)
 

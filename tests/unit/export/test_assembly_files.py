@@ -18,6 +18,7 @@ from pinned_assemblies import CLEARANCE_MM, EAR_MM, HOLE_MM, small_assembly
 from pypdf import PdfReader
 from shapely.geometry import Polygon
 
+from kirigami_studio.assembly.driving import driven
 from kirigami_studio.assembly.holding import held, with_places
 from kirigami_studio.assembly.pieces import Assembly, RoundHole
 from kirigami_studio.assembly.pinned import pinned
@@ -35,6 +36,7 @@ from kirigami_studio.export.hold_files import hold_findings
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.pieces_read import FoundPiece
 from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.hold import HoldKind, HoldOptions, HoldWhen
 from kirigami_studio.fabricate.machine import machine_of
@@ -337,6 +339,44 @@ def ezdxf_numbers(folder: Path, assembly: Assembly) -> int:
     """How many lines the numbers of layer 2 are engraved with where nothing holds the sheet."""
     write_assembly(job_of(assembly), folder / "loose", (".dxf",))
     return len(ezdxf.readfile(folder / "loose/layer-2.dxf").modelspace().query('LWPOLYLINE[layer=="NAME"]'))
+
+
+@pytest.mark.parametrize("kind", [DriveKind.CRANK, DriveKind.SERVO])
+def test_that_board_and_arms_are_files_pieces_and_parts_of_the_folder(kind: DriveKind, tmp_path: Path) -> None:
+    plan = pinned(*pinwheel(3, 3), 160.0)
+    drive, _ = driven(plan, kind)
+    assert drive is not None
+    job = job_of(plan.assembly, drive=drive, paper=Paper.A4)
+    files = write_assembly(job, tmp_path / "moved")
+    assert all(one.ok for one in files.verifications) and "verify.pins_meet" in codes(files)
+    names = {entry.name for entry in (tmp_path / "moved").iterdir()}
+    assert {f"board{extension}" for extension in KINDS} < names
+    record = json.loads((tmp_path / "moved/pieces.json").read_bytes())
+    of_drive = {"BOARD", "ARM1", "ARM2"} | ({"HANDLE"} if kind is DriveKind.CRANK else set())
+    assert {piece["id"] for piece in record["pieces"]} - set(plan.assembly.by_id) == of_drive
+    assert all(set(step["poses"]) == set(job.whole.by_id) for step in record["motion"])
+    for step in record["motion"]:
+        for hinge in record["hinges"]:
+            x, y, turn = np.array([step["poses"][name] for name in hinge["pieces"]]).T
+            one, other = np.array(hinge["at"]) @ (1.0, 1j) * np.exp(1j * turn) + x + 1j * y
+            assert abs(one - other) < 1e-3
+    cut = [entity for entity in ezdxf.readfile(tmp_path / "moved/board.dxf").modelspace() if entity.dxf.layer != "NAME"]
+    parts_of_drive = [job.whole.by_id[name] for name in of_drive]
+    circles = sum(entity.dxftype() == "CIRCLE" for entity in cut)
+    assert circles == sum(len(piece.holes) for piece in parts_of_drive)
+    assert len(cut) - circles == len(of_drive) + sum(len(piece.openings) for piece in parts_of_drive)
+    with (tmp_path / "moved/parts.csv").open(newline="", encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
+    assert {row["item"] for row in rows} >= {"spacers", "screws", "servo" if kind is DriveKind.SERVO else "square bar"}
+    # Screws go through two layers, their spacer and an arm or the board, and have their nut.
+    thick, nut = PLYWOOD.thickness_mm, SIZES[Fastener.M3].beyond_mm
+    spacers = [float(row["length_mm"]) for row in rows if row["item"] == "spacers"]
+    screws = [float(row["length_mm"]) for row in rows if row["item"] == "screws"]
+    assert screws[:2] == pytest.approx([3.0 * thick + spacer + nut for spacer in spacers[:2]])
+    assert screws[2] == pytest.approx(2.0 * thick + spacers[2] + nut)
+    assert next(int(row["count"]) for row in rows if row["item"] == "pins") == len(plan.assembly.hinges)
+    pages = [page.extract_text() for page in PdfReader(tmp_path / "moved/assembly.pdf").pages]
+    assert any("Board and arms" in page and "ARM1" in page for page in pages)
 
 
 def test_that_a_hole_that_holds_nothing_is_found_on_reading_back() -> None:
