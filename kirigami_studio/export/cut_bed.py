@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -42,6 +43,8 @@ SHARP_MM = 5e-4
 LAYERS, BOARD = 2, "board"
 #: Distance of numbers from the marks of tabs, mm.
 CLEAR_OF_MARK_MM = 0.5
+#: Designs whose beds are kept, with the order of their cuts.
+MOST_KEPT = 16
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
@@ -132,14 +135,28 @@ def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     """Farthest that a corner of a shape is from another shape, mm."""
-    corners = np.asarray(shapely.points(shapely.get_coordinates(one)), dtype=object).reshape(-1)
-    tree = shapely.STRtree(np.asarray(shapely.points(shapely.get_coordinates(other)), dtype=object).reshape(-1))
-    if not len(corners) or not len(tree):
+    corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
+    if not len(corners) or not len(others):
         return math.inf
-    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
-    # From corner to corner is quick, and nearly always near enough.
-    far = near > SHARP_MM
-    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
+    tree = shapely.STRtree(np.asarray(shapely.points(others), dtype=object).reshape(-1))
+    points = np.asarray(shapely.points(corners), dtype=object).reshape(-1)
+    near = tree.query_nearest(points, return_distance=True, all_matches=False)[1]
+    # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
+    far = np.flatnonzero(near > SHARP_MM)
+    if len(far):
+        shapely.prepare(other)
+        outside = far[~shapely.intersects(other, points[far])]
+        near[far] = 0.0
+        if len(outside):
+            sides = shapely.STRtree(_sides(other))
+            near[outside] = sides.query_nearest(points[outside], return_distance=True, all_matches=False)[1]
+    return float(near.max())
+
+
+def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
+    """The sides of all rings of a shape."""
+    found, ring = shapely.get_coordinates(shapely.get_rings(shapely.get_parts(shape)), return_index=True)
+    return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +249,7 @@ def laid_on_beds(
     margin_mm: float = 0.0,
     order: CutOrder = CutOrder.SHORTEST,
 ) -> tuple[CutBed, ...]:
-    """Lay pieces on beds, those of each layer by themselves.
+    """Lay pieces on beds, those of each layer by themselves; the same pieces are not laid again.
 
     Parameters
     ----------
@@ -251,6 +268,13 @@ def laid_on_beds(
     FabricationError
         As :meth:`PieceCuts.of`.
     """
+    return _laid(tuple(pieces), kerf_mm, bed, margin_mm, order)
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def _laid(
+    pieces: tuple[Piece, ...], kerf_mm: float, bed: tuple[float, float], margin_mm: float, order: CutOrder
+) -> tuple[CutBed, ...]:
     found = []
     # The parts of a drive lie together, whatever their layers.
     sheets = [min(piece.layer, LAYERS + 1) for piece in pieces]
@@ -265,8 +289,3 @@ def laid_on_beds(
                 CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places), order)
             )
     return tuple(found)
-
-
-def too_large(bed: CutBed, room: tuple[float, float]) -> bool:
-    """Whether what is cut reaches beyond a bed (width, height; mm, 0 for a side without an end)."""
-    return any(0.0 < most < side - math.ulp(most) * 4 for side, most in zip(bed.size_mm, room, strict=True))

@@ -102,14 +102,15 @@ class MoreOptions(QWidget):
             construction, sizes = construction_for(settings), pin_sizes(settings)
         except KirigamiError:  # its material is gone, or its ears are; the plan says so
             return
-        self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm})
+        self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
         pinned = construction is Construction.PINNED
-        for name in ("fastener", "pin_mm", "ear_mm", "held_by", "moved_by"):
+        for name in ("fastener", "held_by", "moved_by"):
             self.files.fields[name].setEnabled(pinned)
         self.files.fields["held_when"].setEnabled(pinned and settings.held_by is not HoldKind.NONE)
         for name in ("magnet_mm", "magnet_height_mm"):
             self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
-        self.files.fields["clearance_mm"].setEnabled(pinned or construction is Construction.PRINTED)
+        for name in ("pin_mm", "ear_mm", "clearance_mm"):
+            self.files.fields[name].setEnabled(pinned or construction is Construction.PRINTED)
         self.files.fields["gap_mm"].setEnabled(construction is Construction.BACKED)
 
     def _show_content(self, shown: bool) -> None:
