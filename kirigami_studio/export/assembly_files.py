@@ -24,11 +24,15 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.cut_bed import CutBed, laid_on_beds
+from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
+from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
@@ -42,6 +46,7 @@ from kirigami_studio.export.verification import FORMATS, Finding, Format, Verifi
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import CutOrder
@@ -59,7 +64,9 @@ RING_CHORD_MM = 5e-4
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
-OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
+OWN_NAME = re.compile(
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+)
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
 
@@ -96,6 +103,12 @@ class AssemblyJob:
         The design as a packed project, which the first DXF and SVG carry; empty for none.
     verdict : str
         Level of the verdict on the design; "" where nobody has judged it.
+    hold : HoldOptions
+        Parts that hold it in its end states.
+    holds : tuple of HoldPlace
+        Where they are.
+    drive : DriveParts or None
+        Board and arms that move it.
     """
 
     assembly: Assembly
@@ -117,6 +130,14 @@ class AssemblyJob:
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     record: bytes = b""
     verdict: str = ""
+    hold: HoldOptions = field(default_factory=HoldOptions)
+    holds: tuple[HoldPlace, ...] = ()
+    drive: DriveParts | None = None
+
+    @property
+    def whole(self) -> Assembly:
+        """The assembly with the parts of its drive."""
+        return self.assembly if self.drive is None else self.drive.assembly
 
     @cached_property
     def beds(self) -> tuple[CutBed, ...]:
@@ -127,7 +148,7 @@ class AssemblyJob:
         FabricationError
             A hole or an opening that is narrower than the kerf.
         """
-        return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
+        return laid_on_beds(self.whole.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
     @property
     def allowed_mm(self) -> float:
@@ -228,10 +249,11 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             found, pieces = _bed_written(job, bed, fresh, home, kind, known)
             verified.append(found)
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces})
-    write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
+    record = pieces_json(job.whole, holds=job.holds)
+    write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target)
+    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:
@@ -323,8 +345,8 @@ def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
 # pieces and motion ----------------------------------------------------------------------------------------------------
 
 
-def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
-    """Pieces, hinges and motion, as plain lists.
+def pieces_json(assembly: Assembly, angles: int = ANGLES, holds: Sequence[HoldPlace] = ()) -> dict[str, Any]:
+    """Pieces, hinges, motion and, where there are any, places that hold the pieces, as plain lists.
 
     Outlines, holes (as rings) and hinge points are in the frame of their piece, in mm; a pose turns a piece about its
     origin, then moves it.
@@ -349,6 +371,7 @@ def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
             {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)}
             for phi in phis.tolist()
         ],
+        **({"holds": holds_json(holds, LENGTH_DECIMALS)} if holds else {}),
     }
 
 
@@ -378,12 +401,12 @@ def _motion_verified(
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.assembly)
+    right = record == pieces_json(job.whole, holds=job.holds)
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
     for kind, pieces in by_kind.items():
-        if not right or set(pieces) != set(job.assembly.by_id):
+        if not right or set(pieces) != set(job.whole.by_id):
             continue
-        moved = motion_findings(pieces, record, known)
+        moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
     far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
@@ -391,7 +414,7 @@ def _motion_verified(
         path=goal,
         ok=all(finding.ok for finding in findings),
         size_mm=(width, height),
-        pieces=len(job.assembly.pieces),
+        pieces=len(job.whole.pieces),
         cut_length_mm=sum(work.cut_length_mm for work in job.works),
         seconds_low=sum(work.times.low for work in job.works),
         seconds_high=sum(work.times.high for work in job.works),
@@ -435,7 +458,7 @@ COLUMNS = tuple(entry.name for entry in fields(PartLine))
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
-    """The parts list: pieces of each bed, pins, material, and all together."""
+    """The parts list: pieces of each bed, pins, parts that hold, material, and all together."""
     found = []
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)
@@ -462,6 +485,13 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
         )
         found.append(pins)
+    found += [
+        PartLine(line.item, count=line.count, diameter_mm=line.diameter_mm, length_mm=line.length_mm, note=line.note)
+        for line in (
+            *hold_lines(job.holds, job.hold),
+            *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
+        )
+    ]
     sheet = f"{job.material.name}; area of the rectangles round what is cut"
     found.append(
         PartLine(
@@ -474,8 +504,8 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
     found.append(
         PartLine(
             "all cuts",
-            count=len(job.assembly.pieces),
-            area_mm2=sum(map(_area, job.assembly.pieces)),
+            count=len(job.whole.pieces),
+            area_mm2=sum(map(_area, job.whole.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.works),
             seconds=sum(work.times.total for work in job.works),
             note=f"on {job.machine.name}",
@@ -521,6 +551,9 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
             lines.append(
                 f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
             )
+        elif part.item != "all cuts":
+            size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
+            lines.append(f"{part.count} {part.item}{f', {size} mm' if size else ''}, {part.note}")
         else:
             lines.append(
                 f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"

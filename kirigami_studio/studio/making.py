@@ -34,6 +34,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     is_pinned,
     is_printed,
     machine_for,
@@ -380,6 +381,9 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         paper=settings.paper,
         order=settings.options.order,
         target=shown,
+        hold=hold_options(settings),
+        holds=made.held.places,
+        drive=made.drive,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
         verdict=verdict.level.value,
