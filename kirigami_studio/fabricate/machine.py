@@ -1,4 +1,4 @@
-"""Machines: reach and speeds of cutters, their materials, and the files of their programs.
+"""Machines: reach and speeds of cutters and printers, their materials, and the files of their programs.
 
 A material's figures hold for one kind of machine.  ``resources/figures`` has those of bundled materials on other kinds,
 a file for each kind with a table for each material: :func:`material_on` puts them together.  Bundled machines stand in
@@ -15,7 +15,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, library
+from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, PRINTER, Material, library
 from kirigami_studio.fabricate.shelf import LARGEST_NUMBER, LEAST_NUMBER, Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
@@ -36,6 +36,7 @@ class MachineKind(StrEnum):
     DIODE = "diode"
     KNIFE = "knife"
     HAND = "hand"
+    PRINTER = "printer"
     OTHER = "other"  #: of materials whose machine has another name
 
     @classmethod
@@ -56,11 +57,13 @@ _WORDS = {
     MachineKind.DIODE: mark("diode laser"),
     MachineKind.KNIFE: mark("cutting plotter"),
     MachineKind.HAND: BY_HAND,
+    MachineKind.PRINTER: PRINTER,
     MachineKind.OTHER: mark("another machine"),
 }
 #: What the names of machines of a kind have in them; the first that fits decides.
 _SIGNS = {
     MachineKind.HAND: ("by hand", "scissors"),
+    MachineKind.PRINTER: ("3d print", "fdm", "fff"),
     MachineKind.DIODE: ("diode",),
     MachineKind.CO2: ("co2", "co₂"),
     MachineKind.UV: ("uv ", "uv-", "ultraviolet", "green"),
@@ -73,10 +76,11 @@ USUAL = {
     MachineKind.DIODE: "diode-10w",
     MachineKind.KNIFE: "cutting-plotter",
     MachineKind.HAND: "hand",
+    MachineKind.PRINTER: "fdm-220",
 }
-#: Profiles that machines may name (``export.profile`` has them) and kinds of cut files.
+#: Profiles that machines may name (``export.profile`` has them) and kinds of files.
 PROFILES = ("any", "lightburn", "k40", "single", "layers", "slots", "cricut", "silhouette", "glowforge", "xtool")
-FILES = (".dxf", ".svg", ".pdf", ".lbrn2")
+FILES = (".dxf", ".svg", ".pdf", ".lbrn2", ".3mf")
 #: Numbers of the machine that older files of materials have.
 OLDER_ENTRIES = (
     "travel_mm_s", "acceleration_mm_s2", "on_delay_s", "off_delay_s", "bed_width_mm", "bed_height_mm",
@@ -128,43 +132,14 @@ def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A cutter and the program that drives it.
+    """A cutter or a printer and the program that drives it."""
 
-    Attributes
-    ----------
-    key : str
-        Short name for the command line and for project files (the file's name).
-    name : str
-        Shown name.
-    kind : MachineKind
-    bed_width_mm, bed_height_mm : float
-        What it reaches; 0 for any size.
-    travel_mm_s : float
-        Speed between cuts.
-    acceleration_mm_s2 : float
-    largest_speed_mm_s : float
-        It cuts no faster, whatever a material asks for; 0 where no limit is known.
-    on_delay_s, off_delay_s : float
-        What it waits at the start of every path (piercing, lowering the blade) and at its end.
-    corner_delay_s : float
-        What it waits at every sharp corner (a scanner that settles, a blade that swivels).
-    thickest_mm : float
-        The thickest sheet that it takes; 0 where no limit is known.
-    canvas_width_mm, canvas_height_mm : float
-        The largest drawing that its program cuts; 0 where that is the bed.
-    profile : str
-        Key of the profile that its program wants cut files in.
-    file : str
-        Extension of the file that its program takes best.
-    note : str
-        Where the numbers come from.
-    """
-
-    key: str = field(metadata=_text())
-    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the list of machines.")))
+    key: str = field(metadata=_text())  #: Short name for the command line and for project files (the file's name)
+    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the list of machines.")))  #: Shown name
     kind: MachineKind = field(
         metadata=Setting(label=mark("Kind"), code="machine.no_such_kind", error=FabricationError).metadata
     )
+    #: bed_width_mm and bed_height_mm: What it reaches; 0 for any size
     bed_width_mm: float = field(
         default=0.0, metadata=_number(mark("Bed width"), mark("Width that the machine reaches; 0: any."), "mm", 5e3, 10)
     )
@@ -172,6 +147,7 @@ class Machine:
         default=0.0,
         metadata=_number(mark("Bed height"), mark("Height that the machine reaches; 0: any."), "mm", 5e3, 10),
     )
+    #: Speed between cuts
     travel_mm_s: float = field(
         default=200.0, metadata=_moving(mark("Travel speed"), mark("Speed between cuts."), "mm/s", 2e4, 20.0)
     )
@@ -179,12 +155,15 @@ class Machine:
         default=1500.0,
         metadata=_moving(mark("Acceleration"), mark("How fast the head accelerates."), "mm/s²", 2e5, 100.0),
     )
+    #: It cuts no faster, whatever a material asks for; 0 where no limit is known
     largest_speed_mm_s: float = field(
         default=0.0,
         metadata=_number(
             mark("Largest speed"), mark("It cuts no faster than this; 0: no limit known."), "mm/s", 2e4, 10
         ),
     )
+    #: on_delay_s and off_delay_s: What it waits at the start of every path (piercing, lowering the blade) and at its
+    #: end
     on_delay_s: float = field(
         default=0.0,
         metadata=_number(
@@ -195,16 +174,19 @@ class Machine:
         default=0.0,
         metadata=_number(mark("Delay after a cut"), mark("Pause after each cut."), "ms", 1e4, 5, scale=1000.0),
     )
+    #: What it waits at every sharp corner (a scanner that settles, a blade that swivels)
     corner_delay_s: float = field(
         default=0.0,
         metadata=_number(mark("Delay at a corner"), mark("Pause at each sharp corner."), "ms", 1e4, 1, scale=1000.0),
     )
+    #: The thickest sheet that it takes; 0 where no limit is known
     thickest_mm: float = field(
         default=0.0,
         metadata=_number(
             mark("Thickest sheet"), mark("Thickest sheet that it takes; 0: no limit known."), "mm", 50, 0.1
         ),
     )
+    #: canvas_width_mm and canvas_height_mm: The largest drawing that its program cuts; 0 where that is the bed
     canvas_width_mm: float = field(
         default=0.0,
         metadata=_number(
@@ -217,8 +199,9 @@ class Machine:
             mark("Canvas height"), mark("Highest drawing that its program cuts; 0: the bed."), "mm", 5e3, 10
         ),
     )
-    profile: str = field(default="any", metadata=_text())
-    file: str = field(default=".dxf", metadata=_text())
+    profile: str = field(default="any", metadata=_text())  #: Key of the profile that its program wants cut files in
+    file: str = field(default=".dxf", metadata=_text())  #: Extension of the file that its program takes best
+    #: Where the numbers come from
     note: str = field(default="", metadata=_text(mark("Note"), mark("Anything worth knowing.")))
 
     def __post_init__(self) -> None:
