@@ -96,6 +96,8 @@ class AssemblyJob:
         The design as a packed project, which the first DXF and SVG carry; empty for none.
     verdict : str
         Level of the verdict on the design; "" where nobody has judged it.
+    width_mm : float
+        Of the flat sheet; 0 where that is not known.
     """
 
     assembly: Assembly
@@ -117,6 +119,7 @@ class AssemblyJob:
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     record: bytes = b""
     verdict: str = ""
+    width_mm: float = 0.0
 
     @cached_property
     def beds(self) -> tuple[CutBed, ...]:
@@ -255,6 +258,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "LAYER": f"{bed.layer}",
         "BED": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
         "PIECES": f"{len(bed.pieces)}",
+        **({"WIDTH_MM": exactly(job.width_mm)} if job.width_mm else {}),
         "PIN_MM": exactly(job.hole_mm),
         "EAR_MM": exactly(job.ear_mm),
         "CLEARANCE_MM": exactly(job.clearance_mm),
@@ -299,18 +303,58 @@ def _bed_written(
     contents = [_content(read, path) for read in how.readers]
     version = "R2010" if kind != ".dxf" else job.dxf_version
     found = agreed(contents, [reader_findings(content, strokes, version, how) for content in contents])
+    return _bed_verified(job, bed, home / path.name, contents, known, found)
+
+
+def read_bed(
+    job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines
+) -> tuple[Verification, list[FoundPiece]]:
+    """Find the pieces of a bed in a file of any origin, by both readers.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+        With the kerf and the profile of the file.
+    bed : CutBed
+        Of that job.
+    path : Path
+        A file, or a folder of layer files.
+    known : KnownOutlines
+        Of the other files of the job.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    """
+    kind = path.suffix.lower()
+    how = FORMATS[".dxf"] if path.is_dir() else PROJECT if kind == ".lbrn2" else FORMATS.get(kind)
+    if how is None:
+        raise ExportError("verify.unknown_kind", path=path, known=", ".join(KINDS))
+    return _bed_verified(job, bed, path, [_content(read, path) for read in how.readers], known, [])
+
+
+def _bed_verified(
+    job: AssemblyJob,
+    bed: CutBed,
+    path: Path,
+    contents: Sequence[FileContent],
+    known: KnownOutlines,
+    found: Sequence[Finding],
+) -> tuple[Verification, list[FoundPiece]]:
+    """The pieces of a bed, with what else was found in its file."""
     of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
-    found += agreed(contents, [findings for findings, _ in of_pieces])
+    findings = (*found, *agreed(contents, [one for one, _ in of_pieces]))
     work = job.works[job.beds.index(bed)]
     verification = Verification(
-        path=home / path.name,
-        ok=all(finding.ok for finding in found),
+        path=path,
+        ok=all(finding.ok for finding in findings),
         size_mm=extent(contents[-1].strokes),
         pieces=len(of_pieces[-1][1]) or None,
         cut_length_mm=work.cut_length_mm,
         seconds_low=work.times.low,
         seconds_high=work.times.high,
-        findings=tuple(found),
+        findings=findings,
         warnings=job.notes,
     )
     return verification, of_pieces[-1][1]

@@ -382,6 +382,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> As
         target=shown,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        width_mm=settings.width_mm,
     )
 
 

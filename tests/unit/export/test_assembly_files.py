@@ -282,6 +282,7 @@ def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folde
                 "machine": SMALL_BED.key, "profile": "any", "kerf_mm": 0.2, "layer": bed.layer,
                 "bed": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
                 "pieces": len(bed.pieces), "pin_mm": HOLE_MM, "ear_mm": EAR_MM, "clearance_mm": CLEARANCE_MM,
+                "width_mm": 0.0, "fastener": "m3", "order": "shortest",
             }  # fmt: skip
             assert report.min_ligament_mm is not None and report.min_ligament_mm >= 1.0 - 1e-3
 
