@@ -14,7 +14,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -49,6 +49,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Angles of the motion from flat to the target.
 ANGLES = 181
@@ -306,9 +307,7 @@ def _bed_written(
     return _bed_verified(job, bed, home / path.name, contents, known, found)
 
 
-def read_bed(
-    job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines
-) -> tuple[Verification, list[FoundPiece]]:
+def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) -> tuple[Verification, list[FoundPiece]]:
     """Find the pieces of a bed in a file of any origin, by both readers.
 
     Parameters
@@ -454,6 +453,7 @@ class PartLine:
     Attributes
     ----------
     item : str
+        One of ``ITEMS``.
     layer, bed : int or None
     file : str
         Stem of the cut file.
@@ -475,7 +475,21 @@ class PartLine:
     note: str = ""
 
 
-COLUMNS = tuple(entry.name for entry in fields(PartLine))
+#: Headings of the columns, by the names of the entries.
+HEADINGS = {
+    "item": mark("item"),
+    "layer": mark("layer"),
+    "bed": mark("bed"),
+    "file": mark("file"),
+    "count": mark("count"),
+    "diameter_mm": mark("diameter_mm"),
+    "length_mm": mark("length_mm"),
+    "area_mm2": mark("area_mm2"),
+    "cut_mm": mark("cut_mm"),
+    "seconds": mark("seconds"),
+    "note": mark("note"),
+}
+ITEMS = {"pieces": mark("pieces"), "pins": mark("pins"), "material": mark("material"), "all cuts": mark("all cuts")}
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
@@ -503,10 +517,10 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             count=len(job.assembly.hinges),
             diameter_mm=job.hole_mm,
             length_mm=job.fastener_length_mm,
-            note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
+            note=tr("{pins}; holes of this diameter, pins at least this long", pins=tr(SIZES[job.fastener].name)),
         )
         found.append(pins)
-    sheet = f"{job.material.name}; area of the rectangles round what is cut"
+    sheet = tr("{material}; area of the rectangles round what is cut", material=tr(job.material.name))
     found.append(
         PartLine(
             "material",
@@ -522,7 +536,7 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             area_mm2=sum(map(_area, job.assembly.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.works),
             seconds=sum(work.times.total for work in job.works),
-            note=f"on {job.machine.name}",
+            note=tr("on {machine}", machine=tr(job.machine.name)),
         )
     )
     return tuple(found)
@@ -535,12 +549,13 @@ def _area(piece: Piece) -> float:
 
 
 def parts_csv(job: AssemblyJob) -> str:
-    """The parts list as a table."""
+    """The parts list as a table; words are in the user's language, numbers have points in all of them."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\r\n")
-    table.writerow(COLUMNS)
+    table.writerow([tr(heading) for heading in HEADINGS.values()])
     for part in parts(job):
-        table.writerow([_cell(getattr(part, column)) for column in COLUMNS])
+        named = replace(part, item=tr(ITEMS[part.item]))
+        table.writerow([_cell(getattr(named, column)) for column in HEADINGS])
     return text.getvalue()
 
 
@@ -554,21 +569,42 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
     """The parts list in sentences for the assembly sheet."""
     lines = []
     for part in parts(job):
+        cut: dict[str, object] = {"cut": part.cut_mm or 0.0, "time": _minutes(part.seconds)}
+        count = part.count or 0
         if part.item == "pieces":
-            lines.append(f"{part.file}: {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
+            one = tr_n(
+                "{file}: {count} piece, cut {cut:.1f} mm, {time}",
+                "{file}: {count} pieces, cut {cut:.1f} mm, {time}",
+                count,
+                file=part.file,
+                **cut,
+            )
         elif part.item == "pins":
-            name = SIZES[job.fastener].name
-            lines.append(
-                f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm"
+            one = tr_n(
+                "{count} pin: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                "{count} pins: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                count,
+                name=tr(SIZES[job.fastener].name),
+                length=part.length_mm,
+                hole=part.diameter_mm,
             )
         elif part.item == "material":
-            lines.append(
-                f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
+            one = tr_n(
+                "{material}: {area:.0f} cm2 on {count} bed",
+                "{material}: {area:.0f} cm2 on {count} beds",
+                count,
+                material=tr(job.material.name),
+                area=(part.area_mm2 or 0.0) / 100.0,
             )
         else:
-            lines.append(
-                f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"
+            one = tr_n(
+                "Together {count} piece, cut {cut:.1f} mm, {time}, {machine}",
+                "Together {count} pieces, cut {cut:.1f} mm, {time}, {machine}",
+                count,
+                machine=part.note,
+                **cut,
             )
+        lines.append(one)
     return tuple(lines)
 
 
@@ -581,6 +617,6 @@ def _about(job: AssemblyJob) -> dict[str, str]:
     """Title and facts for the assembly sheet."""
     facts = {"design": design_hash(job.assembly.deployment, ()), **job.provenance}
     return {
-        "title": job.name or "Kirigami assembly",
+        "title": job.name or tr("Kirigami assembly"),
         "subject": "; ".join(f"{key} {text}" for key, text in facts.items()),
     }
