@@ -240,13 +240,13 @@ def largest_overlap(plan: PinnedPlan, bodies: Sequence[Polygon], angles: Sequenc
     Pieces in one plane are looked at outside of their joints, and have to keep their clearance.
     """
     assembly, options = plan.assembly, plan.options
+    poses = np.array([assembly.poses(phi) for phi in angles])
     plane, shapes = np.array([piece.layer for piece in assembly.pieces]), np.array(bodies, dtype=object)
     if options.in_one_plane:
         plane = np.ones_like(plane)
         joint = 0.5 * options.ear_mm + options.clearance_mm
         pins = [shapely.multipoints([hole.centre for hole in piece.holes]).buffer(joint) for piece in assembly.pieces]
         shapes = shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM)
-    poses = np.array([assembly.poses(phi) for phi in angles])
     found = [one for number in (1, 2) for one in passing(shapes[plane == number], poses[:, plane == number]).overlaps]
     worst = max(found, key=lambda one: one.area_mm2, default=None)
     return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])

@@ -121,14 +121,14 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
 
 
 def beyond_the_bed(made: Assembled, settings: FabricationSettings) -> list[Problem]:
-    """Problems of pieces that are larger than the bed of the machine; prints have those of a plate.
+    """Problems of cut pieces that are larger than the bed of the machine; printed ones have their own.
 
     Raises
     ------
     FabricationError
         No such material.
     """
-    if made.plan.options.in_one_plane:
+    if is_printed(settings):
         return []
     bed, kerf = machine_for(settings).reach_mm, kerf_mm(settings, material_for(settings))
     return bed_problems(made.assembly, bed, kerf, settings.width_mm, pin_sizes(settings).ear_mm)

@@ -339,8 +339,8 @@ def pieces_of(request: CutRequest) -> MadePieces:
     made = assembled(request.candidate, settings, target)
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
     verdict = judge_assembled(request.candidate, made, settings)
-    make_job = _print_job if is_printed(settings) else _assembly_job
-    return MadePieces(made, replace(make_job(request, made, shown), verdict=verdict.level.value), verdict)
+    job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
+    return MadePieces(made, job, verdict)
 
 
 def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
@@ -359,7 +359,7 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
     )
 
 
-def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> AssemblyJob:
+def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.project.store import packed_design
 
@@ -382,6 +382,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> As
         target=shown,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        verdict=verdict.level.value,
         width_mm=settings.width_mm,
     )
 
