@@ -266,15 +266,21 @@ def swept_hulls(
         Sagitta of the chords that stand for the arcs.
     window : (left, bottom, right, top), mm
     """
+    if np.all(drifts == drifts[:, :1]):  # unturned: all corners of a polygon move alike
+        drifts = drifts[:, :1]
     farthest = float(np.abs(drifts).max(initial=0.0))
     steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
-    turned = np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0
-    points = corners[:, None, :] + turned[:, None] * drifts[:, None, :]
+    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0)[:, None] * drifts[:, None, :]
     near = np.ones((len(corners), steps), dtype=bool)
-    for axis, low, high in ((points.real, window[0], window[2]), (points.imag, window[1], window[3])):
-        least, most = axis.min(axis=2), axis.max(axis=2)
-        near &= (np.maximum(most[:, :-1], most[:, 1:]) >= low) & (np.minimum(least[:, :-1], least[:, 1:]) <= high)
+    for corner, shift, low, high in (
+        (corners.real, shifts.real, window[0], window[2]),
+        (corners.imag, shifts.imag, window[1], window[3]),
+    ):
+        least, most = shift.min(axis=2), shift.max(axis=2)
+        near &= corner.max(axis=1)[:, None] + np.maximum(most[:, :-1], most[:, 1:]) >= low
+        near &= corner.min(axis=1)[:, None] + np.minimum(least[:, :-1], least[:, 1:]) <= high
     polygon, step = np.nonzero(near)
-    both = np.concatenate([points[polygon, step], points[polygon, step + 1]], axis=1)
+    both = [corners[polygon] + shifts[polygon, step + end] for end in (0, 1)]
     # Hulls of lines, which are quicker to make than multipoints.
-    return np.asarray(shapely.convex_hull(shapely.linestrings(as_points(both))), dtype=object).reshape(-1)
+    lines = shapely.linestrings(as_points(np.concatenate(both, axis=1)))
+    return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)
