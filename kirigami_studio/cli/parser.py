@@ -248,11 +248,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
     SubCommand("check", "read a cut file and list its problems", "fabrication:check", (
-        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
+        option("file", nargs="+",
+               help="a DXF of any program, an SVG that this one exported, or a folder of layer files; "
+                    "several, such as both layers of a pinned design, are judged together"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
-    ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri")),
+    ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri",
+        "kirigami-studio check heart/layer-1.dxf heart/layer-2.dxf --design heart.kiri")),
     SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help=".gif file to write"),

@@ -14,7 +14,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -54,6 +54,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Angles of the motion from flat to the target.
 ANGLES = 181
@@ -109,6 +110,8 @@ class AssemblyJob:
         Where they are.
     drive : DriveParts or None
         Board and arms that move it.
+    width_mm : float
+        Of the flat sheet; 0 where that is not known.
     """
 
     assembly: Assembly
@@ -133,6 +136,7 @@ class AssemblyJob:
     hold: HoldOptions = field(default_factory=HoldOptions)
     holds: tuple[HoldPlace, ...] = ()
     drive: DriveParts | None = None
+    width_mm: float = 0.0
 
     @property
     def whole(self) -> Assembly:
@@ -277,6 +281,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "LAYER": f"{bed.layer}",
         "BED": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
         "PIECES": f"{len(bed.pieces)}",
+        **({"WIDTH_MM": exactly(job.width_mm)} if job.width_mm else {}),
         "PIN_MM": exactly(job.hole_mm),
         "EAR_MM": exactly(job.ear_mm),
         "CLEARANCE_MM": exactly(job.clearance_mm),
@@ -321,18 +326,56 @@ def _bed_written(
     contents = [_content(read, path) for read in how.readers]
     version = "R2010" if kind != ".dxf" else job.dxf_version
     found = agreed(contents, [reader_findings(content, strokes, version, how) for content in contents])
+    return _bed_verified(job, bed, home / path.name, contents, known, found)
+
+
+def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) -> tuple[Verification, list[FoundPiece]]:
+    """Find the pieces of a bed in a file of any origin, by both readers.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+        With the kerf and the profile of the file.
+    bed : CutBed
+        Of that job.
+    path : Path
+        A file, or a folder of layer files.
+    known : KnownOutlines
+        Of the other files of the job.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    """
+    kind = path.suffix.lower()
+    how = FORMATS[".dxf"] if path.is_dir() else PROJECT if kind == ".lbrn2" else FORMATS.get(kind)
+    if how is None:
+        raise ExportError("verify.unknown_kind", path=path, known=", ".join(KINDS))
+    return _bed_verified(job, bed, path, [_content(read, path) for read in how.readers], known, [])
+
+
+def _bed_verified(
+    job: AssemblyJob,
+    bed: CutBed,
+    path: Path,
+    contents: Sequence[FileContent],
+    known: KnownOutlines,
+    found: Sequence[Finding],
+) -> tuple[Verification, list[FoundPiece]]:
+    """The pieces of a bed, with what else was found in its file."""
     of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
-    found += agreed(contents, [findings for findings, _ in of_pieces])
+    findings = (*found, *agreed(contents, [one for one, _ in of_pieces]))
     work = job.works[job.beds.index(bed)]
     verification = Verification(
-        path=home / path.name,
-        ok=all(finding.ok for finding in found),
+        path=path,
+        ok=all(finding.ok for finding in findings),
         size_mm=extent(contents[-1].strokes),
         pieces=len(of_pieces[-1][1]) or None,
         cut_length_mm=work.cut_length_mm,
         seconds_low=work.times.low,
         seconds_high=work.times.high,
-        findings=tuple(found),
+        findings=findings,
         warnings=job.notes,
     )
     return verification, of_pieces[-1][1]
@@ -433,6 +476,7 @@ class PartLine:
     Attributes
     ----------
     item : str
+        One of ``ITEMS``.
     layer, bed : int or None
     file : str
         Stem of the cut file.
@@ -454,7 +498,21 @@ class PartLine:
     note: str = ""
 
 
-COLUMNS = tuple(entry.name for entry in fields(PartLine))
+#: Headings of the columns, by the names of the entries.
+HEADINGS = {
+    "item": mark("item"),
+    "layer": mark("layer"),
+    "bed": mark("bed"),
+    "file": mark("file"),
+    "count": mark("count"),
+    "diameter_mm": mark("diameter_mm"),
+    "length_mm": mark("length_mm"),
+    "area_mm2": mark("area_mm2"),
+    "cut_mm": mark("cut_mm"),
+    "seconds": mark("seconds"),
+    "note": mark("note"),
+}
+ITEMS = {"pieces": mark("pieces"), "pins": mark("pins"), "material": mark("material"), "all cuts": mark("all cuts")}
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
@@ -482,7 +540,7 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             count=len(job.assembly.hinges),
             diameter_mm=job.hole_mm,
             length_mm=job.fastener_length_mm,
-            note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
+            note=tr("{pins}; holes of this diameter, pins at least this long", pins=tr(SIZES[job.fastener].name)),
         )
         found.append(pins)
     found += [
@@ -492,7 +550,7 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
         )
     ]
-    sheet = f"{job.material.name}; area of the rectangles round what is cut"
+    sheet = tr("{material}; area of the rectangles round what is cut", material=tr(job.material.name))
     found.append(
         PartLine(
             "material",
@@ -508,7 +566,7 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             area_mm2=sum(map(_area, job.whole.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.works),
             seconds=sum(work.times.total for work in job.works),
-            note=f"on {job.machine.name}",
+            note=tr("on {machine}", machine=tr(job.machine.name)),
         )
     )
     return tuple(found)
@@ -521,12 +579,13 @@ def _area(piece: Piece) -> float:
 
 
 def parts_csv(job: AssemblyJob) -> str:
-    """The parts list as a table."""
+    """The parts list as a table; words are in the user's language, numbers have points in all of them."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\r\n")
-    table.writerow(COLUMNS)
+    table.writerow([tr(heading) for heading in HEADINGS.values()])
     for part in parts(job):
-        table.writerow([_cell(getattr(part, column)) for column in COLUMNS])
+        named = replace(part, item=tr(ITEMS[part.item]))
+        table.writerow([_cell(getattr(named, column)) for column in HEADINGS])
     return text.getvalue()
 
 
@@ -540,24 +599,45 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
     """The parts list in sentences for the assembly sheet."""
     lines = []
     for part in parts(job):
+        cut: dict[str, object] = {"cut": part.cut_mm or 0.0, "time": _minutes(part.seconds)}
+        count = part.count or 0
         if part.item == "pieces":
-            lines.append(f"{part.file}: {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
+            one = tr_n(
+                "{file}: {count} piece, cut {cut:.1f} mm, {time}",
+                "{file}: {count} pieces, cut {cut:.1f} mm, {time}",
+                count,
+                file=part.file,
+                **cut,
+            )
         elif part.item == "pins":
-            name = SIZES[job.fastener].name
-            lines.append(
-                f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm"
+            one = tr_n(
+                "{count} pin: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                "{count} pins: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                count,
+                name=tr(SIZES[job.fastener].name),
+                length=part.length_mm,
+                hole=part.diameter_mm,
             )
         elif part.item == "material":
-            lines.append(
-                f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
+            one = tr_n(
+                "{material}: {area:.0f} cm2 on {count} bed",
+                "{material}: {area:.0f} cm2 on {count} beds",
+                count,
+                material=tr(job.material.name),
+                area=(part.area_mm2 or 0.0) / 100.0,
             )
         elif part.item != "all cuts":
             size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
-            lines.append(f"{part.count} {part.item}{f', {size} mm' if size else ''}, {part.note}")
+            one = f"{part.count} {tr(part.item)}{f', {size} mm' if size else ''}, {part.note}"
         else:
-            lines.append(
-                f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"
+            one = tr_n(
+                "Together {count} piece, cut {cut:.1f} mm, {time}, {machine}",
+                "Together {count} pieces, cut {cut:.1f} mm, {time}, {machine}",
+                count,
+                machine=part.note,
+                **cut,
             )
+        lines.append(one)
     return tuple(lines)
 
 
@@ -570,6 +650,6 @@ def _about(job: AssemblyJob) -> dict[str, str]:
     """Title and facts for the assembly sheet."""
     facts = {"design": design_hash(job.assembly.deployment, ()), **job.provenance}
     return {
-        "title": job.name or "Kirigami assembly",
+        "title": job.name or tr("Kirigami assembly"),
         "subject": "; ".join(f"{key} {text}" for key, text in facts.items()),
     }

@@ -45,6 +45,7 @@ from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Fill and edge of the pieces of each layer: the first solid, the other lighter; then arms, board and handle.
 FILLS: Mapping[int, Colour] = {
@@ -71,14 +72,18 @@ GAP_MM = 8.0
 #: Pins that a page lists in a column, columns on a page, and pictures of beds in a row.
 COLUMNS, BEDS_IN_A_ROW = 2, 2
 STEPS = (
-    "Engraved numbers and bars face you in both layers; the bar is below the number. Without engraving, number the "
-    "pieces by the pictures of the beds.",
-    "Lay the pieces of layer 2 (light) on the page at true size, each on its number.",
-    "Lay the pieces of layer 1 (dark) over them, hole on hole.",
-    "Put in the pins row by row from the top, in the order of the list; leave them loose.",
-    "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn.",
+    mark(
+        "Engraved numbers and bars face you in both layers; the bar is below the number. Without engraving, number the "
+        "pieces by the pictures of the beds."
+    ),
+    mark("Lay the pieces of layer 2 (light) on the page at true size, each on its number."),
+    mark("Lay the pieces of layer 1 (dark) over them, hole on hole."),
+    mark("Put in the pins row by row from the top, in the order of the list; leave them loose."),
+    mark(
+        "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn."
+    ),
 )
-LEGEND: Mapping[int, str] = {1: "layer 1, in front", 2: "layer 2, behind"}
+LEGEND: Mapping[int, str] = {1: mark("layer 1, in front"), 2: mark("layer 2, behind")}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,7 +155,13 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
         _page_of_drive(canvas, sheet.drive, upright)
         before += 1
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
-    about = f"{sheet.about['title']}, flat, at true size: {flat.size[0]:.1f} x {flat.size[1]:.1f} mm"
+    width, height = flat.size
+    about = tr(
+        "{title}, flat, at true size: {width:.1f} x {height:.1f} mm",
+        title=sheet.about["title"],
+        width=width,
+        height=height,
+    )
     draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
     canvas.save()
     content = stream.getvalue()
@@ -386,23 +397,25 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
     scale = min(_fitting(flat, room), _fitting(opened, room))
     degrees = math.degrees(sheet.assembly.phi_target)
     height = scale * max(flat.size[1], opened.size[1])
-    for number, (drawing, words) in enumerate(((flat, "Flat"), (opened, f"Opened, {degrees:.0f} degrees"))):
+    for number, (drawing, words) in enumerate(
+        ((flat, tr("Flat")), (opened, tr("Opened, {angle:.0f} degrees", angle=degrees)))
+    ):
         left = MARGIN_MM + number * (width + GAP_MM)
         _ink(canvas)
         canvas.setFont("Helvetica-Bold", HEAD_POINTS)
-        canvas.drawString(left * mm, top * mm, words)
+        canvas.drawString(left * mm, top * mm, _printable(words))
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
     _legend(canvas, sheet.legend, y, scale, held=bool(sheet.holds))
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
-    column.head("Parts")
+    column.head(tr("Parts"))
     for line in sheet.lines:
         column.text(line)
-    column.head("Assembly")
+    column.head(tr("Assembly"))
     held = [HOLD_STEPS[kind] for kind in dict.fromkeys(place.kind for place in sheet.holds)]
     for number, line in enumerate((*sheet.steps, *held), start=1):
-        column.text(line, f"{number}.")
+        column.text(tr(line), f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
@@ -418,21 +431,21 @@ def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float, *, h
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
-        x = _words(canvas, words, x + 6.0, y)
+        x = _words(canvas, tr(words), x + 6.0, y)
     stroke_colour(canvas, PIN)
     draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
-    x = _words(canvas, "pin", x + 5.0, y)
+    x = _words(canvas, tr("pin"), x + 5.0, y)
     if held:
         _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
-        x = _words(canvas, "keeps it so", x + 5.0, y)
-    _words(canvas, f"pictures at 1 : {1.0 / scale:.1f}", x, y)
+        x = _words(canvas, tr("keeps it so"), x + 5.0, y)
+    _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)
 
 
 def _words(canvas: Any, words: str, x: float, y: float) -> float:
     """Write on a line, and return where the next words may begin, mm."""
     _ink(canvas)
     canvas.setFont("Helvetica", TEXT_POINTS)
-    canvas.drawString(x * mm, (y + 0.6) * mm, words)
+    canvas.drawString(x * mm, (y + 0.6) * mm, _printable(words))
     return float(x + canvas.stringWidth(words, "Helvetica", TEXT_POINTS) / mm + 6.0)
 
 
@@ -458,12 +471,12 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
     width = (page[0] - 2.0 * MARGIN_MM - (COLUMNS - 1) * GAP_MM) / COLUMNS
     lines: list[tuple[bool, str]] = []
     for number, row in enumerate(pins_in_order(sheet.assembly), start=1):
-        lines.append((True, f"Row {number}: {len(row)} pins"))
+        lines.append((True, tr_n("Row {row}: {count} pin", "Row {row}: {count} pins", len(row), row=number)))
         text = ", ".join(f"{hinge.pieces[0]}+{hinge.pieces[1]}" for hinge in row)
         lines += [(False, line) for line in textwrap.wrap(text, int(width * LETTERS_PER_MM), break_on_hyphens=False)]
     pages, at = 0, 0
     while at < len(lines):
-        top = _title(canvas, "Pins in order" if pages == 0 else "Pins in order, continued", page)
+        top = _title(canvas, tr("Pins in order") if pages == 0 else tr("Pins in order, continued"), page)
         for number in range(COLUMNS):
             column = _Column(canvas, MARGIN_MM + number * (width + GAP_MM), top, width)
             while at < len(lines) and column.y > MARGIN_MM + FOOTER_MM + 3.0 * LINE_STEP_MM:
@@ -507,7 +520,7 @@ def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
     drawings = [_Drawing.of_bed(bed) for bed in beds]
     at, pages = 0, 0
     while at < len(beds):
-        y = _title(canvas, "Pieces on their beds", page)
+        y = _title(canvas, tr("Pieces on their beds"), page)
         while at < len(beds):
             row = range(at, min(at + BEDS_IN_A_ROW, len(beds)))
             room = (width, 0.3 * page[1])
@@ -519,8 +532,15 @@ def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
                 left, size = MARGIN_MM + number * (width + GAP_MM), drawings[one].size
                 _ink(canvas)
                 canvas.setFont("Helvetica-Bold", TEXT_POINTS)
-                words = f"{beds[one].name}: {len(beds[one].pieces)} pieces, {size[0]:.1f} x {size[1]:.1f} mm"
-                canvas.drawString(left * mm, y * mm, words)
+                words = tr_n(
+                    "{bed}: {count} piece, {width:.1f} x {height:.1f} mm",
+                    "{bed}: {count} pieces, {width:.1f} x {height:.1f} mm",
+                    len(beds[one].pieces),
+                    bed=beds[one].name,
+                    width=size[0],
+                    height=size[1],
+                )
+                canvas.drawString(left * mm, y * mm, _printable(words))
                 _draw(canvas, drawings[one], scale, np.array([left, y - 3.0 - scale * size[1]]))
             y -= high + 3.0 + GAP_MM
             at = row.stop

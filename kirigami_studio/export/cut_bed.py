@@ -159,6 +159,11 @@ def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
     return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
+def bed_name(layer: int, number: int) -> str:
+    """Stem of the file of a bed of a layer, or of the drive's board, by its number from 1."""
+    return (BOARD if layer > LAYERS else f"layer-{layer}") + (f"-b{number}" if number > 1 else "")
+
+
 @dataclass(frozen=True, eq=False)
 class CutBed:
     """Pieces on one bed, which one file cuts.
@@ -182,8 +187,7 @@ class CutBed:
     @property
     def name(self) -> str:
         """Stem of its file: ``layer-1``, ``layer-1-b2``, ``board``."""
-        stem = BOARD if self.layer > LAYERS else f"layer-{self.layer}"
-        return stem + (f"-b{self.number}" if self.number > 1 else "")
+        return bed_name(self.layer, self.number)
 
     @property
     def size_mm(self) -> tuple[float, float]:

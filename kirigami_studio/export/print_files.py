@@ -33,29 +33,38 @@ from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Kinds of files that are written, the one for slicers first.
 KINDS = (".3mf", ".stl", ".obj")
 PIECES, SHEET = assembly_files.PIECES, assembly_files.SHEET
 OWN_NAME = re.compile(rf"(plate-[1-9]\d*|caps)\.(3mf|stl|obj)|{assembly_files.OWN_NAME.pattern}")
 STEPS = (
-    "Open the .3mf of a plate in the slicer (or its .stl): it is in mm, and lies on the plate as it is printed. Do not "
-    "turn, split or arrange its parts, for they are hooked into each other.",
-    "Print without support, in layers of {layer_mm:g} mm with a nozzle of 0.4 mm, the first layer no wider than the "
-    "others: switch on the compensation of the elephant's foot. A brim must not reach into joints.",
-    "Let the plate cool down before the print is taken off, flat and in one piece.",
-    "Free the joints from the rim inwards: hold one piece and turn its neighbour to and fro by a few degrees until it "
-    "clicks. Where the first layer has fused, cut along the ring with a thin blade from below.",
-    "Open the whole sheet slowly, a few times to and fro. Where joints stay stiff, print with more clearance.",
+    mark(
+        "Open the .3mf of a plate in the slicer (or its .stl): it is in mm, and lies on the plate as it is printed. "
+        "Do not turn, split or arrange its parts, for they are hooked into each other."
+    ),
+    mark(
+        "Print without support, in layers of {layer_mm:g} mm with a nozzle of 0.4 mm, the first layer no wider than "
+        "the others: switch on the compensation of the elephant's foot. A brim must not reach into joints."
+    ),
+    mark("Let the plate cool down before the print is taken off, flat and in one piece."),
+    mark(
+        "Free the joints from the rim inwards: hold one piece and turn its neighbour to and fro by a few degrees "
+        "until it clicks. Where the first layer has fused, cut along the ring with a thin blade from below."
+    ),
+    mark("Open the whole sheet slowly, a few times to and fro. Where joints stay stiff, print with more clearance."),
 )
 JOINING = (
-    "Lay the plates side by side as in the flat picture, from the lower right to the upper left. Each part lowers its "
-    "pins into the rings of those right of it and below it; press a cap on each from below with a drop of glue on the "
-    "pin alone, and turn the joint while it sets.",
+    mark(
+        "Lay the plates side by side as in the flat picture, from the lower right to the upper left. Each part lowers "
+        "its pins into the rings of those right of it and below it; press a cap on each from below with a drop of glue "
+        "on the pin alone, and turn the joint while it sets."
+    ),
 )
 #: Stem of the files of caps.
 CAPS = "caps"
-LEGEND = {1: "pieces with pins", 2: "pieces with rings"}
+LEGEND = {1: mark("pieces with pins"), 2: mark("pieces with rings")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,19 +202,46 @@ class PrintJob:
     def lines(self) -> tuple[str, ...]:
         """Figures of the print in sentences."""
         plates = [
-            f"{plate.name}: {plate.size_mm[0]:.1f} x {plate.size_mm[1]:.1f} mm on the plate, {len(plate.placed)} pieces"
+            tr_n(
+                "{plate}: {width:.1f} x {depth:.1f} mm on the plate, {count} piece",
+                "{plate}: {width:.1f} x {depth:.1f} mm on the plate, {count} pieces",
+                len(plate.placed),
+                plate=plate.name,
+                width=plate.size_mm[0],
+                depth=plate.size_mm[1],
+            )
             for plate in self.plates
         ]
         if self.seams:
-            plates.append(f"caps: {len(self.seams)} feet for the pins at the seams between plates")
-        pins = self.pins
+            plates.append(
+                tr_n(
+                    "caps: {count} foot for the pins at the seams between plates",
+                    "caps: {count} feet for the pins at the seams between plates",
+                    len(self.seams),
+                )
+            )
+        pins, layers = self.pins, round(self.thickness_mm / LAYER_MM)
         return (
             *plates,
-            f"{self.thickness_mm:g} mm thick, {round(self.thickness_mm / LAYER_MM)} layers of {LAYER_MM:g} mm",
-            f"{len(self.assembly.hinges)} joints: ears {pins.ear_mm:g} mm, pins {pins.pin_mm:g} mm, clearance "
-            f"{pins.clearance_mm:g} mm",
-            f"{self.material.name}: {self.volume_mm3 / 1000.0:.1f} cm3 where it is solid; weight and time are told by "
-            "the slicer",
+            tr(
+                "{thickness:g} mm thick, {layers} layers of {layer:g} mm",
+                thickness=self.thickness_mm,
+                layers=layers,
+                layer=LAYER_MM,
+            ),
+            tr_n(
+                "{count} joint: ears {ear:g} mm, pins {pin:g} mm, clearance {clearance:g} mm",
+                "{count} joints: ears {ear:g} mm, pins {pin:g} mm, clearance {clearance:g} mm",
+                len(self.assembly.hinges),
+                ear=pins.ear_mm,
+                pin=pins.pin_mm,
+                clearance=pins.clearance_mm,
+            ),
+            tr(
+                "{material}: {volume:.1f} cm3 where it is solid; weight and time are told by the slicer",
+                material=tr(self.material.name),
+                volume=self.volume_mm3 / 1000.0,
+            ),
         )
 
 
@@ -232,10 +268,9 @@ def write_print(
         for kind in kinds if job.caps else ():
             write_plate(job.caps, fresh / f"{CAPS}{kind}", job.about)
         write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
-        steps = tuple(
-            step.format(layer_mm=LAYER_MM) for step in (*STEPS[:-1], *(JOINING if job.seams else ()), STEPS[-1])
-        )
-        about = {"title": job.name or "Printed kirigami", "subject": job.about}
+        joining = JOINING if job.seams else ()
+        steps = tuple(tr(step, layer_mm=LAYER_MM) for step in (*STEPS[:-1], *joining, STEPS[-1]))
+        about = {"title": job.name or tr("Printed kirigami"), "subject": job.about}
         sheet = AssemblySheet(job.assembly, (), about, job.lines, job.target, steps, LEGEND, pins_are_put_in=False)
         write_assembly_pdf(sheet, fresh / SHEET, job.paper)
         names = sorted(entry.name for entry in fresh.iterdir())

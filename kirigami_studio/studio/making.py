@@ -387,6 +387,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
         verdict=verdict.level.value,
+        width_mm=settings.width_mm,
     )
 
 

@@ -322,6 +322,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The project does not have the design {design} that the file was made of. Name the project that it was "
         "exported from."
     ),
+    "check.bed_unknown": mark(
+        "The design has no bed {bed:.40}. Name the project that the file was exported from, or export it again."
+    ),
+    "check.bed_twice": mark("The bed {bed:.40} was given twice. Give one file of each bed."),
+    "check.beds_of_several": mark(
+        "The files were made of several designs, or with other sizes. Give the files of one export."
+    ),
+    "check.beds_missing": mark(
+        "Not looked at: {beds:.200}. Give the files of all beds to have the pieces in them put together."
+    ),
     "cut_file.name_alone": mark("The file holds only an engraved name and no cuts."),
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import shutil
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from kirigami_studio.assembly.driving import driven
 from kirigami_studio.assembly.holding import held, with_places
 from kirigami_studio.assembly.pieces import Assembly, RoundHole
 from kirigami_studio.assembly.pinned import pinned
+from kirigami_studio.export import assembly_files, pieces_read
 from kirigami_studio.export.assembly_files import (
     ANGLES,
     KINDS,
@@ -41,6 +43,7 @@ from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.hold import HoldKind, HoldOptions, HoldWhen
 from kirigami_studio.fabricate.machine import machine_of
 from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ExportError
 from tests.unit.assembly.pinned_designs import pinwheel
 
@@ -290,6 +293,7 @@ def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folde
                 "machine": SMALL_BED.key, "profile": "any", "kerf_mm": 0.2, "layer": bed.layer,
                 "bed": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
                 "pieces": len(bed.pieces), "pin_mm": HOLE_MM, "ear_mm": EAR_MM, "clearance_mm": CLEARANCE_MM,
+                "width_mm": 0.0, "fastener": "m3", "order": "shortest",
             }  # fmt: skip
             assert report.min_ligament_mm is not None and report.min_ligament_mm >= 1.0 - 1e-3
 
@@ -395,3 +399,41 @@ def test_that_a_hole_that_holds_nothing_is_found_on_reading_back() -> None:
     moved = [RoundHole(np.add(hole.centre, 0.01), hole.diameter_mm) for hole in found[name].holes]
     wrong = {**found, name: replace(found[name], holes=tuple(moved))}
     assert [finding.code for finding in hold_findings(wrong, record)] == ["verify.holds_miss"]
+
+
+def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_out_once(
+    assembly: Assembly, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work: Counter[str] = Counter()
+    for module, name in (
+        (pieces_read, "_finished"),
+        (pieces_read, "passing"),
+        (pieces_read, "_pin_finding"),
+        (assembly_files, "_bed_written"),
+    ):
+        original = getattr(module, name)
+
+        def counted(*given: Any, _name: str = name, _original: Any = original, **named: Any) -> Any:
+            work[_name] += 1
+            return _original(*given, **named)
+
+        monkeypatch.setattr(module, name, counted)
+    job = job_of(assembly, verdict="ready_to_cut")
+    write_assembly(job, tmp_path / "out", judged=lambda _: "ready_to_cut")
+    assert work["_bed_written"] == len(KINDS) * len(job.beds), "the verdict was known before: nothing is written twice"
+    assert work["_finished"] == len(assembly.pieces), "every outline once, whatever the kind and the reader"
+    assert work["passing"] == 2, "both layers are moved once"
+    assert work["_pin_finding"] == len(KINDS), "holes are compared in files of every kind"
+
+
+def test_that_sheet_and_parts_list_are_german_in_german(job: AssemblyJob, tmp_path: Path) -> None:
+    words.choose("de")
+    write_assembly(replace(job), tmp_path / "out", kinds=())
+    rows = list(csv.DictReader((tmp_path / "out" / "parts.csv").read_text(encoding="utf-8").splitlines()))
+    assert {row["Posten"] for row in rows} == {"Teile", "Stifte", "Material", "alle Schnitte"}
+    assert all("," not in row["Schnitt_mm"] for row in rows)
+    text = "".join(page.extract_text() for page in PdfReader(tmp_path / "out" / "assembly.pdf").pages)
+    for said in ("Zusammenbau", "Stifte der Reihe nach", "Teile auf ihren Betten", "Mit 100 % drucken", "Lage 1, vorn"):
+        assert said in text
+    for english in ("Pins in order", "Parts", "layer 1, in front", "Print at"):
+        assert english not in text
