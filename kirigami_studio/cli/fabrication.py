@@ -45,8 +45,8 @@ from kirigami_studio.studio.making import (
     Output,
     chosen_candidate,
     closed,
-    export_job,
     fixing,
+    picture_job,
     planned,
     writes_pieces,
     written,
@@ -321,9 +321,10 @@ def animate(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    job = export_job(CutRequest.of(document), None)
-    if arguments.as_cut:
-        job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
+    request = CutRequest.of(document, overridden(document.fabrication, arguments))
+    job = picture_job(request)
+    if arguments.as_cut and not request.is_pinned:  # pieces move as the ideal sheet does
+        job = replace(job, motion=_cut_motion(document, request.settings))
     frames, motion = write_animation(job, path, FRAMES), job.motion
     if arguments.json:
         answer: dict[str, object] = {"frames": frames, "files": [str(path)]}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.assembly.solids import Printing
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -62,6 +63,8 @@ class ExportJob:
         Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it.
     printing : Printing
         How files of solids are made: the planned sheet, as thick as its material, unless given.
+    pieces : PosedPieces or None
+        What pictures show of a design that is made of pieces; None where panels are what is made.
     """
 
     deployment: Deployment
@@ -82,6 +85,7 @@ class ExportJob:
     simulated_jam: float | None = None
     verdict: str = ""
     printing: Printing = field(default_factory=Printing)
+    pieces: PosedPieces | None = None
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
