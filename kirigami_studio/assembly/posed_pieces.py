@@ -1,4 +1,4 @@
-"""Pieces over their target at any angle, layer by layer, with the look of their material: for all pictures of them.
+"""Pieces over their target at any angle, layer by layer, in the look of their material.
 
 Windows, bitmaps and drawings take outlines, places and colours from here.  An assembly may have any number of layers,
 and no pins: then it has no heads.
@@ -133,7 +133,7 @@ class PosedPieces:
         return uppermost, as_plane(at)
 
     def places(self, phi: float) -> tuple[ComplexArray, ComplexArray]:
-        """Factor and shift (P,) that take a piece's frame (x + iy, mm) into the world at an angle (radians)."""
+        """Factors and shifts (P,) from the frames of pieces (x + iy, mm) into the world, at an angle."""
         pose, poses = self.design.pose_at(phi), self.assembly.poses(phi)
         per_mm = pose.factor / self.assembly.cell_mm
         return per_mm * np.exp(1j * poses[:, 2]), per_mm * as_plane(poses[:, :2]) + complex(*pose.shift)

@@ -145,7 +145,7 @@ def png_of_bands(size: tuple[int, int], bands: Iterable[NDArray[np.uint8]], fact
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
-    """Draw the layout at the job's angle over the target: its pieces, or as cut if there is such a motion."""
+    """Draw the layout at the job's angle over the target: pieces, or panels as cut or ideal."""
     if job.pieces is not None:
         frame = PictureFrame.around(shown_points(job.pieces, (job.shown_phi,), job.target), longest)
         return draw_pieces(job.pieces, job.shown_phi, frame, job.target)
@@ -192,13 +192,13 @@ def draw_polygons(
 
 
 def shown_points(pieces: PosedPieces, angles: Iterable[float], target: FloatArray | None) -> list[FloatArray]:
-    """Points that a picture of pieces at some angles (radians) has to show, and those of their target."""
+    """Points of pieces at some angles (radians), and of their target."""
     clouds = [pieces.points(phi) for phi in angles]
     return clouds if target is None else [*clouds, target]
 
 
 def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
-    """Draw pieces layer by layer, with shadows and the heads of pins, over a target outline (L, 2).
+    """Draw pieces layer by layer, with shadows and heads, over a target outline (L, 2).
 
     The target's outline is repeated on top.
     """

@@ -321,7 +321,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
 
 
 def posed_pieces(request: CutRequest) -> PosedPieces | None:
-    """The pieces of a design over its target, for pictures; None for one that is not made of pieces.
+    """The pieces of a design over its target; None for one that is not made of pieces.
 
     Raises
     ------
@@ -338,7 +338,7 @@ def posed_pieces(request: CutRequest) -> PosedPieces | None:
 
 
 def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[tuple[CutRequest, PosedPieces | None]]:
-    """Make the pieces of designs for their thumbnails, one after the other; None for those that cannot be made."""
+    """Make the pieces of designs for thumbnails; None for designs without."""
     importing.import_as_cut()
     for request in requests:
         try:
@@ -502,7 +502,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
 
 
 def picture_job(request: CutRequest) -> ExportJob:
-    """What pictures and animations get about a design: with its pieces, where it is made of pieces.
+    """Job of pictures and animations, with the pieces of a design that is made of them.
 
     Raises
     ------
@@ -513,7 +513,7 @@ def picture_job(request: CutRequest) -> ExportJob:
 
 
 def printed_job(request: CutRequest, cancel: Cancel = never) -> ExportJob:
-    """What the files of a printed sheet get about a design.
+    """Job of the files of a printed sheet.
 
     Raises
     ------

@@ -107,7 +107,7 @@ class Cards(QStyledItemDelegate):
 
     @abstractmethod
     def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float, pieces: PosedPieces | None) -> QPixmap:
-        """Draw that part; ``thin`` panels break in the material, ``pieces`` take the place of panels."""
+        """Draw the picture; ``thin`` panels break in the material, ``pieces`` take their place."""
 
     @abstractmethod
     def write(self, painter: QPainter, card: QRect, index: Index) -> None:

@@ -167,9 +167,9 @@ def candidate_pixmap(
     palette: Palette,
     pieces: PosedPieces | None = None,
 ) -> QPixmap:
-    """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat.
+    """Return the picture for a gallery card: the sheet over its target, and flat.
 
-    ``pieces`` are drawn in the place of panels.
+    ``size`` is in logical pixels; ``pieces`` are drawn in the place of panels.
     """
     pixmap = blank(size, ratio)
     painter = painter_on(pixmap)

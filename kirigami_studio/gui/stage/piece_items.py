@@ -1,4 +1,4 @@
-"""Paint pieces in layers: their faces in the colours of the material, shadows, and the heads of pins."""
+"""Paint pieces in layers: faces in the colours of the material, shadows, heads of pins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pieces of designs that are in sight, made in the worker one after the other; until then panels are drawn."""
+"""Pieces of the designs in sight, made in the worker one after the other."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ DELAY_MS = 120
 
 
 class PieceReader(QObject):
-    """Keeps the pieces of designs as they are cut now; earlier ones are shown until the new ones are there.
+    """Pieces of designs as they are cut now; earlier ones are shown until these are there.
 
     Nothing is made while a run goes on: its designs are not final.
 
