@@ -133,7 +133,7 @@ class PosedPieces:
         return uppermost, as_plane(at)
 
     def places(self, phi: float) -> tuple[ComplexArray, ComplexArray]:
-        """Factors and shifts (P,) from the frames of pieces (x + iy, mm) into the world, at an angle."""
+        """Factors and shifts (P,) from frames of pieces (x + iy, mm) into the world, at an angle."""
         pose, poses = self.design.pose_at(phi), self.assembly.poses(phi)
         per_mm = pose.factor / self.assembly.cell_mm
         return per_mm * np.exp(1j * poses[:, 2]), per_mm * as_plane(poses[:, :2]) + complex(*pose.shift)
