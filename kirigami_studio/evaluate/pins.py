@@ -170,7 +170,7 @@ def kept_apart(before: Sheet, wanted: Sheet, least: float) -> Sheet:
 
 
 def _one_hand(before: Sheet, after: Sheet) -> bool:
-    """Whether every void has its longer side where it had it: between lies a ratio at which pins meet."""
+    """Whether every void has its longer side where it had it; pins meet between both sides."""
     return bool(np.all(before.field.log10 * after.field.log10 >= 0.0))
 
 

@@ -767,16 +767,20 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes, find_piece_fixes
     from kirigami_studio.studio.verdict import refused
 
+    coarser = () if run is None else coarser_designs(request.candidate, run)
+    if request.is_pinned and request.target is not None:
+        steps = find_piece_fixes(request.candidate, request.settings, verdict, request.target, others, coarser)
+        yield from in_turns(steps, cancel)
+        return
     try:
         planned(request, cancel)
     except Cancelled:
         raise
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
-    coarser = () if run is None else coarser_designs(request.candidate, run)
     steps = find_fixes(request.candidate, request.settings, verdict, others, coarser, request.target)
     yield from in_turns(steps, cancel)
 

@@ -120,6 +120,22 @@ def test_that_the_stage_shows_both_layers_in_the_colours_of_the_theme(
     assert colour_of(pieces.look.face, DARK).lightness() < colour_of(pieces.look.face, LIGHT).lightness()
 
 
+def test_that_fixes_of_pieces_are_tried_in_the_worker_and_told_with_their_verdict(
+    pinned: MainWindow, until: Until
+) -> None:
+    keeper = pinned.services.verdict
+    until(lambda: keeper.state.verdict is not None and keeper.state.verdict.ok)
+    pinned.services.fabrication.change(ear_mm=15.0)
+    until(lambda: keeper.state.advice is not None)
+    advice, verdict = keeper.state.advice, keeper.state.verdict
+    assert advice is not None and verdict is not None and not verdict.ok
+    fix = advice.fixes[0]
+    assert fix.verdict.ok and fix.line in keeper.state.lines
+    pinned.session.apply(fix.edit(pinned.session.document))
+    until(lambda: keeper.state.verdict is not None and not keeper.state.pending)
+    assert keeper.state.verdict == fix.verdict and not keeper.state.searching
+
+
 def same(one: QColor, other: QColor) -> bool:
     parts = zip(one.getRgb(), other.getRgb(), strict=True)
     return max(abs(a - b) for a, b in parts) <= 2  # type: ignore[operator]

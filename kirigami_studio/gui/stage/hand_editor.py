@@ -218,7 +218,7 @@ class HandEditor(QObject):
 
     @property
     def _least_gap(self) -> float:
-        """Distance (unit cells) that pins of the design have to keep, the same as in fits; 0 without pins."""
+        """Distance (unit cells) that pins have to keep, the same as in fits; 0 without pins."""
         document = self._session.document
         candidate = document.candidate
         if candidate is None or not is_pinned(document.fabrication):
