@@ -150,9 +150,13 @@ class PosedPieces:
     def _own_rings(self) -> list[list[FloatArray]]:
         return [rings_of(piece) for piece in self.assembly.pieces]
 
+    def outlines(self, phi: float) -> list[FloatArray]:
+        """The outline (L, 2) of every piece at an angle, world."""
+        return [rings[0] for rings in self.rings(phi)]
+
     def points(self, phi: float) -> FloatArray:
         """Corners of all pieces at an angle: (P, 2) world."""
-        return np.concatenate([rings[0] for rings in self.rings(phi)])
+        return np.concatenate(self.outlines(phi))
 
     def heads(self, phi: float) -> FloatArray:
         """Where the heads of pins are at an angle: (H, 2) world; none where they have none."""

@@ -17,6 +17,7 @@ from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.export.animation import write_animation
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PANEL, PictureFrame, preview, shown_points
+from kirigami_studio.export.share_page import corners_at, read_page, write_page
 from kirigami_studio.export.svg import NAMESPACE, write_layout_svg
 from tests.pinned_assemblies import small_assembly
 
@@ -70,3 +71,17 @@ def test_that_a_drawing_has_a_group_of_filled_shapes_for_each_layer(job: ExportJ
     assert len(groups["HEADS"]) == len(job.pieces.assembly.hinges) and "PANELS" not in groups
     assert list(groups).index("LAYER_1") < list(groups).index("LAYER_2") < list(groups).index("TARGET")
     assert all(shape.get("stroke") == "none" for shapes in groups.values() for shape in shapes)
+
+
+@pytest.mark.parametrize("degrees", [180.0, 70.0, 0.0])
+def test_that_a_page_to_share_moves_pieces_as_they_move(job: ExportJob, degrees: float, tmp_path: Path) -> None:
+    write_page(job, tmp_path / "pieces.html")
+    data, phi, pieces = read_page(tmp_path / "pieces.html"), math.radians(degrees), job.pieces
+    assert pieces is not None and len(data["parts"]) == len(pieces.assembly.pieces)
+    middle = pieces.design.nodes(pieces.design.phi_target).mean(axis=0)
+    for part, outline, piece in zip(data["parts"], pieces.small.outlines(phi), pieces.assembly.pieces, strict=True):
+        odd, carried, own = part
+        corners = np.array(own).reshape(-1, 2) @ (1.0, 1j)
+        found = corners_at((odd, complex(*carried), corners), data["phi"], data["turn"], phi)
+        np.testing.assert_allclose(found, (outline - middle) * pieces.mm_per_world, atol=4e-3)
+        assert odd == piece.layer - 1  # the upper layer is drawn over the lower one
