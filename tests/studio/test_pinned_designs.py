@@ -19,6 +19,7 @@ from kirigami_studio.fabricate.fastener import Fastener
 from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
+from kirigami_studio.lab.demonstrations.assembled_pieces import MARGIN, SIDE, assembled_pieces
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
@@ -186,3 +187,15 @@ def test_that_artwork_is_refused_for_pieces_with_a_sentence(pinwheel: Document) 
     with pytest.raises(ExportError) as refused:
         printed_job(CutRequest.of(pinwheel))
     assert refused.value.code == "artwork.pieces"
+
+
+def test_that_the_picture_of_assembled_designs_shows_three_states_of_each(pinwheel: Document, tmp_path: Path) -> None:
+    store.save(pinwheel, tmp_path / "pieces.kiri")
+    one_sheet = replace(pinwheel.fabrication, construction=Construction.ONE_SHEET)
+    store.save(replace(pinwheel, fabrication=one_sheet), tmp_path / "sheet.kiri")
+    image = assembled_pieces([tmp_path / "pieces.kiri"] * 2)
+    assert image.width == 2 * (SIDE + MARGIN) + MARGIN
+    colours = {colour: count for count, colour in image.getcolors(2**20) or ()}
+    assert colours[PieceLook.of(find_material("plywood-co2"), Fastener.BRAD).face] > 0.1 * image.width * image.height
+    with pytest.raises(ValueError, match="not made of pieces"):
+        assembled_pieces([tmp_path / "sheet.kiri"])

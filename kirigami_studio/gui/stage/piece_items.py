@@ -28,7 +28,7 @@ STEPS, DARKNESS = 3, 34
 #: Shadows fall so far (pixels) at least and at most.
 SHORTEST, LONGEST = 0.6, 12.0
 #: Heads smaller than this (pixels) are dots; from the second on they have a rim and a spot of light.
-DOT, ROUND = 0.9, 2.4
+DOT, ROUND = 1.2, 2.4
 
 
 @lru_cache(maxsize=KEPT_PATHS)

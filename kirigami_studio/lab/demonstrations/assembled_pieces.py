@@ -1,4 +1,4 @@
-"""A picture of designs in plywood for README and guide: assembled over their targets, flat, and half open.
+"""A picture of designs in plywood for README and guide: assembled, flat, and half open.
 
 ``python -m kirigami_studio.lab.demonstrations.assembled_pieces PROJECT ... --out docs/pictures/plywood.png`` shows the
 chosen designs of projects as they are cut.
@@ -15,7 +15,6 @@ from PIL import Image
 
 from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.export.picture import PAPER, PictureFrame, draw_pieces, shown_points
-from kirigami_studio.foundation.errors import ProjectError
 from kirigami_studio.project.store import load
 from kirigami_studio.studio.making import CutRequest, posed_pieces
 
@@ -33,14 +32,16 @@ def assembled_pieces(projects: Sequence[Path]) -> Image.Image:
     Raises
     ------
     ProjectError
-        A project has no chosen design, or one that is not made of pieces.
+        A project has no chosen design.
+    ValueError
+        A design that is not made of pieces.
     """
     column, height = SIDE + MARGIN, SIDE + SMALL_SIDE + 3 * MARGIN
     canvas = Image.new("RGB", (column * len(projects) + MARGIN, height), PAPER)
     for place, project in enumerate(projects):
         pieces = posed_pieces(CutRequest.of(load(project)))
         if pieces is None:
-            raise ProjectError("export.no_chosen_design")
+            raise ValueError(f"{project} is not made of pieces")
         left = MARGIN + place * column
         _paste(canvas, _state(pieces, pieces.design.phi_target, SIDE), left + SIDE // 2, MARGIN + SIDE // 2)
         for share, shown, phi in ((0.25, pieces.upright(), math.pi), (0.75, pieces, HALF_OPEN)):
