@@ -49,6 +49,7 @@ class PieceReader(QObject):
         self._target: Outline | None = None
         self._document: Document | None = None  # that the following belongs to
         self._pinned, self._cut = False, FabricationSettings()
+        self._cuts: dict[Candidate, FabricationSettings] = {}  # of designs that were asked for
         self._waiting: dict[Candidate, None] = {}
         self._in_work: dict[Candidate, FabricationSettings] = {}  # the design whose pieces are being made
         self._timer = QTimer(self, singleShot=True, interval=DELAY_MS)
@@ -97,7 +98,7 @@ class PieceReader(QObject):
         if document is self._document:
             return
         self._document, self._cut = document, one_sheet(document.fabrication)
-        self._pinned = is_pinned(document.fabrication)
+        self._pinned, self._cuts = is_pinned(document.fabrication), {}
         if document.target != self._target:
             self._target, self._known = document.target, {}
             self._waiting.clear()
@@ -106,7 +107,9 @@ class PieceReader(QObject):
         """How a design is cut; each has its own width where all open to one size."""
         if self._cut.opened_mm is None:
             return self._cut
-        return one_sheet(cut_for(self._session.document, candidate))
+        if candidate not in self._cuts:
+            self._cuts[candidate] = one_sheet(cut_for(self._session.document, candidate))
+        return self._cuts[candidate]
 
     def _keep(self, entries: tuple[Entry, ...]) -> None:
         """Other designs are in the gallery: forget those that are gone."""
