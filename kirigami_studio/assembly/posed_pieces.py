@@ -40,6 +40,8 @@ FACES: Mapping[str, Shade] = MappingProxyType(
         "cotton": (226, 219, 204),
         "foil": (201, 205, 210),
         "film": (226, 178, 92),
+        "pla": (122, 170, 204),
+        "petg": (140, 190, 172),
     }
 )
 USUAL_FACE: Shade = (212, 214, 218)
@@ -72,10 +74,11 @@ class PieceLook:
     thickness_mm: float = 3.0  #: of a layer, which decides how far its shadow falls
 
     @classmethod
-    def of(cls, material: Material, fastener: Fastener) -> PieceLook:
-        """The look of pieces that are cut of a material."""
+    def of(cls, material: Material, fastener: Fastener, *, in_one_plane: bool = False) -> PieceLook:
+        """The look of pieces of a material; those in one plane cast no shadows on each other."""
         face = FACES.get(material.key.split("-")[0], USUAL_FACE)
-        return cls(face, STEEL if fastener in STEEL_PINS else BRASS, material.thickness_mm)
+        head = STEEL if fastener in STEEL_PINS else BRASS
+        return cls(face, head, 0.0 if in_one_plane else material.thickness_mm)
 
     def layer(self, place: int, count: int) -> Shade:
         """Face of one of so many layers, the lowest being at 0."""
@@ -102,11 +105,12 @@ class PosedPieces:
     head_mm: float = 0.0  #: diameter of the heads of pins; 0 for none
 
     @classmethod
-    def of(cls, plan: PinnedPlan, material: Material, fastener: Fastener) -> PosedPieces:
-        """The pieces of a pinned design."""
-        assembly = plan.assembly
+    def of(cls, plan: PinnedPlan, material: Material, fastener: Fastener = Fastener.BRAD) -> PosedPieces:
+        """The pieces of a pinned or printed design."""
+        assembly, options = plan.assembly, plan.options
         design = PosedDesign(assembly.deployment, plan.pose, assembly.phi_target)
-        return cls(assembly, design, PieceLook.of(material, fastener), plan.options.head_mm)
+        look = PieceLook.of(material, fastener, in_one_plane=options.in_one_plane)
+        return cls(assembly, design, look, options.head_mm)
 
     @property
     def mm_per_world(self) -> float:

@@ -37,6 +37,7 @@ from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     PinSizes,
     is_pinned,
+    is_printed,
     machine_for,
     material_for,
     named_machine,
@@ -429,14 +430,19 @@ def _sizes(settings: FabricationSettings) -> PinSizes:
 
 def _needed_widths(verdict: Verdict, settings: FabricationSettings) -> list[float]:
     """Widths (mm) of larger sheets: as problems ask for them, then multiples of the present one."""
-    fields = [problem.fields for problem in verdict.problems]
-    needs = [(float(one["needed_mm"]), float(one["gap_mm"])) for one in fields if {"needed_mm", "gap_mm"} <= one.keys()]
+    numbers = [
+        {name: float(value) for name, value in problem.fields.items() if isinstance(value, int | float)}
+        for problem in verdict.problems
+    ]
+    needs = [(one["needed_mm"], one["gap_mm"]) for one in numbers if {"needed_mm", "gap_mm"} <= one.keys()]
     times = [needed / gap * ROUNDED_UP for needed, gap in needs if gap > 0.0]
     return [math.ceil(settings.width_mm * one) for one in (*times, *WIDTHS) if one > 1.0]
 
 
 def _smaller_pins(settings: FabricationSettings) -> list[Fastener]:
-    """Pins whose holes or heads are smaller than those of the settings, the largest first."""
+    """Other pins with smaller holes or heads, the largest first; none where pins are printed."""
+    if is_printed(settings):
+        return []
     present = SIZES[settings.fastener]
     smaller = [
         fastener

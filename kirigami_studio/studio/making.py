@@ -275,7 +275,10 @@ class MadePieces:
         """The pieces over their target, for pictures."""
         from kirigami_studio.assembly.posed_pieces import PosedPieces
 
-        return PosedPieces.of(self.made.plan, self.job.material, self.job.fastener)
+        cut = self.cutting
+        if cut is None:
+            return PosedPieces.of(self.made.plan, self.job.material)
+        return PosedPieces.of(self.made.plan, cut.material, cut.fastener)
 
     @property
     def printing(self) -> PrintJob | None:

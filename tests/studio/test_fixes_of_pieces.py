@@ -10,6 +10,7 @@ import pytest
 
 from kirigami_studio.__main__ import main
 from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
@@ -85,7 +86,7 @@ def test_that_it_is_said_where_nothing_works(pinwheel: Document, monkeypatch: py
 
     def refuse(candidate: object, settings: FabricationSettings, target: object) -> None:
         tried.append(settings)
-        raise fixes.KirigamiError("pins.sheet_too_narrow", width_mm=1.0, margin_mm=1.0)
+        raise KirigamiError("pins.sheet_too_narrow", width_mm=1.0, margin_mm=1.0)
 
     request = CutRequest.of(cut(pinwheel, ear_mm=15.0))
     verdict = judged_pieces(request)
