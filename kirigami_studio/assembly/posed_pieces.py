@@ -75,10 +75,11 @@ class PieceLook:
 
     @classmethod
     def of(cls, material: Material, fastener: Fastener, *, in_one_plane: bool = False) -> PieceLook:
-        """The look of pieces of a material; those in one plane cast no shadows on each other."""
+        """The look of pieces of a material; those in one plane have pins of it, and cast no shadows."""
         face = FACES.get(material.key.split("-")[0], USUAL_FACE)
-        head = STEEL if fastener in STEEL_PINS else BRASS
-        return cls(face, head, 0.0 if in_one_plane else material.thickness_mm)
+        if in_one_plane:
+            return cls(face, face, 0.0)
+        return cls(face, STEEL if fastener in STEEL_PINS else BRASS, material.thickness_mm)
 
     def layer(self, place: int, count: int) -> Shade:
         """Face of one of so many layers, the lowest being at 0."""
@@ -110,7 +111,7 @@ class PosedPieces:
         assembly, options = plan.assembly, plan.options
         design = PosedDesign(assembly.deployment, plan.pose, assembly.phi_target)
         look = PieceLook.of(material, fastener, in_one_plane=options.in_one_plane)
-        return cls(assembly, design, look, options.head_mm)
+        return cls(assembly, design, look, options.pin_mm if options.in_one_plane else options.head_mm)
 
     @property
     def mm_per_world(self) -> float:

@@ -184,7 +184,7 @@ def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
         groups.append((f"EDGES_{place}", look.line, edges))
     heads = pieces.heads(phi) * scale
     for name, colour, share in (("HEAD_RIMS", shaded(look.head, HEAD_RIM), 1.0), ("HEADS", look.head, 0.8)):
-        discs = np.atleast_1d(shapely.buffer(shapely.points(heads), 0.5 * share * pieces.head_mm, quad_segs=6))
+        discs = [shapely.Point(head).buffer(0.5 * share * pieces.head_mm, quad_segs=6) for head in heads]
         groups.append((name, colour, [[shapely.get_coordinates(disc)[:-1]] for disc in discs]))
     rims = [_band(np.concatenate([loop, loop[:1]]), TARGET_MM) for loop in target]
     groups.append(("TARGET", picture.TARGET_EDGE, rims))

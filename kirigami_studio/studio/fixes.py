@@ -412,7 +412,7 @@ def _piece_changes(candidate: Candidate, settings: FabricationSettings, verdict:
     for fastener in _smaller_pins(settings):
         note = Note.of("fix.fastener", fastener=tr(SIZES[fastener].name))
         yield _Change(note, candidate, _with_pins(settings, fastener))
-    if settings.clearance_mm > LEAST_CLEARANCE_MM:
+    if sizes.clearance_mm > LEAST_CLEARANCE_MM:
         note = Note.of("fix.clearance", clearance_mm=LEAST_CLEARANCE_MM)
         yield _Change(note, candidate, replace(settings, clearance_mm=LEAST_CLEARANCE_MM))
     for width in _needed_widths(verdict, settings):
