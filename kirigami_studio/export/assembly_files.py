@@ -12,6 +12,7 @@ import io
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -25,7 +26,7 @@ from shapely.geometry import Polygon
 from kirigami_studio import __version__
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
-from kirigami_studio.export.cut_bed import CutBed, laid_on_beds, too_large
+from kirigami_studio.export.cut_bed import CutBed, laid_on_beds
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
@@ -137,13 +138,14 @@ class AssemblyJob:
     def notes(self) -> tuple[Note, ...]:
         """Notes to read before cutting."""
         room = self.machine.reach_mm
-        large = [
-            Note.of("pieces.larger_than_bed", piece=bed.pieces[0].piece.id, width_mm=room[0], height_mm=room[1])
-            for bed in self.beds
-            if too_large(bed, room)
+        layers = Counter(bed.layer for bed in self.beds)
+        several = [
+            Note.of("pieces.several_beds", layer=layer, count=count, width_mm=room[0], height_mm=room[1])
+            for layer, count in layers.items()
+            if count > 1
         ]
         note = find_profile(self.profile).note
-        return (*large, *([] if note is None else [note]))
+        return (*several, *([] if note is None else [note]))
 
     @cached_property
     def works(self) -> tuple[Work, ...]:

@@ -278,8 +278,3 @@ def _laid(
                 CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places), order)
             )
     return tuple(found)
-
-
-def too_large(bed: CutBed, room: tuple[float, float]) -> bool:
-    """Whether what is cut reaches beyond a bed (width, height; mm, 0 for a side without an end)."""
-    return any(0.0 < most < side - math.ulp(most) * 4 for side, most in zip(bed.size_mm, room, strict=True))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import shapely
 from shapely.errors import GEOSException
 
-from kirigami_studio.assembly.checks import PinnedReport, body_of, check_pinned, placed_bodies
+from kirigami_studio.assembly.checks import PinnedReport, bed_problems, body_of, check_pinned, placed_bodies
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
@@ -23,6 +23,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, machine_for, material_for, pin_sizes
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+from kirigami_studio.studio.cutting import kerf_mm
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
 MOST_KEPT = 48
@@ -117,3 +118,17 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)
     return made
+
+
+def beyond_the_bed(made: Assembled, settings: FabricationSettings) -> list[Problem]:
+    """Problems of cut pieces that are larger than the bed of the machine; printed ones have their own.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    if is_printed(settings):
+        return []
+    bed, kerf = machine_for(settings).reach_mm, kerf_mm(settings, material_for(settings))
+    return bed_problems(made.assembly, bed, kerf, settings.width_mm, pin_sizes(settings).ear_mm)

@@ -132,7 +132,7 @@ def least_feature_mm(settings: FabricationSettings) -> float:
         No such material.
     """
     material = material_for(settings)
-    return max(material.min_ligament_mm, material.min_panel_mm) + _kerf_mm(settings, material)
+    return max(material.min_ligament_mm, material.min_panel_mm) + kerf_mm(settings, material)
 
 
 def room_mm(settings: FabricationSettings) -> float:
@@ -145,8 +145,9 @@ def room_mm(settings: FabricationSettings) -> float:
     """
     material = material_for(settings)
     connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    return ROOM_IN_WIDTHS * connector + _kerf_mm(settings, material)
+    return ROOM_IN_WIDTHS * connector + kerf_mm(settings, material)
 
 
-def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
+def kerf_mm(settings: FabricationSettings, material: Material) -> float:
+    """Width of the cut: of the settings, or of the material."""
     return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm

@@ -43,7 +43,7 @@ from kirigami_studio.settings.fabrication import (
     printed_pins,
 )
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import refuse_errors
+from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
@@ -350,7 +350,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
         raise ProjectError("export.no_chosen_design")
     made = assembled(request.candidate, settings, target)
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
-    verdict = judge_assembled(request.candidate, made)
+    verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
     return MadePieces(made, job, verdict)
 
@@ -382,7 +382,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         material,
         machine_for(settings),
         settings.fastener,
-        material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm,
+        kerf_mm(settings, material),
         sizes.hole_mm,
         sizes.ear_mm,
         sizes.clearance_mm,
@@ -475,7 +475,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     folder = output.path.with_suffix("") if output.name is None else output.path
 
     def level(verifications: Sequence[Verification]) -> str:
-        return judge_assembled(request.candidate, pieces.made, verifications).level.value
+        return judge_assembled(request.candidate, pieces.made, request.settings, verifications).level.value
 
     try:
         if pieces.printing is not None:
@@ -488,7 +488,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         if broken is None:
             raise
         raise ExportError("export.cannot_be_cut", reason=broken.text) from error
-    verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
+    verdict = judge_assembled(request.candidate, pieces.made, request.settings, found.verifications)
     return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 

@@ -26,9 +26,22 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Piece {piece:.20} has an opening narrower than the kerf of {kerf_mm:g} mm. Choose a larger sheet or more "
         "clearance."
     ),
-    "pieces.larger_than_bed": mark(
-        "Piece {piece:.20} is larger than the bed of {width_mm:g} x {height_mm:g} mm. Choose a smaller sheet, a finer "
-        "grid or another machine."
+    "pieces.larger_than_bed": mark_n(
+        "Piece {piece:.20} is {long_mm:.0f} x {short_mm:.0f} mm, larger than the bed of {width_mm:g} x {height_mm:g} "
+        "mm. Make the sheet {largest_mm} mm wide at most, or choose a finer grid or a machine with a larger bed.",
+        "{count} pieces are larger than the bed of {width_mm:g} x {height_mm:g} mm, {piece:.20} with {long_mm:.0f} x "
+        "{short_mm:.0f} mm. Make the sheet {largest_mm} mm wide at most, or choose a finer grid or a machine with a "
+        "larger bed.",
+    ),
+    "pieces.bed_below_ear": mark_n(
+        "Piece {piece:.20} is {long_mm:.0f} x {short_mm:.0f} mm: the bed of {width_mm:g} x {height_mm:g} mm has no "
+        "room even for its ears. Choose another machine.",
+        "{count} pieces, {piece:.20} with {long_mm:.0f} x {short_mm:.0f} mm, are larger than the bed: {width_mm:g} x "
+        "{height_mm:g} mm has no room even for their ears. Choose another machine.",
+    ),
+    "pieces.several_beds": mark_n(
+        "The pieces of layer {layer} take {count} bed of {width_mm:g} x {height_mm:g} mm.",
+        "The pieces of layer {layer} take {count} beds of {width_mm:g} x {height_mm:g} mm, one file each.",
     ),
     "overcut.not_positive": mark("The overcut must be a number of millimetres above 0, got {value!r:.40}."),
     "tabs.width_not_positive": mark("The tab width must be a number of millimetres above 0, got {value!r:.40}."),

@@ -263,10 +263,12 @@ def test_that_an_earlier_assembly_is_replaced_and_other_files_stay(
     assert (home / "notes.txt").read_text() == "mine" and not [p for p in tmp_path.iterdir() if p != home]
 
 
-def test_that_a_piece_beyond_the_bed_is_told(assembly: Assembly) -> None:
-    tiny = replace(SMALL_BED, bed_width_mm=10.0, bed_height_mm=10.0)
-    assert "pieces.larger_than_bed" in {note.code for note in job_of(assembly, machine=tiny).notes}
-    assert "pieces.larger_than_bed" not in {note.code for note in job_of(assembly).notes}
+def test_that_layers_on_several_beds_are_told(assembly: Assembly) -> None:
+    small = replace(SMALL_BED, bed_width_mm=60.0, bed_height_mm=60.0)
+    job = job_of(assembly, machine=small)
+    told = {note.fields["layer"]: note.fields["count"] for note in job.notes if note.code == "pieces.several_beds"}
+    assert told == {layer: sum(bed.layer == layer for bed in job.beds) for layer in (1, 2)} and max(told.values()) > 1
+    assert not job_of(assembly, machine=replace(SMALL_BED, bed_width_mm=0.0, bed_height_mm=0.0)).notes
 
 
 def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folder: Path, tmp_path: Path) -> None:
