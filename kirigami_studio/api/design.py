@@ -69,8 +69,8 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     chosen_candidate,
-    export_job,
     judged,
+    picture_job,
     pieces_of,
     planned,
     written,
@@ -490,7 +490,7 @@ class Design:
             if is_pinned(with_choices(self.document.fabrication, deciding)):
                 return self.make_pieces(**cuts)._written(Output(goal))
             return self.plan_cuts(**cuts).export(goal)
-        return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
+        return Exported((export(picture_job(CutRequest.of(self.document)), goal),))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a project (.kiri) of this design alone.

@@ -45,8 +45,8 @@ from kirigami_studio.studio.making import (
     Output,
     chosen_candidate,
     closed,
-    export_job,
     fixing,
+    picture_job,
     planned,
     writes_pieces,
     written,
@@ -86,7 +86,10 @@ def export(arguments: argparse.Namespace) -> int:
     if not arguments.all and not (request.is_pinned and writes_pieces(output)):
         find_writer(arguments.out)
     if request.is_pinned:
-        return _export_pieces(written_pieces(request, output, angle), as_json=arguments.json)
+        found = written_pieces(request, output, angle)
+        assert found.verdict is not None  # pieces are judged
+        wanted = arguments.fixes and not found.verdict.ok
+        return _export_pieces(found, _advice(request, found.verdict) if wanted else None, as_json=arguments.json)
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
@@ -138,8 +141,7 @@ def export(arguments: argparse.Namespace) -> int:
                 "verified": verified,
                 "ok": verdict.ok,
                 "verdict": verdict.to_json(),
-                **({} if advice is None else {"fixes": [fix.to_json() for fix in advice.fixes]}),
-                **({} if advice is None else {"tried": advice.tried.text}),
+                **_advice_json(advice),
             }
         )
         return 0 if found.ok else 1
@@ -167,8 +169,7 @@ def export(arguments: argparse.Namespace) -> int:
     for text in bad:
         say("  " + tr("fault: {text}", text=text))
     say_verdict(verdict)
-    for text in () if advice is None else advice.lines:
-        say("  " + tr("fix: {text}", text=text))
+    _say_advice(advice)
     said = {note.text for note in (*verdict.problems, *verdict.notes)} | {problem.text for problem in report.problems}
     for warning in warnings:
         if warning not in said:
@@ -181,7 +182,7 @@ def _wants_record(arguments: argparse.Namespace) -> bool:
     return arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
 
 
-def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
+def _export_pieces(found: ExportedFiles, advice: Advice | None, *, as_json: bool) -> int:
     """Report on the files of a pinned design."""
     pieces, verdict = found.pieces, found.verdict
     assert pieces is not None and verdict is not None
@@ -207,6 +208,7 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
                 "verified": [_summary(one) for one in found.verifications],
                 "ok": verdict.ok,
                 "verdict": verdict.to_json(),
+                **_advice_json(advice),
             }
         )
         return 0 if found.ok else 1
@@ -223,7 +225,19 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
         else:
             say("  " + tr("{path}: {finding}", path=one.path, finding=one.findings[0].text))
     say_verdict(verdict)
+    _say_advice(advice)
     return 0 if found.ok else 1
+
+
+def _advice_json(advice: Advice | None) -> dict[str, object]:
+    if advice is None:
+        return {}
+    return {"fixes": [fix.to_json() for fix in advice.fixes], "tried": advice.tried.text}
+
+
+def _say_advice(advice: Advice | None) -> None:
+    for text in () if advice is None else advice.lines:
+        say("  " + tr("fix: {text}", text=text))
 
 
 def _check_picture(arguments: argparse.Namespace) -> None:
@@ -334,9 +348,10 @@ def animate(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    job = export_job(CutRequest.of(document), None)
-    if arguments.as_cut:
-        job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
+    request = CutRequest.of(document, overridden(document.fabrication, arguments))
+    job = picture_job(request)
+    if arguments.as_cut and not request.is_pinned:  # pieces move as the ideal sheet does
+        job = replace(job, motion=_cut_motion(document, request.settings))
     frames, motion = write_animation(job, path, FRAMES), job.motion
     if arguments.json:
         answer: dict[str, object] = {"frames": frames, "files": [str(path)]}

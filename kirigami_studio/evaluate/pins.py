@@ -29,7 +29,7 @@ from kirigami_studio.evaluate.evenness import PanelSizes, distances_to_lines
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet
 from kirigami_studio.lattice.topology import topology
 
 #: Gaps (unit cells) are kept when they lack no more than this: rounding a sheet takes less.
@@ -37,6 +37,8 @@ GAP_ROUNDING = 1e-6
 #: How near to another side of its panel a notch may have its middle, relative to how near two of them may: for ears
 #: of 2.8 necks' width that pass each other by 0.3 necks.
 TO_A_SIDE = 0.614
+#: Halvings of a way on which pins come too near: its end is found to a thousandth.
+HALVINGS = 10
 
 
 @lru_cache(maxsize=64)
@@ -237,6 +239,56 @@ def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[
                     for node in panels[beyond]:
                         places.setdefault(node, {node: 1, pin: 2, next_pin: -2})
     return places
+
+
+def kept_apart(before: Sheet, wanted: Sheet, least: float) -> Sheet:
+    """Go from one sheet towards another as far as pins keep apart on the way.
+
+    Parameters
+    ----------
+    before : Sheet
+        One whose pins are too near already may go anywhere that brings no pins nearer.
+    wanted : Sheet
+        Of the same grid.
+    least : float, unit cells
+        Distance that pins have to keep; 0 asks for none.
+
+    Returns
+    -------
+    sheet : Sheet
+        ``wanted`` itself where pins keep apart there.
+    """
+    if least <= 0.0 or wanted == before:
+        return wanted
+    bound = min(least, least_pin_distance(deploy(before))) - GAP_ROUNDING
+    if least_pin_distance(deploy(wanted)) >= bound and _one_hand(before, wanted):
+        return wanted
+    reached, beyond, found = 0.0, 1.0, before
+    for _ in range(HALVINGS):
+        middle = 0.5 * (reached + beyond)
+        sheet = _between(before, wanted, middle)
+        if least_pin_distance(deploy(sheet)) >= bound and _one_hand(before, sheet):
+            reached, found = middle, sheet
+        else:
+            beyond = middle
+    return found
+
+
+def _one_hand(before: Sheet, after: Sheet) -> bool:
+    """Whether every void has its longer side where it had it; pins meet between both sides."""
+    return bool(np.all(before.field.log10 * after.field.log10 >= 0.0))
+
+
+def _between(before: Sheet, wanted: Sheet, share: float) -> Sheet:
+    """The sheet at a share, 0 to 1, of the way; ratios that are the same keep every digit."""
+    given, z = before.field.ratio, before.field.log10
+    moved = np.power(10.0, z + share * (wanted.field.log10 - z))
+    field = RatioField(np.where(given == wanted.field.ratio, given, moved))
+    if wanted.rim == before.rim:
+        return wanted.with_field(field)
+    rows, columns = before.grid
+    start, end = before.rim.offsets(rows, columns), wanted.rim.offsets(rows, columns)
+    return replace_sheet(wanted.with_field(field), rim=Rim.moved(rows, columns, start + share * (end - start)))
 
 
 def log_ratio_for(gap: float, slit: float) -> float:

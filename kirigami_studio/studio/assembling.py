@@ -35,7 +35,7 @@ from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 from kirigami_studio.studio.cutting import kerf_mm
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
-MOST_KEPT = 16
+MOST_KEPT = 48
 
 
 def pin_options(settings: FabricationSettings) -> PinOptions:

@@ -10,40 +10,50 @@ from typing import Any
 
 import ezdxf
 import ezdxf.math
-import numpy as np
 import pytest
+from PIL import Image
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
 from kirigami_studio.assembly.nesting import smallest_rectangle
+from kirigami_studio.assembly.posed_pieces import PieceLook
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.export import registry
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import PANEL
+from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
+from kirigami_studio.lab.demonstrations.assembled_pieces import MARGIN, SIDE, assembled_pieces
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for, new_settings
+from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked, checked_together
-from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning, timing
+from kirigami_studio.studio.making import (
+    CutRequest,
+    MadePieces,
+    Motion,
+    Output,
+    animating,
+    exporting,
+    pieces_of,
+    planning,
+    printed_job,
+    timing,
+)
 from kirigami_studio.studio.verdict import Level, look_at
+from tests.pinned_assemblies import plain_pinwheel
 
 
 @pytest.fixture(scope="module")
 def pinwheel() -> Document:
-    """A square of 3 x 3 voids whose panels alternate in size, to be cut of plywood 160 mm wide."""
-    ratios = 10 ** (0.2 * (-1.0) ** np.add.outer(range(3), range(3)))
-    sheet = Sheet(RatioField(ratios))
-    target = silhouettes.load("square")
-    candidate = Candidate(sheet, evaluate(deploy(sheet), target), 0, 0)
-    settings = new_settings({"material": "plywood-co2", "width_mm": 160.0})
-    return Document(target, DesignSettings(), (candidate,), 0, fabrication=settings)
+    return plain_pinwheel()
 
 
 @pytest.fixture(scope="module")
@@ -149,6 +159,56 @@ def test_that_the_time_of_a_pinned_design_is_that_of_its_beds(pinwheel: Document
 def test_that_a_sheet_of_an_unknown_material_is_not_pinned_unless_asked_for(pinwheel: Document) -> None:
     gone = replace(pinwheel.fabrication, material="nothing-anybody-has")
     assert not is_pinned(gone) and is_pinned(replace(gone, construction=Construction.PINNED))
+
+
+def test_that_pictures_of_all_faces_show_pieces_of_plywood(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["export", str(project), "--out", str(tmp_path / "line.png")]) == 0
+    capsys.readouterr()
+    list(exporting(CutRequest.of(pinwheel), Output(tmp_path / "window.png"), True, never))
+    ks.load_project(project).best.export(tmp_path / "script.png")
+    pictures = [Image.open(tmp_path / f"{name}.png").convert("RGB") for name in ("line", "window", "script")]
+    assert len({picture.tobytes() for picture in pictures}) == 1
+    colours = {colour: count for count, colour in pictures[0].getcolors(2**20) or ()}
+    assert colours[PieceLook.of(find_material("plywood-co2"), Fastener.BRAD).face] > 10_000
+    assert PANEL not in colours
+
+
+def test_that_an_animation_shows_pieces_and_needs_no_simulation(
+    pinwheel: Document, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs: list[ExportJob] = []
+
+    def noted(job: ExportJob, path: Path) -> Path:
+        jobs.append(job)
+        return path
+
+    monkeypatch.setattr(registry, "export", noted)
+    (exported,) = animating(CutRequest.of(pinwheel), tmp_path / "motion.gif", Motion.AS_CUT, None, never)
+    assert exported is not None and exported.motion is None and exported.not_as_cut == ""
+    (job,) = jobs
+    assert job.pieces is not None and len(job.pieces.assembly.pieces) == 16
+
+
+def test_that_artwork_is_refused_for_pieces_with_a_sentence(pinwheel: Document) -> None:
+    with pytest.raises(ExportError) as refused:
+        printed_job(CutRequest.of(pinwheel))
+    assert refused.value.code == "artwork.pieces"
+
+
+def test_that_the_picture_of_assembled_designs_shows_three_states_of_each(pinwheel: Document, tmp_path: Path) -> None:
+    store.save(pinwheel, tmp_path / "pieces.kiri")
+    one_sheet = replace(pinwheel.fabrication, construction=Construction.ONE_SHEET)
+    store.save(replace(pinwheel, fabrication=one_sheet), tmp_path / "sheet.kiri")
+    image = assembled_pieces([tmp_path / "pieces.kiri"] * 2)
+    assert image.width == 2 * (SIDE + MARGIN) + MARGIN
+    colours = {colour: count for count, colour in image.getcolors(2**20) or ()}
+    assert colours[PieceLook.of(find_material("plywood-co2"), Fastener.BRAD).face] > 0.1 * image.width * image.height
+    with pytest.raises(ValueError, match="not made of pieces"):
+        assembled_pieces([tmp_path / "sheet.kiri"])
 
 
 def on_bed(document: Document, side_mm: float) -> Document:

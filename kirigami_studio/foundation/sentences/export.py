@@ -10,6 +10,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.with_fixes": mark("{reason} {fixes}"),
     "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
     "pieces.no_such_file": mark("Pieces on pins are not written as {extension:.20}. Use a folder, or one of {known}."),
+    "pieces.not_copied": mark("Pieces on pins are cut from several files. Export a folder of them instead."),
     "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
     "profile.only_red_is_cut": mark(
@@ -83,6 +84,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
     "artwork.name_a_picture": mark("The project has no artwork. Name a picture with --picture."),
+    "artwork.pieces": mark(
+        "A picture can be printed on one sheet, not on pieces on pins. Choose another construction, or print none."
+    ),
     "artwork.none": mark("The project has no artwork. Choose a picture first."),
     "artwork.too_many_pixels": mark(
         "At {dpi:g} dpi the printed sheet would have {width} x {height} pixels. Choose {most_dpi} dpi or less."

@@ -43,7 +43,7 @@ from kirigami_studio.gui.stage.layout_labels import (
     room_in,
     smallest_parts,
 )
-from kirigami_studio.gui.stage.piece_items import ShownPieces
+from kirigami_studio.gui.stage.piece_items import paint_pieces
 from kirigami_studio.gui.stage.void_gestures import VoidGestures
 from kirigami_studio.gui.stage.void_items import VoidShapes, steady
 from kirigami_studio.gui.widgets.canvas import Canvas
@@ -71,10 +71,10 @@ from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
-    from kirigami_studio.studio.making import MadePieces
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)
@@ -160,7 +160,7 @@ class LayoutView(Canvas):
         self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self.artwork: ShownArtwork | None = None
-        self._pieces: ShownPieces | None = None
+        self._pieces: PosedPieces | None = None
         self._grips = GRIPS_UNKNOWN
         self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
         self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
@@ -219,9 +219,9 @@ class LayoutView(Canvas):
             self._cut = sheet
             self.update()
 
-    def show_pieces(self, made: MadePieces | None) -> None:
-        """Draw the pieces of a pinned design in the place of its panels, or panels again."""
-        self._pieces = None if made is None or self.design is None else ShownPieces.of(made, self.design)
+    def show_pieces(self, pieces: PosedPieces | None) -> None:
+        """Draw pieces of the design in the place of its panels, or panels again."""
+        self._pieces = None if self.design is None else pieces
         if self._pieces is not None and self._bounds is not None:
             self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))
         self.update()
@@ -415,9 +415,9 @@ class LayoutView(Canvas):
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
 
-    def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: ShownPieces) -> None:
+    def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: PosedPieces) -> None:
         self.areas, self.faults = None, ()
-        pieces.paint(painter, self.phi, transform, self.palette_)
+        paint_pieces(painter, pieces, self.phi, transform, self.palette_)
         nearness = self._nearness
         if self._target is not None and Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))

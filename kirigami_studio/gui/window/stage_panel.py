@@ -396,7 +396,7 @@ class StagePanel(Card):
 
     def show_made(self, made: Planned | MadePieces | None) -> None:
         """The cuts or the pieces of the design are planned: draw pieces, and say so in the header."""
-        self.view.show_pieces(made if isinstance(made, MadePieces) else None)
+        self.view.show_pieces(made.posed if isinstance(made, MadePieces) else None)
         self.show_title()
 
     def show_title(self) -> None:
