@@ -167,6 +167,17 @@ def test_that_shapes_that_share_an_edge_but_for_rounding_are_one_and_a_gap_stays
     assert read_target(svg(apart)).size == pytest.approx((40.0, 40.0))
 
 
+def test_that_a_subpath_that_paints_two_pieces_is_no_contour_that_crosses_itself(svg) -> None:
+    """A calendar: its head and its body hang together by a line of no width."""
+    outline = read_target(svg('<path d="M0 0h16v14h-16v-9h16v-1h-16z"/>'))
+    assert outline.size == pytest.approx((16, 9)) and "smaller piece" in " ".join(outline.notes)
+
+
+def test_that_a_white_flag_on_a_larger_page_is_no_paper(svg) -> None:
+    body = '<path fill="#fff" d="M5 17h62v38h-62z"/><circle cx="36" cy="36" r="9"/>'
+    assert read_target(svg(body, 'viewBox="0 0 72 72"')).size == pytest.approx((62, 38))
+
+
 def test_that_a_path_is_read_up_to_its_damage_and_that_is_said(svg) -> None:
     outline = read_target(svg('<path d="M0 0h60v30h-60z M5 5 L 9"/>'))
     assert outline.size == pytest.approx((60, 30)) and any("damaged" in note for note in outline.notes)
