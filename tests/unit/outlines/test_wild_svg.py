@@ -133,6 +133,13 @@ def test_that_strokes_count_as_painted_where_they_carry_the_shape(body, size, sv
     assert read_target(svg(body)).size == pytest.approx(size, rel=2e-3)
 
 
+def test_that_corners_of_strokes_are_cut_off_beyond_the_limit_of_their_mitre(svg) -> None:
+    """A corner of 11 degrees: its tip would be ten widths long."""
+    body = '<path fill="none" stroke="#000" stroke-width="2" d="M0 0L10 1L0 2" stroke-miterlimit="{}"/>'
+    short, long = (read_target(svg(body.format(limit))).size[0] for limit in (4, 20))
+    assert short == pytest.approx(10.2, abs=0.05) and long == pytest.approx(20.15, abs=0.05)
+
+
 def test_that_what_is_read_and_what_the_parts_say_is_one(svg) -> None:
     """The window asks by the parts and takes their outline; before, it read the file again by another rule."""
     for name in ("s01_cut_frame_and_engraving.svg", "s31_stroke_only_shape_with_one_dot.svg"):
