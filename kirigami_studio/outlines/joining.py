@@ -29,6 +29,10 @@ MOST_VERTICES = 200_000
 SAMPLED = 400
 
 
+#: Gaps of an open contour are looked for up to this share of the drawing's size.
+WIDEST_OPENING = 0.2
+
+
 class Gap(NamedTuple):
     """Two loose ends: their distance and the point midway, in source units."""
 
@@ -107,7 +111,7 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
     net = joined(chains, widest_gap)
     region = shapely.unary_union(net.faces)
     if region.is_empty or _surrounds(net.open_lines, region):
-        raise _open_contour(net.wide, widest_gap * net.size, unit)
+        raise open_contour(net.wide, widest_gap * net.size, unit)
     notes = closed_gaps(net, unit)
     if inner := sum(len(face.interiors) for face in net.faces):
         notes.append(
@@ -126,6 +130,36 @@ def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tup
             )
         )
     return region, tuple(notes)
+
+
+def opening(chains: Sequence[FloatArray], size: float) -> Gap:
+    """The widest gap between ends of lines (P, 2) that meet no other; of no width without one."""
+    _, loose = _meeting([chain for chain in chains if np.ptp(chain, axis=0).any()], SAME_END * size)
+    gaps = _gaps(loose)
+    return _described(max(gaps, key=lambda gap: float(gap.length))) if gaps else Gap(0.0, 0.0, 0.0)
+
+
+def held(chains: Sequence[FloatArray], inside: BaseGeometry, size: float) -> Gap | None:
+    """The widest gap of an open contour: lines that surround something when their nearest ends are joined.
+
+    Parameters
+    ----------
+    chains : sequence of (P, 2) float, source units
+    inside : shapely geometry, source units
+        All of this has to lie in the contour.
+    size : float, source units
+        Of the drawing.
+    """
+    chains, loose = _meeting([chain for chain in chains if np.ptp(chain, axis=0).any()], SAME_END * size)
+    bridges = [gap for gap in _gaps(loose) if gap.length <= WIDEST_OPENING * size]
+    if not bridges:
+        return None
+    lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridges])
+    contour = shapely.unary_union(shapely.get_parts(shapely.polygonize([lines])))
+    shells = [Polygon(piece.exterior) for piece in shapely.get_parts(contour) if isinstance(piece, Polygon)]
+    around = [piece for piece in shells if piece.contains_properly(inside)]
+    gaps = [gap for gap in bridges if any(piece.boundary.intersects(gap) for piece in around)]
+    return _described(max(gaps, key=lambda gap: float(gap.length))) if gaps else None
 
 
 def closed_gaps(net: Joined, unit: str) -> list[str]:
@@ -215,7 +249,8 @@ def _surrounds(open_lines: Sequence[BaseGeometry], region: BaseGeometry) -> bool
     return any(shapely.box(*line.bounds).contains_properly(closed) for line in open_lines)
 
 
-def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError:
+def open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError:
+    """The problem of an open contour: its widest gap, and the width up to which gaps are closed."""
     if not gaps:
         return TargetError("lines.not_closed")
     gap = max(gaps)

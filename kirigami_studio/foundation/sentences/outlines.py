@@ -66,7 +66,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "again."
     ),
     "svg.compressed": mark("The file is compressed (SVGZ). Save it as plain SVG."),
-    "svg.entities": mark("The file declares XML entities, which are not read for safety. Save it as plain SVG."),
+    "svg.entities": mark(
+        "The file declares XML entities other than short plain texts, which are not read for safety. Save it as plain SVG."
+    ),
+    "svg.style_too_large": mark(
+        "The style sheets of the drawing are too long or too complicated. Save it as plain SVG with attributes."
+    ),
     "svg.linked_picture": mark(
         "The drawing shows a picture from another file ({link:.60}), which is not opened for safety. Embed it."
     ),
@@ -106,6 +111,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "parts.none_chosen": mark("No part is chosen. Choose at least one."),
     "parts.no_area": mark(
         "The chosen parts enclose no area. Choose a closed one, or take strokes as they are painted, with a width."
+    ),
+    "parts.letters": mark(
+        "The drawing is a text of {letters} letters that do not touch. Join them in the window, or with --parts all "
+        "--join bridge."
     ),
     "parts.stroke_width": mark("A stroke must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
     "parts.bridge_width": mark("A bridge must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
