@@ -256,8 +256,8 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
         Whatever Pillow raises on damaged files.
     """
     with warnings.catch_warnings():
-        # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        # Pillow warns from 89 Mpixel on, where the limit here is the sentence below; and of oddities in TIFF.
+        warnings.simplefilter("ignore")
         try:
             image = Image.open(io.BytesIO(content), formats=formats)
         except Image.DecompressionBombError:

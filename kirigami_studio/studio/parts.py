@@ -15,7 +15,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.outlines.merging import Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts
-from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
+from kirigami_studio.outlines.read import has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
 from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
@@ -83,8 +83,8 @@ def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRea
 
 def _reading_outline(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
     """Read an outline, or the parts of a drawing that has several to choose from."""
-    if Path(source).suffix.lower() in PART_READERS:
-        if Path(source).suffix.lower() in PICTURES:
+    if has_parts(Path(source)):
+        if is_picture(Path(source)):
             if _has_islands(source):
                 yield sketched(read_parts(source))
                 return

@@ -23,7 +23,7 @@ from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -105,7 +105,7 @@ def _read(source: str | os.PathLike[str], choice: PartChoice | None, threshold: 
     if str(source) in silhouettes.names() and choice is None:
         return silhouettes.load(str(source))
     path = Path(source)
-    if path.suffix.lower() in PART_READERS:
+    if has_parts(path):
         return read_drawing(path, choice, threshold)
     if choice is not None:
         raise UsageError("parts.not_a_drawing", source=str(source), kinds=", ".join(PART_READERS))
@@ -147,8 +147,7 @@ class PartChoice:
         """The outline of the chosen parts of a file; ``threshold`` is that of a picture."""
         from kirigami_studio.outlines.read_image import image_parts
 
-        is_picture = path.suffix.lower() in PICTURES
-        source = image_parts(path, threshold) if is_picture else read_parts(path)
+        source = image_parts(path, threshold) if is_picture(path) else read_parts(path)
         try:
             return merged(source, source.chosen(self.words), self.merging).outline
         except TargetError as error:
@@ -160,11 +159,11 @@ def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None 
 
     A cut file of this program stands for the target of its design.
     """
-    if threshold is not None and choice is None and path.suffix.lower() in PICTURES:
+    if threshold is not None and choice is None and is_picture(path):
         from kirigami_studio.outlines.read_image import read_image
 
         return read_image(path, threshold)
-    if choice is not None and path.suffix.lower() in PART_READERS:
+    if choice is not None and has_parts(path):
         return choice.outline(path, threshold)
     document = design_of(path)
     if document is not None and (target := document.target) is not None:
@@ -221,7 +220,7 @@ def inside_of(levels: NDArray[Any]) -> BoolArray:
 def reading_target(source: str, cancel: Cancel) -> Iterator[TargetRead]:
     """Read a file or a library silhouette."""
     path = Path(source)
-    if path.suffix.lower() in PICTURES:
+    if is_picture(path):
         from kirigami_studio.outlines.read_image import automatic_threshold, trace_image
 
         level = automatic_threshold(path)
