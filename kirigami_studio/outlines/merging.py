@@ -158,8 +158,8 @@ def usual_outline(source: SourceParts) -> Outline:
         names = ", ".join(part.name for part in source.of(choice.numbers)[:NAMED])
         notes.append(
             tr(
-                "More than one shape may be meant; this one was taken: {names}. 'kirigami-studio parts FILE' lists all, "
-                "--parts takes others.",
+                "More than one shape may be meant. Taken: {names}. 'kirigami-studio parts FILE' lists all, --parts "
+                "takes others.",
                 names=names,
             )
         )

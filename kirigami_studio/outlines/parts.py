@@ -5,8 +5,8 @@ of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline 
 
 One rule says which of them are the silhouette that is seen, for all kinds of files (:class:`UsualChoice`):
 
-- What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they show more than
-  what they enclose; thin lines count by what they enclose.
+- What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they run round
+  filled shapes or show more than what they enclose; thin lines count by what they enclose.
 - Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
 - Thin lines that would surround all of it, were they closed, are an open contour, and nothing is taken.
 """
@@ -30,13 +30,11 @@ from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
-from kirigami_studio.outlines.joining import Gap, held, opening
+from kirigami_studio.outlines.joining import Gap, Joined, closed_gaps, held, joined, opening
 from kirigami_studio.outlines.pieces import ROUNDING, enclosed, united
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from kirigami_studio.outlines.joining import Joined
 
 #: Larger numbers of parts are not told apart any more: the smallest are left out.
 MOST_PARTS = 500
@@ -46,9 +44,11 @@ SPECK = 0.01
 RECTANGLE = 0.99
 #: A part inside a frame is one to be asked about from this share of the frame's area on.
 WORTH_ASKING = 0.02
-#: Pens from this share of the lines' size on are painted; from the lower one on, where they show more than the
-#: lines enclose, by this share of the silhouette; the stroke of a filled shape counts from the lowest on.
-BROAD, MIDDLING, SHOWS_MORE, SEEN = 0.05, 0.015, 0.02, 0.005
+#: Pens from this share of the lines' size on are painted; from the second on, where they show more than the lines
+#: enclose; the stroke of a filled shape counts from the third on.
+BROAD, MIDDLING, SEEN = 0.05, 0.015, 0.005
+#: This share of a silhouette is more; lines run round filled shapes that fill this share of what they enclose.
+SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
 #: An area counts as larger from this share on: less is rounding.
 LARGER = 1e-6
 #: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
@@ -182,7 +182,6 @@ class UsualChoice:
     has_letters_apart: bool = False  #: whether texts stand beside what was taken
 
 
-
 @dataclass(frozen=True, slots=True, eq=False)
 class SourceParts:
     """All parts of a source.
@@ -308,7 +307,10 @@ def _usual(source: SourceParts) -> UsualChoice:
     solid = {part.number: part.seen(size) for part in shapes}
     solid.update((part.number, part.seen(size, True)) for part in broad)
     open_at = _open_contour(thin, solid, size)
-    shown = _shown([part for part in thin if part.pen.width >= MIDDLING * extent], solid, size) if not open_at else {}
+    middling = [part for part in thin if part.pen.width >= MIDDLING * extent]
+    shown = {part.number: part.seen(size, True) for part in middling} if open_at is None else {}
+    is_round = bool(shown) and _is_round(middling, solid)
+    shown = shown if is_round or _shows_more(middling, shown, solid, size) else {}
     solid.update(shown)
     thin = [part for part in thin if part.number not in shown]
     solid.update((part.number, part.region) for part in letters)
@@ -327,7 +329,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     plain = (
         open_at is None
         and bool(closed)
-        and not shown
+        and (is_round or not shown)
         and not _stands_apart(closed, {**solid, **ring}, size)
         and not _is_framed(_outer(closed, {**solid, **ring}), closed)
         and all(_outside(one, silhouette) <= SHOWS_MORE * silhouette.area for one in others)
@@ -376,14 +378,21 @@ def _without_frame(lines: list[Part], paper: tuple[float, float, float, float] |
     ]
 
 
-def _shown(lines: Sequence[Part], solid: Mapping[int, BaseGeometry], size: float) -> dict[int, BaseGeometry]:
-    """Lines as they are painted, where they show more of the silhouette than what they enclose; else nothing."""
+def _is_round(lines: Sequence[Part], solid: Mapping[int, BaseGeometry]) -> bool:
+    """Whether lines run round filled shapes."""
+    inside = shapely.union_all([part.region for part in lines])
+    return bool(shapely.union_all(list(solid.values())).intersection(inside).area > ROUND_FILLED * inside.area)
+
+
+def _shows_more(
+    lines: Sequence[Part], inked: Mapping[int, BaseGeometry], solid: Mapping[int, BaseGeometry], size: float
+) -> bool:
+    """Whether lines as they are painted show more of the silhouette than what they enclose."""
     if not any(part.is_closed for part in lines) and not solid:
-        return {}
-    inked = {part.number: part.seen(size, True) for part in lines}
+        return False
     grown = [part.region.buffer(0.5 * part.pen.width, join_style="mitre") for part in lines if part.is_closed]
     fewer, more = (_filled([*solid.values(), *some], size) for some in (grown, inked.values()))
-    return inked if more.difference(fewer).area > SHOWS_MORE * more.area else {}
+    return bool(more.difference(fewer).area > SHOWS_MORE * more.area)
 
 
 def _filled(regions: Iterable[BaseGeometry], size: float) -> BaseGeometry:
@@ -418,9 +427,7 @@ def _groups(parts: Sequence[Part], regions: Sequence[BaseGeometry], size: float)
     return [[part for part, of in zip(parts, group.tolist(), strict=True) if of == index] for index in range(count)]
 
 
-def _largest(
-    parts: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float
-) -> tuple[list[Part], float]:
+def _largest(parts: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> tuple[list[Part], float]:
     """The parts that make the largest silhouette together, and its area."""
     parts = [part for part in parts if not regions[part.number].is_empty]
     if not parts:
@@ -504,6 +511,42 @@ def _shared(lines: Sequence[FloatArray], regions: Sequence[Polygon]) -> list[tup
         for index in touched:
             found[index].append(line)
     return [tuple(some) for some in found]
+
+
+def parts_of_groups(
+    groups: Sequence[tuple[Sequence[FloatArray], Part]], widest_gap: float, unit: str
+) -> tuple[list[Part], list[str], float]:
+    """What groups of lines enclose or draw, such as those of each layer, one like a part each.
+
+    Open lines of different groups that enclose something together are parts of their own.
+
+    Returns
+    -------
+    parts : list of Part
+    gaps : list of str
+        A sentence on those that were closed.
+    bridged : float, source units
+        The width up to which gaps were closed.
+    """
+    parts: list[Part] = []
+    gaps: list[str] = []
+    bridged = 0.0
+    for chains, like in groups:
+        net = joined(chains, widest_gap)
+        gaps += closed_gaps(net, unit)
+        bridged = max(bridged, widest_gap * net.size)
+        parts += parts_of_lines(net, like)
+    loose = [part for part in parts if not part.is_closed]
+    if len(groups) > 1 and len(loose) > 1:
+        net = joined(_all_lines(loose), widest_gap)
+        broadest = max(loose, key=lambda part: part.pen.width)
+        layers, colours = ({getattr(part, name) for part in loose} for name in ("layer", "colour"))
+        layer, colour = (one.pop() if len(one) == 1 else "" for one in (layers, colours))
+        found = parts_of_lines(net, replace(broadest, name="", layer=layer, colour=colour))
+        if any(part.is_closed for part in found):
+            gaps += closed_gaps(net, unit)
+            parts = [part for part in parts if part.is_closed] + found
+    return parts, gaps, bridged
 
 
 def parts_of_lines(net: Joined, like: Part) -> list[Part]:

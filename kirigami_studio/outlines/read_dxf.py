@@ -27,11 +27,10 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.bezier import flattened_curve
-from kirigami_studio.outlines.contour import thinned
-from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
+from kirigami_studio.outlines.joining import refuse_scribbles
+from kirigami_studio.outlines.merging import usual_outline
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, StrokeStyle, numbered, parts_of_lines
-from kirigami_studio.outlines.pieces import largest_piece
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, StrokeStyle, numbered, parts_of_groups
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 from kirigami_studio.outlines.text_curves import MOST_LETTERS, Text, scaled, text_parts
 
@@ -107,11 +106,7 @@ def read_dxf(path: str | Path) -> Outline:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path, content)
-        region, joints = join([line.chain * found.to_mm for line in found.lines], WIDEST_GAP, found.unit)
-        ring, dropped = largest_piece(region)
-        notes = (*found.notes, *joints, *dropped)
-        return Outline.from_points(thinned(ring), name=path.stem, notes=notes, unit=found.unit)
+        return usual_outline(_parts(path, content))
 
 
 def dxf_parts(path: str | Path) -> SourceParts:
@@ -125,40 +120,41 @@ def dxf_parts(path: str | Path) -> SourceParts:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path, content, with_texts=True)
-        lines_of: dict[str, list[Line]] = {}
-        for line in found.lines:
-            lines_of.setdefault(line.layer, []).append(line)
-        parts: list[Part] = []
-        gaps: list[str] = []
-        for layer, lines in lines_of.items():
-            net = joined([line.chain * found.to_mm for line in lines], WIDEST_GAP)
-            gaps += closed_gaps(net, found.unit)
-            thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
-            pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
-            colours = {line.colour for line in lines}
-            like = Part(
-                0, "", layer, colours.pop() if len(colours) == 1 else "", DrawnPartKind.STROKED, Polygon(), (), pen
-            )
-            parts += parts_of_lines(net, like)
-        written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
-        parts += written
-        if not parts:
-            raise TargetError("dxf.no_lines_but_text")
-        kept, too_many = numbered(parts, max(max(part.size) for part in parts))
-        left_out = (*found.notes, *fonts, *gaps, *too_many)
-        return SourceParts(path.stem, kept, left_out, found.unit, found.facts)
+        return _parts(path, content)
 
 
-def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
-    """Everything visible in model space, flattened; texts only where they are wanted."""
+def _parts(path: Path, content: bytes) -> SourceParts:
+    found = _read(path, content)
+    lines_of: dict[str, list[Line]] = {}
+    for line in found.lines:
+        lines_of.setdefault(line.layer, []).append(line)
+    groups = []
+    for layer, lines in lines_of.items():
+        thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
+        pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
+        colours = {line.colour for line in lines}
+        colour = colours.pop() if len(colours) == 1 else ""
+        like = Part(0, "", layer, colour, DrawnPartKind.STROKED, Polygon(), (), pen)
+        groups.append(([line.chain * found.to_mm for line in lines], like))
+    parts, gaps, bridged = parts_of_groups(groups, WIDEST_GAP, found.unit)
+    written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
+    parts += written
+    if not parts:
+        raise TargetError("dxf.no_lines_but_text")
+    kept, too_many = numbered(parts, max(max(part.size) for part in parts))
+    left_out = (*found.notes, *fonts, *gaps, *too_many)
+    return SourceParts(path.stem, kept, left_out, found.unit, found.facts, bridged=bridged)
+
+
+def _read(path: Path, content: bytes) -> DxfDrawing:
+    """Everything visible in model space, flattened."""
     budget = TimeBudget()
     drawing, repaired = opened_dxf(path, content, budget)
     notes: tuple[str, ...] = ()
     if repaired:
         notes = (tr("The file was damaged and was repaired while reading. Check the shape."),)
     curves, texts, hidden = _visible(drawing, budget)
-    written = [text for entity in texts[:MOST_LETTERS] for text in _texts(entity)] if with_texts else []
+    written = [text for entity in texts[:MOST_LETTERS] for text in _texts(entity)]
     if not curves and not written:
         raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
     if texts and not written:

@@ -183,7 +183,7 @@ def wide_array(space, drawing) -> None:
     ("draw", "word"),
     [
         (lambda space, _: None, "no lines in model space"),
-        (lambda space, _: space.add_text("hello"), "Convert the text to lines"),
+        (lambda space, _: space.add_text("hello"), "letters that do not touch"),
         (lambda space, _: space.add_line((0, 0), (5, 5)), "open"),
         (lambda space, _: space.add_line((3, 3), (3, 3)), "one point"),
         (lambda space, _: space.add_circle((0, 0), 0), "no length"),
