@@ -98,6 +98,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The drawing has no lines in model space. Draw the contour with lines, arcs, polylines or splines."
     ),
     "dxf.no_lines_but_text": mark("The drawing has only text in model space. Convert the text to lines."),
+    "dxf.only_regions": mark("The drawing has only regions or solids. Explode them into lines, and save it again."),
     "dxf.too_many_entities": mark("The drawing unfolds to more than {limit} entities. Export only the outline."),
     "dxf.blocks_too_deep": mark("The drawing nests blocks more than {limit} deep. Explode them and save it again."),
     "dxf.block_repeated": mark("A block is repeated {times} times. Export only the outline."),
