@@ -180,6 +180,10 @@ def _is_dxf(content: bytes) -> bool:
     return content.startswith(b"AutoCAD Binary DXF") or words[:2] == [b"0", b"SECTION"]
 
 
+def _is_pdf(content: bytes) -> bool:
+    return b"%PDF-" in content[:1024]
+
+
 KINDS = (
     _picture(".png", begins=lambda content: content.startswith(b"\x89PNG")),
     _picture(".jpg", ".jpeg", begins=lambda content: content.startswith(b"\xff\xd8\xff")),
@@ -190,6 +194,7 @@ KINDS = (
     _picture(".avif", begins=lambda content: content[4:12] in (b"ftypavif", b"ftypavis")),
     SourceKind((".svg",), _is_svg, _late("read_svg", "read_svg"), _late("read_svg", "svg_parts")),
     SourceKind((".dxf",), _is_dxf, _late("read_dxf", "read_dxf"), _late("read_dxf", "dxf_parts")),
+    SourceKind((".pdf", ".ai"), _is_pdf, _late("read_pdf", "read_pdf"), _late("read_pdf", "pdf_parts")),
     SourceKind((".json",), lambda content: False, read_json),
 )
 #: Kinds by extension; those that can hold several parts; extensions of pictures.

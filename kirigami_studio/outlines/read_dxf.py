@@ -61,23 +61,20 @@ HATCHES, FACES = frozenset({"HATCH", "MPOLYGON"}), frozenset({"SOLID", "TRACE", 
 FILLS = HATCHES | FACES
 #: Solids of a modelling kernel, which say nothing of their lines.
 KERNEL = frozenset({"REGION", "BODY", "3DSOLID", "SURFACE"})
-#: Words of layers that hold the shape, whatever else their names say, and of those that hold what is beside it, in
-#: several languages: whole words, and beginnings of words.
+#: Words of layers that hold the shape, whatever else their names say, and of those that hold what is beside it or
+#: engraved on it, in several languages.
 CUT_WORDS = re.compile(
     r"cut|outline|contou?r|kontur|umriss|schnitt|schneid|d[eé]coupe|coupe|corte|taglio|profile?|laser|mill|fr[aä]s"
 )
-ASIDE_WORDS = frozenset(
-    "dim dims text texts txt texte textes texto textos testo testi tekst note notes anno aux axis axes axe asse assi eje "
-    "ejes achse achsen cota cotas cote cotes quote quota quotes mass masse maß maße maat maten center centre centro cl "
-    "guide guides hidden hilf sketch skizze title label labels leader vport ось оси".split()
+ASIDE_WORDS = re.compile(
+    r"dims?|te?xte?s?|text[oi]s?|test[oi]|tekst|notes?|anno|aux|ax[ei]s?|assei?|assi|ejes?|achsen?|cot[ae]s?|quot[ae]s?|"
+    r"ma(?:ss|ß)e?|maate?n?|cent(?:re|er|ro)|cl|guides?|hidden|hilf|sketch|skizze|titles?|labels?|leaders?|vports?|"
+    r"ос[ьи]|dimension\w*|(?:be|ver)ma(?:ss|ß)\w*|cotation\w*|quotatur\w*|acota\w*|maatvoer\w*|wymiar\w*|размер\w*|"
+    r"annot\w*|beschrift\w*|schrift[fk]\w*|cente?re?l\w*|mittel[lp]\w*|hartlijn\w*|symmetr\w*|constr\w*|konstruk\w*|"
+    r"hilfs\w*|costruzion\w*|auxilia\w*|defpoint\w*|viewport\w*|ansichtsf\w*|titleb\w*|cartouche\w*|cajet\w*|"
+    r"cartigl\w*|zeichnungsr\w*|blattrahm\w*|verdeckt\w*|phantom\w*|helper\w*|guidel\w*|referen[cz]\w*|вспомог\w*|"
+    r"e?n?gra[vb]\w*|incisi\w*|etch\w*|标注\w*|尺寸\w*|寸法\w*|文字\w*|中心线\w*|辅助\w*"
 )
-ASIDE_BEGINNINGS = (
-    "dimension", "bemass", "bemaß", "vermass", "vermaß", "cotation", "quotatur", "acota", "maatvoer", "wymiar", "размер",
-    "annot", "beschrift", "schriftf", "schriftk", "centerl", "centrel", "mittell", "mittelp", "hartlijn", "symmetr",
-    "construct", "konstrukt", "hilfs", "costruzion", "auxilia", "defpoint", "viewport", "ansichtsf", "titleb", "cartouche",
-    "cajet", "cartigl", "zeichnungsr", "blattrahm", "verdeckt", "phantom", "helper", "guidel", "reference", "referenz",
-    "вспомог", "标注", "尺寸", "寸法", "文字", "中心线", "辅助",
-)  # fmt: skip
 #: Layers of AutoCAD Mechanical with hidden lines, measures, texts, centre lines, and hatches.
 MECHANICAL = re.compile(r"am_(3|5|6|7|8|10|11)n?")
 #: Line types of centre lines, hidden edges and construction.
@@ -204,7 +201,9 @@ def _parts(path: Path, content: bytes) -> SourceParts:
     parts, gaps, bridged = _filled(found), [], 0.0
     for is_aside in (False, True):
         some = [(key, lines) for key, lines in groups.items() if key[0] is is_aside]
-        more, closed, width = parts_of_groups([_group(found, key, lines) for key, lines in some], WIDEST_GAP, found.unit)
+        more, closed, width = parts_of_groups(
+            [_group(found, key, lines) for key, lines in some], WIDEST_GAP, found.unit
+        )
         parts += more
         gaps += closed
         bridged = max(bridged, width)
@@ -215,16 +214,14 @@ def _parts(path: Path, content: bytes) -> SourceParts:
     beside = dict.fromkeys(part.layer for part in parts if part.is_aside and not part.is_letter)
     notes: tuple[str, ...] = found.notes
     if beside and any(part.is_closed and not part.is_aside for part in parts):
-        notes += (tr("Measures, centre and construction lines were left out: {names}.", names=", ".join(beside)),)
+        notes += (
+            tr("Measures, texts, engraving and construction lines were left out: {names}.", names=", ".join(beside)),
+        )
     kept, too_many = numbered(parts, max(max(part.size) for part in parts))
-    return SourceParts(
-        path.stem, kept, (*notes, *fonts, *gaps, *too_many), found.unit, found.facts, bridged=bridged
-    )
+    return SourceParts(path.stem, kept, (*notes, *fonts, *gaps, *too_many), found.unit, found.facts, bridged=bridged)
 
 
-def _group(
-    found: DxfDrawing, key: tuple[bool, str, str], lines: Sequence[Line]
-) -> tuple[list[FloatArray], Part]:
+def _group(found: DxfDrawing, key: tuple[bool, str, str], lines: Sequence[Line]) -> tuple[list[FloatArray], Part]:
     """Lines of a layer and colour, source units, and the part that all of them are like."""
     is_aside, layer, colour = key
     thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
@@ -253,9 +250,7 @@ def is_aside_layer(name: str) -> bool:
     if CUT_WORDS.search(name):
         return False
     words = re.findall(r"[^\W\d_]+", name)
-    return bool(
-        any(word in ASIDE_WORDS or word.startswith(ASIDE_BEGINNINGS) for word in words) or MECHANICAL.fullmatch(name)
-    )
+    return any(map(ASIDE_WORDS.fullmatch, words)) or MECHANICAL.fullmatch(name) is not None
 
 
 def _read(path: Path, content: bytes) -> DxfDrawing:

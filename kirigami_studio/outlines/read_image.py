@@ -111,9 +111,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
         levels = _levels(content)
         ink = _ink(levels, threshold)
         ring, notes = trace(ink)
-        outline = Outline.from_points(
-            ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px"
-        )
+        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
 
 

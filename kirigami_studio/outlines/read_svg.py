@@ -27,7 +27,7 @@ from kirigami_studio.outlines.parts import (
     stroked,
 )
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
-from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, svg_drawing
+from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, SvgDrawing, svg_drawing
 from kirigami_studio.outlines.svg_safety import checked_svg
 from kirigami_studio.outlines.text_curves import text_parts
 
@@ -74,6 +74,11 @@ def _parts(name: str, content: bytes) -> SourceParts:
     root, width_mm = checked_svg(content)
     unit = "px" if width_mm is None else "mm"
     read = svg_drawing(root, 1.0 if width_mm is None else 1.0 / PIXELS_PER_MM, budget)
+    return parts_of_drawing(name, read, unit, budget)
+
+
+def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:
+    """The parts of a drawing as it is painted, of an SVG or of a page."""
     refuse_scribbles([chain for shape in read.drawn for chain in shape.chains])
     drawn, paper = _without_paper(read.drawn)
     notes = [*read.left_out]
@@ -115,9 +120,7 @@ def _part(shape: Drawn, paint: Paint | None) -> Part:
     pen = shape.pen if shape.stroke is not None else StrokeStyle()
     rings = [chain for chain in shape.chains if len(chain) > 2]
     ring = rings[0] if len(rings) == 1 and shape.clip is None else None
-    return Part(
-        0, shape.name, shape.layer, _colour(paint), DrawnPartKind.FILLED, Polygon(), lines, pen, ring=ring
-    )
+    return Part(0, shape.name, shape.layer, _colour(paint), DrawnPartKind.FILLED, Polygon(), lines, pen, ring=ring)
 
 
 def _filled_parts(shape: Drawn) -> list[Part]:

@@ -90,6 +90,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "svg.too_many_numbers": mark(
         "The paths of the drawing have more than {limit} numbers. Simplify them, or export only the outline."
     ),
+    # PDF
+    "source.pdf_damaged": mark(
+        "{name} is damaged or not a PDF ({reason:.100}). Open it in the program that made it and save it again."
+    ),
+    "pdf.postscript": mark(
+        "The file is PostScript without a PDF inside. Save it with PDF compatibility, or export it as PDF or SVG."
+    ),
+    "pdf.locked": mark("The PDF is locked by a password. Save it without one."),
+    "pdf.unpacks": mark("The PDF unpacks to more than {limit} MB. Export only the outline."),
+    "pdf.too_deep": mark("The PDF nests forms more than {limit} deep. Export only the outline."),
     # DXF
     "source.dxf_damaged": mark(
         "{name} is damaged or not a DXF drawing ({reason:.100}). Open it in the program that made it and save it again."
