@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.outlines.joining import closed_gaps, joined, refuse_scribbles
+from kirigami_studio.outlines.joining import refuse_scribbles
 from kirigami_studio.outlines.merging import usual_outline
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import (
@@ -22,7 +22,7 @@ from kirigami_studio.outlines.parts import (
     SourceParts,
     StrokeStyle,
     numbered,
-    parts_of_lines,
+    parts_of_groups,
     parts_of_region,
     stroked,
 )
@@ -103,7 +103,8 @@ def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget)
             parts += parts_of_region(shape.seen(), replace(like, lines=(), ring=None))
         else:
             lines.setdefault((shape.layer, _colour(shape.stroke), round(shape.pen.width, 9)), []).append(shape)
-    found, gaps, bridged = _line_parts(list(lines.values()), unit)
+    groups = [([chain for shape in some for chain in shape.chains], _line_part(some)) for some in lines.values()]
+    found, gaps, bridged = parts_of_groups(groups, WIDEST_GAP, unit)
     parts = [_upright(part) for part in (*parts, *found, *written)]
     if not parts:
         raise TargetError("drawing.no_area")
@@ -131,36 +132,11 @@ def _filled_parts(shape: Drawn) -> list[Part]:
     return parts_of_region(region, _part(shape, shape.fill))
 
 
-def _line_parts(groups: list[list[Drawn]], unit: str) -> tuple[list[Part], list[str], float]:
-    """What the lines of each layer, colour and width enclose or draw; sentences on closed gaps; the widest closed.
-
-    Open lines of different groups that enclose something together are one part.
-    """
-    parts: list[Part] = []
-    gaps: list[str] = []
-    bridged = 0.0
-    for shapes in groups:
-        net = joined([chain for shape in shapes for chain in shape.chains], WIDEST_GAP)
-        gaps += closed_gaps(net, unit)
-        bridged = max(bridged, WIDEST_GAP * net.size)
-        parts += parts_of_lines(net, _line_part(shapes))
-    loose = [part for part in parts if not part.is_closed]
-    if len(groups) > 1 and len(loose) > 1:
-        net = joined([line for part in loose for line in part.lines], WIDEST_GAP)
-        found = [part for part in parts_of_lines(net, _line_part([shape for shapes in groups for shape in shapes]))]
-        if any(part.is_closed for part in found):
-            gaps += closed_gaps(net, unit)
-            parts = [part for part in parts if part.is_closed] + found
-    return parts, gaps, bridged
-
-
 def _line_part(shapes: list[Drawn]) -> Part:
-    """A part of lines that meet: it is painted with the broadest of their pens."""
-    first = max(shapes, key=lambda shape: shape.pen.width)
-    colours, layers = {_colour(shape.stroke) for shape in shapes}, {shape.layer for shape in shapes}
+    """A part of the lines of one layer, colour and width, without them."""
+    first = shapes[0]
     name = first.name if len(shapes) == 1 else ""
-    colour, layer = (one.pop() if len(one) == 1 else "" for one in (colours, layers))
-    return Part(0, name, layer, colour, DrawnPartKind.STROKED, Polygon(), (), first.pen)
+    return Part(0, name, first.layer, _colour(first.stroke), DrawnPartKind.STROKED, Polygon(), (), first.pen)
 
 
 def _upright(part: Part) -> Part:

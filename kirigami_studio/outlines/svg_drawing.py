@@ -1,7 +1,8 @@
 """An SVG as it is painted: visible shapes and texts in their order, each with its paint, its pen and what clips it.
 
-Everything lies in one frame, the page's, y down, in the unit that it is scaled to.  Groups, ``use``, symbols, nested drawings, ``switch``,
-transforms, clip paths and masks are resolved here; :mod:`~kirigami_studio.outlines.svg_style` does the cascade.
+Everything lies in one frame, the page's, y down, in the unit that it is scaled to.  Groups, ``use``, symbols, nested
+drawings, ``switch``, transforms, clip paths and masks are resolved here; the cascade is
+:mod:`~kirigami_studio.outlines.svg_style`'s.
 """
 
 from __future__ import annotations
@@ -265,9 +266,7 @@ class _Painter:
             clip = None if clip.covers(extent) else clip
         if any(style.get(f"marker-{end}", "none").strip() != "none" for end in ("start", "mid", "end")):
             self._say("marker", tr("Arrow heads and other markers on lines were left out."))
-        yield Drawn(
-            chains, fill, stroke, rule == "evenodd", pen, _name(element) or frame.name, frame.layer, clip
-        )
+        yield Drawn(chains, fill, stroke, rule == "evenodd", pen, _name(element) or frame.name, frame.layer, clip)
 
     def _chains(self, element: Element, tag: str, frame: _Frame) -> list[FloatArray]:
         """The subpaths of a shape on the page."""
@@ -405,9 +404,7 @@ class _Painter:
 
     def _extent(self, element: Element, frame: _Frame) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of an element in its user space."""
-        measured = replace(
-            frame, matrix=np.eye(3), clip=None, is_measured=True, opacity=1.0, makes_clip=False
-        )
+        measured = replace(frame, matrix=np.eye(3), clip=None, is_measured=True, opacity=1.0, makes_clip=False)
         tag = tag_of(element)
         if tag in SHAPES:
             chains = self._chains(element, tag, measured)
@@ -448,7 +445,9 @@ class _Painter:
         """The product of a list of transforms; the identity where one is not understood."""
         product = np.eye(3)
         for name, arguments in TRANSFORM.findall(stated[:100_000]):
-            words = [word for word in re.split(r"[\s,]+", re.sub(r"(?<=[\d.])(?=[+-])(?<![eE])", " ", arguments)) if word]
+            words = [
+                word for word in re.split(r"[\s,]+", re.sub(r"(?<=[\d.])(?=[+-])(?<![eE])", " ", arguments)) if word
+            ]
             kind = name.lower()
             if kind.startswith("translate"):
                 axes = (1,) if kind.endswith("y") else (0, 1)
@@ -457,8 +456,10 @@ class _Painter:
                     for axis, word in zip(axes, words, strict=False)
                 ]
             else:
-                values = [_angle(word) if kind in ANGLES and at < ANGLES[kind] else _number(word, np.nan)
-                          for at, word in enumerate(words)]
+                values = [
+                    _angle(word) if kind in ANGLES and at < ANGLES[kind] else _number(word, np.nan)
+                    for at, word in enumerate(words)
+                ]
             one = _one_transform(kind, values)
             if one is None or not np.isfinite(one).all():
                 return np.eye(3)
@@ -526,7 +527,9 @@ class _Painter:
                 if tag_of(child) in ("tspan", "a"):
                     visit(child, self._style(child, replace(frame, style=style)))
                 elif tag_of(child) == "textPath":
-                    self._say("text", tr("Text along a path was left out. Convert it to paths if it belongs to the shape."))
+                    self._say(
+                        "text", tr("Text along a path was left out. Convert it to paths if it belongs to the shape.")
+                    )
                 add(child.tail if seen else "", style, False)
 
         visit(element, frame.style)
@@ -560,8 +563,20 @@ LENGTHS = {
     "ellipse": ("cx", "cy", "rx", "ry"),
     "line": ("x1", "y1", "x2", "y2"),
 }
-AXES = {"r": None, **{name: axis for axis, names in enumerate(("x width cx rx x1 x2", "y height cy ry y1 y2")) for name in names.split()}}
-PIXELS = {"": 1.0, "px": 1.0, **{unit: mm * PIXELS_PER_MM for unit, mm in MM_PER_UNIT.items()}, "q": 0.25 * PIXELS_PER_MM}
+AXES = {
+    "r": None,
+    **{
+        name: axis
+        for axis, names in enumerate(("x width cx rx x1 x2", "y height cy ry y1 y2"))
+        for name in names.split()
+    },
+}
+PIXELS = {
+    "": 1.0,
+    "px": 1.0,
+    **{unit: mm * PIXELS_PER_MM for unit, mm in MM_PER_UNIT.items()},
+    "q": 0.25 * PIXELS_PER_MM,
+}
 #: Transforms by angles, and how many of their numbers are angles.
 ANGLES = {"rotate": 1, "skewx": 1, "skewy": 1, "skew": 2}
 

@@ -31,7 +31,7 @@ REAL_LENGTH = re.compile(r"\s*\+?(\d+\.?\d*|\.\d+)(mm|cm|in|pt|pc)\s*", re.IGNOR
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": MM_PER_INCH, "pt": MM_PER_INCH / 72.0, "pc": MM_PER_INCH / 6.0}
 
 
-class _PrologueRead(Exception):
+class _PrologueEndError(Exception):
     """Everything before the first element was read."""
 
 
@@ -78,12 +78,12 @@ def _check_entities(content: bytes) -> None:
         found[name] = value
 
     def begun(*_: object) -> None:
-        raise _PrologueRead
+        raise _PrologueEndError
 
     parser = expat.ParserCreate()
     parser.EntityDeclHandler = declared
     parser.StartElementHandler = begun
-    with contextlib.suppress(_PrologueRead):
+    with contextlib.suppress(_PrologueEndError):
         parser.Parse(content, True)
     letters = sum(plain.count(b"&%s;" % name.encode()) * len(value) for name, value in found.items())
     if len(found) > MOST_ENTITIES or letters > MOST_ENTITY_LETTERS:

@@ -22,7 +22,7 @@ cssselect2: Any = untyped_cssselect2
 tinycss2: Any = untyped_tinycss2
 color4: Any = untyped_color4
 
-#: Letters of all style sheets together without embedded files, rules, and tests of selectors that look at many elements.
+#: Letters of all style sheets together without embedded files; rules; tests of selectors that look at many elements.
 MOST_STYLE, MOST_RULES, MOST_TESTS = 300_000, 5_000, 3_000_000
 #: How deep variables lead to each other, and how long one value may become.
 DEEPEST_VARIABLE, LONGEST_VALUE = 16, 4_000
@@ -35,13 +35,15 @@ MEDIA = re.compile(r"\s*(?:only\s+)?(?:all|screen)?\s*", re.IGNORECASE)
 
 #: Properties that an element takes from the one around it.
 INHERITED = frozenset(
-    "clip-rule color fill fill-opacity fill-rule font-family font-size font-style font-weight stroke stroke-linecap "
-    "stroke-linejoin stroke-miterlimit stroke-opacity stroke-width text-anchor visibility marker-start marker-mid "
-    "marker-end".split()
+    {"clip-rule", "color", "fill", "fill-opacity", "fill-rule", "font-family", "font-size", "font-style", "font-weight"}
+    | {"stroke", "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width"}
+    | {"text-anchor", "visibility", "marker-start", "marker-mid", "marker-end"}
 )
 #: Properties that are attributes, too.
-PRESENTATION = INHERITED | frozenset(
-    "clip-path display mask opacity overflow stop-color stop-opacity transform transform-origin vector-effect".split()
+PRESENTATION = (
+    INHERITED
+    | {"clip-path", "display", "mask", "opacity", "overflow", "stop-color", "stop-opacity", "transform"}
+    | {"transform-origin", "vector-effect"}
 )
 FONT = re.compile(
     r"(?P<style>(?:[\w-]+\s+)*?)(?P<size>[\d.]+[a-z%]*)(?:\s*/\s*\S+)?\s+(?P<family>\S.*)", re.IGNORECASE | re.DOTALL
@@ -72,7 +74,9 @@ class Cascade:
             if count * float(depth) ** deep * float(width) ** wide > MOST_TESTS:
                 raise TargetError("svg.style_too_large")
         for wrapped in cssselect2.ElementWrapper.from_xml_root(root).iter_subtree():
-            found = [declaration for *_, pseudo, rule in matcher.match(wrapped) if pseudo is None for declaration in rule]
+            found = [
+                declaration for *_, pseudo, rule in matcher.match(wrapped) if pseudo is None for declaration in rule
+            ]
             if found:
                 self._ruled[wrapped.etree_element] = found
 
@@ -119,9 +123,9 @@ def _add_rules(matcher: Any, sheet: str) -> list[tuple[int, int]]:
     while waiting:
         inner: list[Any] = []
         for rule in waiting:
-            if rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content is not None:
-                if MEDIA.fullmatch(tinycss2.serialize(rule.prelude)):
-                    inner += tinycss2.parse_rule_list(rule.content, skip_comments=True, skip_whitespace=True)
+            is_media = rule.type == "at-rule" and rule.lower_at_keyword == "media" and rule.content is not None
+            if is_media and MEDIA.fullmatch(tinycss2.serialize(rule.prelude)):
+                inner += tinycss2.parse_rule_list(rule.content, skip_comments=True, skip_whitespace=True)
             if rule.type != "qualified-rule":
                 continue
             found = declarations(tinycss2.parse_blocks_contents(rule.content))
@@ -146,7 +150,10 @@ def declarations(parsed: Iterable[Any]) -> list[tuple[str, str, bool]]:
     found = []
     for one in parsed:
         if one.type == "declaration":
-            name, value = one.name if one.name.startswith("--") else one.lower_name, tinycss2.serialize(one.value).strip()
+            name, value = (
+                one.name if one.name.startswith("--") else one.lower_name,
+                tinycss2.serialize(one.value).strip(),
+            )
             if name == "font" and (font := FONT.fullmatch(value)):
                 found += [(f"font-{part}", font[part], one.important) for part in ("size", "family")]
                 for word in font["style"].split():

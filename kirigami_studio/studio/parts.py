@@ -18,7 +18,7 @@ from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.read import has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
-from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
+from kirigami_studio.studio.targets import TargetRead, design_of, reading_target, usual_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
@@ -83,15 +83,14 @@ def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRea
 
 def _reading_outline(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
     """Read an outline, or the parts of a drawing that has several to choose from."""
-    if has_parts(Path(source)):
-        if is_picture(Path(source)):
-            if _has_islands(source):
-                yield sketched(read_parts(source))
-                return
-        elif (found := read_parts(source)).is_ambiguous:
-            yield sketched(found)
-            return
-    yield from reading_target(source, cancel)
+    path = Path(source)
+    if has_parts(path) and not is_picture(path):
+        found = read_parts(source)
+        yield sketched(found) if found.is_ambiguous else TargetRead(usual_target(path, found))
+    elif is_picture(path) and _has_islands(source):
+        yield sketched(read_parts(source))
+    else:
+        yield from reading_target(source, cancel)
 
 
 def _has_islands(source: str) -> bool:

@@ -19,11 +19,12 @@ from kirigami_studio.foundation.errors import KirigamiError, TargetError, UsageE
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.merging import Join, Merging, merged
+from kirigami_studio.outlines.merging import Join, Merging, merged, usual_outline
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import ALL, LARGEST
+from kirigami_studio.outlines.parts import ALL, LARGEST, SourceParts
 from kirigami_studio.outlines.pieces import largest_piece
 from kirigami_studio.outlines.read import PART_READERS, has_parts, is_picture, read_parts, read_target
+from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -148,10 +149,16 @@ class PartChoice:
         from kirigami_studio.outlines.read_image import image_parts
 
         source = image_parts(path, threshold) if is_picture(path) else read_parts(path)
-        try:
+        if not is_picture(path) and self == PartChoice(LARGEST, Merging()):
+            return usual_target(path, source)
+        with decoding(path, "source.image_damaged"):
             return merged(source, source.chosen(self.words), self.merging).outline
-        except TargetError as error:
-            raise TargetError("source.not_usable", name=path.name, reason=error) from error
+
+
+def usual_target(path: Path, source: SourceParts) -> Outline:
+    """What is taken of the parts of a drawing without asking, as if the file was read as a target."""
+    with decoding(path, "source.svg_damaged"):
+        return usual_outline(source)
 
 
 def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None = None) -> Outline:
@@ -286,7 +293,6 @@ def reduced_picture(path: Path) -> NDArray[np.uint8] | None:
     from PIL import Image, ImageOps
 
     from kirigami_studio.outlines.read_image import opened_image, stretched
-    from kirigami_studio.outlines.source_file import decoding, read_bytes
 
     try:
         with decoding(path, "source.image_damaged"):

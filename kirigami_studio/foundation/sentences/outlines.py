@@ -67,7 +67,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "svg.compressed": mark("The file is compressed (SVGZ). Save it as plain SVG."),
     "svg.entities": mark(
-        "The file declares XML entities other than short plain texts, which are not read for safety. Save it as plain SVG."
+        "The file declares XML entities that are no short plain texts, which are not read for safety. Save it as plain "
+        "SVG."
     ),
     "svg.style_too_large": mark(
         "The style sheets of the drawing are too long or too complicated. Save it as plain SVG with attributes."

@@ -28,7 +28,7 @@ from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, Merged, Merging
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import DrawnPartKind, Part
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts
 from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts
 
 SIZE, LIST_WIDTH, PICTURE = QSize(980, 620), 310, QSize(40, 40)
@@ -178,7 +178,7 @@ class PartPicker(QDialog):
         self.finished.connect(lambda _: self._stop())
 
     def begin(self, read: PartsRead, purpose: Purpose = Purpose.TARGET) -> None:
-        """Show a drawing with what would be taken by itself: the largest closed part, else all lines as painted."""
+        """Show a drawing with what would be taken by itself, all lines as painted where nothing is closed."""
         self._stop()
         self._read, self._purpose, source = read, purpose, read.source
         closed = any(part.is_closed for part in source.parts)
@@ -189,7 +189,7 @@ class PartPicker(QDialog):
             self._set_range(field, share)
         with QSignalBlocker(self.join), QSignalBlocker(self.painted):
             self.join.choose(Join.BRIDGE)
-            self.painted.setChecked(not closed)
+            self.painted.setChecked(_as_painted(source))
         self.painted.setVisible(any(part.lines for part in source.parts))
         self._fill(frozenset(source.usual) if closed else frozenset(part.number for part in source.parts))
         self.view.show_drawing(read)
@@ -279,6 +279,8 @@ class PartPicker(QDialog):
 
     def _choose_largest(self) -> None:
         if self._read is not None:
+            with QSignalBlocker(self.painted):
+                self.painted.setChecked(_as_painted(self._read.source))
             self._choose(frozenset(self._read.source.usual))
 
     def _toggle(self, number: int) -> None:
@@ -350,7 +352,8 @@ class PartPicker(QDialog):
             self._accepts = True  # as soon as the outline is there
         elif self.result_ is not None:
             source = self._read.source if self._read is not None else None
-            usual = source is not None and self.chosen == frozenset(source.usual) and not self._as_painted
+            usual = source is not None and self.chosen == frozenset(source.usual)
+            usual = usual and self._as_painted == (source is not None and source.choice.as_painted)
             self.accept()
             self.taken.emit(self.result_.outline, usual and self.merging.join not in HULLS)
 
@@ -383,6 +386,11 @@ class PartPicker(QDialog):
         self.list.blockSignals(False)
         if self._undrawn:
             self._drawing.start()
+
+
+def _as_painted(source: SourceParts) -> bool:
+    """Whether lines count as they are painted, unless somebody wants it otherwise."""
+    return source.choice.as_painted or not any(part.is_closed for part in source.parts)
 
 
 def _state(checked: bool) -> Qt.CheckState:

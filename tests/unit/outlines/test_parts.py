@@ -17,7 +17,7 @@ from kirigami_studio.outlines import svg_curves
 from kirigami_studio.outlines.bezier import flattened_curve
 from kirigami_studio.outlines.merging import Join, Merging, merged
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import MOST_PARTS, DrawnPartKind, SourceParts
+from kirigami_studio.outlines.parts import MOST_PARTS, DrawnPartKind, SourceParts, StrokeStyle
 from kirigami_studio.outlines.read import read_parts
 from tests.refusals import refused
 
@@ -252,7 +252,8 @@ def test_that_only_drawings_with_a_choice_are_asked_about(body, asks, svg) -> No
 def test_that_one_outline_filled_and_stroked_is_one_shape_although_rounding_tells_both_apart() -> None:
     read = read_parts(DATA / "fill_and_stroke.svg")
     filled, stroked = read.parts
-    stroked = replace(stroked, region=scale(filled.region, 1.0 + 1e-13, 1.0 + 1e-13))
+    region = scale(filled.region, 1.0 + 1e-13, 1.0 + 1e-13)
+    stroked = replace(stroked, region=region, pen=StrokeStyle(0.1))  # a broad one would count as painted
     assert 0.0 < stroked.region.area - filled.region.area < 1e-9, "so this test can fail"
     source = replace(read, parts=(filled, stroked))
     assert not source.is_ambiguous
