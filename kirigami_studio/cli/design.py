@@ -134,27 +134,16 @@ class DesignJob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DesignOutcome:
-    """The designs of a job.
-
-    Attributes
-    ----------
-    result : Result
-    request : CutRequest
-        The best design that can be cut in its project, and how it is cut.
-    verdict : Verdict
-    files : mapping of str to str
-        Names by role, in the folder of the design, of a design from elsewhere that was asked for with its files.
-    contents : mapping of str to bytes
-        Of these files, by name; a name that stands for a folder has several.
-    notes : tuple of Note
-        What is not as it was asked for: no design is trimmed, or another one than the best is cut.
-    """
+    """The designs of a job."""
 
     result: Result
-    request: CutRequest
+    request: CutRequest  #: The best design that can be cut in its project, and how it is cut
     verdict: Verdict
+    #: Names by role, in the folder of the design, of a design from elsewhere that was asked for with its files
     files: Mapping[str, str] = field(default_factory=dict)
+    #: Of these files, by name; a name that stands for a folder has several
     contents: Mapping[str, bytes] = field(default_factory=dict)
+    #: What is not as it was asked for: no design is trimmed, or another one than the best is cut
     notes: tuple[Note, ...] = ()
 
     def save(self, folder: Path) -> dict[str, str]:

@@ -53,19 +53,13 @@ def hand_of(field: RatioField) -> int:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PinDistances:
-    """Distances between pins of one sheet, in the closed state in which they matter.
+    """Distances between pins of one sheet, in the closed state in which they matter."""
 
-    Attributes
-    ----------
-    matrix : (F, N) sparse
-        Reads the way from one pin to the other, seen from the panel of one of them, off the compact nodes.
-    way : (F, 2) float, unit cells
-    size : (F,) float, unit cells
-    """
-
+    #: (F, N), sparse; reads the way from one pin to the other, seen from the panel of one of them, off the compact
+    #: nodes
     matrix: csr_matrix
-    way: FloatArray
-    size: FloatArray
+    way: FloatArray  #: (F, 2), unit cells
+    size: FloatArray  #: (F,), unit cells
 
     def below(self, least: float) -> PinDistances:
         """Those that are smaller than ``least``."""

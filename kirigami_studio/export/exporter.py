@@ -23,64 +23,30 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExportJob:
-    """All that any kind of file may need.
-
-    Attributes
-    ----------
-    deployment : Deployment
-    phi : float, radians
-        Target angle.
-    plan : CutPlan or None
-        Needed by cut files (DXF, SVG, PDF).
-    target : (L, 2) float or None
-        Target outline, drawn behind pictures.
-    transform : Similarity
-        Takes the layout's frame at ``phi`` to the target's.
-    dxf_version : str
-    profile : str
-        Key of the machine profile.
-    paper : Paper
-        That a PDF is spread over.
-    provenance : mapping of str to str
-        Where the design comes from: version of the program, name and hash of the model, seed, settings; every file
-        repeats it.
-    trim : Trim or None
-        What was cut off the edge panels; pictures show what stays.
-    markers : bool
-        A LightBurn project also marks the connectors, on a layer that LightBurn does not cut.
-    motion : CutMotion or None
-        What pictures and animations show: the sheet as cut; None for its ideal motion.
-    picture_phi : float or None, radians
-        Angle that pictures show; the target angle unless given.
-    artwork : Artwork or None
-        What is printed on the sheet; only a whole set of files has it.
-    record : bytes
-        The design as a packed project, which DXF and SVG cut files carry; empty for none.
-    simulated_jam : float or None, radians
-        Where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked.
-    verdict : str
-        Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it.
-    printing : Printing
-        How files of solids are made: the planned sheet, as thick as its material, unless given.
-    """
+    """All that any kind of file may need."""
 
     deployment: Deployment
-    phi: float = 0.0
-    plan: CutPlan | None = None
-    target: FloatArray | None = None
-    transform: Similarity = field(default_factory=Similarity)
+    phi: float = 0.0  #: radians; target angle
+    plan: CutPlan | None = None  #: Needed by cut files (DXF, SVG, PDF)
+    target: FloatArray | None = None  #: (L, 2); target outline, drawn behind pictures
+    transform: Similarity = field(default_factory=Similarity)  #: Takes the layout's frame at ``phi`` to the target's
     dxf_version: DxfVersion = DxfVersion.R2010
-    profile: str = DEFAULT_PROFILE
-    paper: Paper = Paper.NONE
+    profile: str = DEFAULT_PROFILE  #: Key of the machine profile
+    paper: Paper = Paper.NONE  #: Paper; that a PDF is spread over
+    #: Where the design comes from: version of the program, name and hash of the model, seed, settings; every file
+    #: repeats it
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
-    trim: Trim | None = None
-    markers: bool = False
-    motion: CutMotion | None = None
-    picture_phi: float | None = None
-    artwork: Artwork | None = None
-    record: bytes = b""
+    trim: Trim | None = None  #: What was cut off the edge panels; pictures show what stays
+    markers: bool = False  #: A LightBurn project also marks the connectors, on a layer that LightBurn does not cut
+    motion: CutMotion | None = None  #: What pictures and animations show: the sheet as cut; None for its ideal motion
+    picture_phi: float | None = None  #: radians; angle that pictures show; the target angle unless given
+    width_mm: float = 100.0  #: Of the flat sheet, before trimming
+    artwork: Artwork | None = None  #: What is printed on the sheet; only a whole set of files has it
+    record: bytes = b""  #: The design as a packed project, which DXF and SVG cut files carry; empty for none
+    #: radians; where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked
     simulated_jam: float | None = None
-    verdict: str = ""
+    verdict: str = ""  #: Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it
+    #: How files of solids are made: the planned sheet, as thick as its material, unless given
     printing: Printing = field(default_factory=Printing)
 
     @classmethod

@@ -35,28 +35,15 @@ TIP_CHORD_MM = 5e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stroke:
-    """One curve as a file holds it.
+    """One curve as a file holds it."""
 
-    Attributes
-    ----------
-    points : (P, 2) float, mm
-        The first point of a closed stroke is not repeated.
-    closed : bool
-    layer : str
-        Name in the file.
-    colour : int
-        AutoCAD colour index.
-    bulges : (P,) float or None
-        Arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight.
-    circle : bool
-        A full circle of two half arcs, counter-clockwise from its rightmost point: files that know circles have one.
-    """
-
-    points: FloatArray
+    points: FloatArray  #: (P, 2), mm; the first point of a closed stroke is not repeated
     closed: bool
-    layer: str
-    colour: int
+    layer: str  #: Name in the file
+    colour: int  #: AutoCAD colour index
+    #: (P,); arcs, see :mod:`~kirigami_studio.fabricate.cut_path`; None where all edges are straight
     bulges: FloatArray | None = None
+    #: A full circle of two half arcs, counter-clockwise from its rightmost point: files that know circles have one
     circle: bool = False
 
     @classmethod

@@ -59,20 +59,11 @@ NAME_NEARER = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Finding(Note):
-    """One line of the report.
-
-    Attributes
-    ----------
-    ok : bool
-    warning : bool
-        Fine, but the user should know.
-    reader : str
-        The only reader that found it; empty where all agree.
-    """
+    """One line of the report."""
 
     ok: bool = True
-    warning: bool = False
-    reader: str = ""
+    warning: bool = False  #: Fine, but the user should know
+    reader: str = ""  #: The only reader that found it; empty where all agree
 
     @classmethod
     def judged(cls, ok: bool, code: str, /, **fields: object) -> Finding:
@@ -88,61 +79,33 @@ class Finding(Note):
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What two readers found in a written cut file.
-
-    Attributes
-    ----------
-    path : Path
-    ok : bool
-        No finding is bad.
-    size_mm : (width, height)
-        Everything that is drawn.
-    pieces : int or None
-        Pieces of the sheet after cutting; must be 1; None where the file does not say.
-    cut_length_mm : float
-        As the file says.
-    seconds_low, seconds_high : float
-        Estimated time of the job.
-    findings : tuple of Finding
-    warnings : tuple of Note
-        Notes to read before cutting.
-    void_miss_um : float or None
-        By how much voids miss being parallelograms about the connectors' centres as read from the file; None where
-        none were found.
-    jam_phi : float or None, radians
-        Where the sheet jams, 0 if it closes: by its simulation where that is known and the file is as planned, else by
-        the estimate for these centres; None where nothing is known.
-    """
+    """What two readers found in a written cut file."""
 
     path: Path
-    ok: bool
-    size_mm: tuple[float, float]
-    pieces: int | None
-    cut_length_mm: float
+    ok: bool  #: No finding is bad
+    size_mm: tuple[float, float]  #: (width, height); everything that is drawn
+    pieces: int | None  #: Pieces of the sheet after cutting; must be 1; None where the file does not say
+    cut_length_mm: float  #: As the file says
+    #: seconds_low and seconds_high: Estimated time of the job
     seconds_low: float
     seconds_high: float
     findings: tuple[Finding, ...]
-    warnings: tuple[Note, ...]
+    warnings: tuple[Note, ...]  #: Notes to read before cutting
+    #: By how much voids miss being parallelograms about the connectors' centres as read from the file; None where none
+    #: were found
     void_miss_um: float | None = None
+    #: radians; where the sheet jams, 0 if it closes: by its simulation where that is known and the file is as planned,
+    #: else by the estimate for these centres; None where nothing is known
     jam_phi: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """How one kind of file is read twice.
-
-    Attributes
-    ----------
-    readers : pair of functions
-    shift_mm : float
-        Points may differ by this from the plan.
-    bulge : float
-        Bulges may differ by this.
-    """
+    """How one kind of file is read twice."""
 
     readers: tuple[Reader, Reader]
-    shift_mm: float
-    bulge: float
+    shift_mm: float  #: Points may differ by this from the plan
+    bulge: float  #: Bulges may differ by this
 
 
 #: SVG has four decimals, and arcs by their radius.
@@ -413,18 +376,10 @@ def _size_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format)
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """The sheet after cutting.
-
-    Attributes
-    ----------
-    pieces : int
-    min_ligament_mm : float or None
-        None when there is nothing to measure.
-    overlap_mm : float
-    """
+    """The sheet after cutting."""
 
     pieces: int
-    min_ligament_mm: float | None
+    min_ligament_mm: float | None  #: None when there is nothing to measure
     overlap_mm: float
 
 

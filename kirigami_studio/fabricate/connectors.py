@@ -32,37 +32,23 @@ FLATTEST_STRAIGHT_OVERCUT = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hinges:
-    """The connectors of a finished sheet, numbered as in :class:`CutTable`.
+    """The connectors of a finished sheet, numbered as in :class:`CutTable`."""
 
-    Attributes
-    ----------
-    position : (H, 2) float, mm
-        T-junctions in the plan's frame.
-    cut, end, through : (H,) int
-        Number of the shortened cut, which end of it, and the cut it rests on (or ``SHEET_EDGE``).
-    requested_mm, finished_mm : (H,) float
-        Width that the cuts were planned for, and the width measured between the cuts after the kerf; both 0 for a
-        removed connector.
-    asked_mm : (H,) float
-        Width asked for: more than what was planned for where there was no room.
-    flexure_mm : (H,) float
-        Length over which the connector bends.
-    aside : (H, 2) float, mm
-        From the T-junction along the through cut to the middle of the connector, where it is narrowest.
-    lost : (H,) bool
-        Connectors that went with what trimming cut off; they count as removed.
-    """
-
-    position: FloatArray
+    position: FloatArray  #: (H, 2), mm; t-junctions in the plan's frame
+    #: cut, end and through: (H,); number of the shortened cut, which end of it, and the cut it rests on (or
+    #: ``SHEET_EDGE``)
     cut: IntArray
     end: IntArray
     through: IntArray
+    #: requested_mm and finished_mm: (H,); width that the cuts were planned for, and the width measured between the cuts
+    #: after the kerf; both 0 for a removed connector
     requested_mm: FloatArray
     finished_mm: FloatArray
-    asked_mm: FloatArray
-    flexure_mm: FloatArray
+    asked_mm: FloatArray  #: (H,); width asked for: more than what was planned for where there was no room
+    flexure_mm: FloatArray  #: (H,); length over which the connector bends
+    #: (H, 2), mm; from the T-junction along the through cut to the middle of the connector, where it is narrowest
     aside: FloatArray
-    lost: BoolArray
+    lost: BoolArray  #: (H,); connectors that went with what trimming cut off; they count as removed
 
     def __post_init__(self) -> None:
         for name in self.__slots__:

@@ -52,18 +52,10 @@ LARGEST_SCALE = 10.0
 
 @dataclass(frozen=True, slots=True)
 class MeasuredKerf:
-    """A kerf from measurements.
+    """A kerf from measurements."""
 
-    Attributes
-    ----------
-    kerf_mm : float
-        Mean of all readings.
-    doubt_mm : float
-        Half of the range that the readings span, as kerf; 0 for a single one.
-    """
-
-    kerf_mm: float
-    doubt_mm: float
+    kerf_mm: float  #: Mean of all readings
+    doubt_mm: float  #: Half of the range that the readings span, as kerf; 0 for a single one
 
 
 def kerf_from_gaps(gaps_mm: Sequence[float], slits: int = COMB_SLITS) -> MeasuredKerf:

@@ -114,29 +114,14 @@ def seats(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ending:
-    """The end of one slit.
+    """The end of one slit."""
 
-    Attributes
-    ----------
-    tip : (2,) float, mm
-        Where the slit ends; one of ``points``.
-    points : (P, 2) float, mm
-    bulges : (P,) float or None
-        See :mod:`~kirigami_studio.fabricate.cut_path`.
-    closed : bool
-        A relief hole, whose inside falls out.
-    flexure_mm : float
-        Length over which the connector bends.
-    aside_mm : float
-        How far along the through cut the middle of the connector is from the junction.
-    """
-
-    tip: FloatArray
-    points: FloatArray
-    bulges: FloatArray | None
-    closed: bool
-    flexure_mm: float
-    aside_mm: float
+    tip: FloatArray  #: (2,), mm; where the slit ends; one of ``points``
+    points: FloatArray  #: (P, 2), mm
+    bulges: FloatArray | None  #: (P,); see :mod:`~kirigami_studio.fabricate.cut_path`
+    closed: bool  #: A relief hole, whose inside falls out
+    flexure_mm: float  #: Length over which the connector bends
+    aside_mm: float  #: How far along the through cut the middle of the connector is from the junction
 
 
 def attempts(style: ConnectorStyle) -> int:

@@ -25,22 +25,13 @@ class Fastener(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class FastenerSize:
-    """Measures of a pin.
+    """Measures of a pin."""
 
-    Attributes
-    ----------
-    name : str
-        In parts lists.
-    hole_mm, head_mm : float
-        Diameter of the hole that it turns in, and of its head, nut or washer, whichever is widest.
-    beyond_mm : float
-        How much longer than the two layers it has to be: nut, roll or legs.
-    """
-
-    name: str
+    name: str  #: In parts lists
+    #: hole_mm and head_mm: Diameter of the hole that it turns in, and of its head, nut or washer, whichever is widest
     hole_mm: float
     head_mm: float
-    beyond_mm: float
+    beyond_mm: float  #: How much longer than the two layers it has to be: nut, roll or legs
 
 
 #: Screws: holes of the fine series of ISO 273, washers of ISO 7089; others: as craft shops sell them.

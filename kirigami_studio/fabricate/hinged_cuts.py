@@ -42,32 +42,15 @@ BESIDE_GAPS = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HingedCuts:
-    """Cuts and what their ends are.
+    """Cuts and what their ends are."""
 
-    Attributes
-    ----------
-    pieces : tuple of CutPiece
-        Slits and edge cuts, then the shapes at their ends.
-    seats : tuple of Seat
-        Of every hinge.
-    places : tuple of Place
-        Where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took.
-    shapes : mapping of hinge to int
-        Number of the piece that is the shape at a hinge, for those that have one.
-    flexure_mm : (H,) float
-        Length over which each connector bends.
-    aside : (H, 2) float, mm
-        From each junction along the through cut to the middle of the connector.
-    straight : Counter of Obstacle
-        How many hinges stayed straight although a style was asked for, by what was in the way.
-    """
-
-    pieces: tuple[CutPiece, ...]
-    seats: tuple[Seat, ...]
-    places: tuple[Place, ...]
-    shapes: Mapping[int, int]
-    flexure_mm: FloatArray
-    aside: FloatArray
+    pieces: tuple[CutPiece, ...]  #: Slits and edge cuts, then the shapes at their ends
+    seats: tuple[Seat, ...]  #: Of every hinge
+    places: tuple[Place, ...]  #: Where the slit of each hinge ends, ``NOWHERE`` for hinges that trimming took
+    shapes: Mapping[int, int]  #: Number of the piece that is the shape at a hinge, for those that have one
+    flexure_mm: FloatArray  #: (H,); length over which each connector bends
+    aside: FloatArray  #: (H, 2), mm; from each junction along the through cut to the middle of the connector
+    #: How many hinges stayed straight although a style was asked for, by what was in the way
     straight: Counter[Obstacle]
 
     def moved(self, move: Callable[[FloatArray], FloatArray]) -> HingedCuts:

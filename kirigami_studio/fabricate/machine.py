@@ -128,43 +128,14 @@ def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A cutter and the program that drives it.
+    """A cutter and the program that drives it."""
 
-    Attributes
-    ----------
-    key : str
-        Short name for the command line and for project files (the file's name).
-    name : str
-        Shown name.
-    kind : MachineKind
-    bed_width_mm, bed_height_mm : float
-        What it reaches; 0 for any size.
-    travel_mm_s : float
-        Speed between cuts.
-    acceleration_mm_s2 : float
-    largest_speed_mm_s : float
-        It cuts no faster, whatever a material asks for; 0 where no limit is known.
-    on_delay_s, off_delay_s : float
-        What it waits at the start of every path (piercing, lowering the blade) and at its end.
-    corner_delay_s : float
-        What it waits at every sharp corner (a scanner that settles, a blade that swivels).
-    thickest_mm : float
-        The thickest sheet that it takes; 0 where no limit is known.
-    canvas_width_mm, canvas_height_mm : float
-        The largest drawing that its program cuts; 0 where that is the bed.
-    profile : str
-        Key of the profile that its program wants cut files in.
-    file : str
-        Extension of the file that its program takes best.
-    note : str
-        Where the numbers come from.
-    """
-
-    key: str = field(metadata=_text())
-    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the list of machines.")))
+    key: str = field(metadata=_text())  #: Short name for the command line and for project files (the file's name)
+    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the list of machines.")))  #: Shown name
     kind: MachineKind = field(
         metadata=Setting(label=mark("Kind"), code="machine.no_such_kind", error=FabricationError).metadata
     )
+    #: bed_width_mm and bed_height_mm: What it reaches; 0 for any size
     bed_width_mm: float = field(
         default=0.0, metadata=_number(mark("Bed width"), mark("Width that the machine reaches; 0: any."), "mm", 5e3, 10)
     )
@@ -172,6 +143,7 @@ class Machine:
         default=0.0,
         metadata=_number(mark("Bed height"), mark("Height that the machine reaches; 0: any."), "mm", 5e3, 10),
     )
+    #: Speed between cuts
     travel_mm_s: float = field(
         default=200.0, metadata=_moving(mark("Travel speed"), mark("Speed between cuts."), "mm/s", 2e4, 20.0)
     )
@@ -179,12 +151,15 @@ class Machine:
         default=1500.0,
         metadata=_moving(mark("Acceleration"), mark("How fast the head accelerates."), "mm/s²", 2e5, 100.0),
     )
+    #: It cuts no faster, whatever a material asks for; 0 where no limit is known
     largest_speed_mm_s: float = field(
         default=0.0,
         metadata=_number(
             mark("Largest speed"), mark("It cuts no faster than this; 0: no limit known."), "mm/s", 2e4, 10
         ),
     )
+    #: on_delay_s and off_delay_s: What it waits at the start of every path (piercing, lowering the blade) and at its
+    #: end
     on_delay_s: float = field(
         default=0.0,
         metadata=_number(
@@ -195,16 +170,19 @@ class Machine:
         default=0.0,
         metadata=_number(mark("Delay after a cut"), mark("Pause after each cut."), "ms", 1e4, 5, scale=1000.0),
     )
+    #: What it waits at every sharp corner (a scanner that settles, a blade that swivels)
     corner_delay_s: float = field(
         default=0.0,
         metadata=_number(mark("Delay at a corner"), mark("Pause at each sharp corner."), "ms", 1e4, 1, scale=1000.0),
     )
+    #: The thickest sheet that it takes; 0 where no limit is known
     thickest_mm: float = field(
         default=0.0,
         metadata=_number(
             mark("Thickest sheet"), mark("Thickest sheet that it takes; 0: no limit known."), "mm", 50, 0.1
         ),
     )
+    #: canvas_width_mm and canvas_height_mm: The largest drawing that its program cuts; 0 where that is the bed
     canvas_width_mm: float = field(
         default=0.0,
         metadata=_number(
@@ -217,8 +195,9 @@ class Machine:
             mark("Canvas height"), mark("Highest drawing that its program cuts; 0: the bed."), "mm", 5e3, 10
         ),
     )
-    profile: str = field(default="any", metadata=_text())
-    file: str = field(default=".dxf", metadata=_text())
+    profile: str = field(default="any", metadata=_text())  #: Key of the profile that its program wants cut files in
+    file: str = field(default=".dxf", metadata=_text())  #: Extension of the file that its program takes best
+    #: Where the numbers come from
     note: str = field(default="", metadata=_text(mark("Note"), mark("Anything worth knowing.")))
 
     def __post_init__(self) -> None:

@@ -91,107 +91,61 @@ def _strain(label: str, about: str, zero: bool = False) -> Mapping[str, Setting]
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """One sheet material on one kind of machine.
+    """One sheet material on one kind of machine."""
 
-    Attributes
-    ----------
-    key : str
-        Short name for the command line and for project files (the preset's file name).
-    name : str
-        Shown name.
-    machine : str
-        Kind of machine that the numbers are for.
-    thickness_mm : float
-    kerf_mm : float
-        Full width of the cut, 0 for a blade.
-    connector_mm : float
-        Default finished connector width.
-    min_ligament_mm : float
-        A warning is given about finished ligaments below this.
-    relief_radius_mm : float
-        Radius of a stress-relief slit end, 0 for none.
-    speed_mm_s : float
-        Speed with the beam on.
-    join_tolerance_mm : float
-        Gaps below twice this may be closed by the program that imports the file.
-    calibrated : bool
-        False until the numbers were measured on a coupon.
-    note : str
-    yield_strain : float
-        Strain (0.05 = 5 %) above which it stays bent; 0 for what springs back until it breaks, and where nobody knows.
-    break_strain : float
-        Elongation at which it tears when pulled; files without it get that of a brittle sheet.
-    bend_strain : float
-        Strain of the outer fibre at which a bend breaks; larger than ``break_strain`` in what delaminates or folds.
-    passes : int
-        How many times the job is cut; 1 in files without it.
-    min_slit_mm : float
-        A warning is given about slits shorter than this; 0.1 in files without it.
-    young_gpa : float
-        Young's modulus; 3 in files without it, as many plastics have.
-    power_percent : float
-        Power of the laser while it cuts, 0 to 100; 0 for a blade, and where nobody knows it.
-    min_panel_mm : float
-        A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it.
-    connectors_hold : bool
-        False where no style, width and sheet size is known whose connectors survive opening.
-    construction : Construction
-        Way of making sheets that works best in it.
-    backing : bool
-        Whether it is meant as the hinge layer under tiles.
-    sheet_mm : float
-        Usual width of the flat sheet.
-    style : ConnectorStyle
-        Style that works at that width.
-    sources : mapping of str to str
-        Where the figures of entries are from, or that they are an estimate; no part of comparisons.
-    measured_on, measured_by : str
-        Day (ISO 8601) and author of the calibration, both may be empty.
-    travel_mm_s, acceleration_mm_s2, on_delay_s, off_delay_s, bed_width_mm, bed_height_mm : float or None
-        The machine's, in files from before machines stood apart; None in others, see ``machine.machine_of``.
-    """
-
+    #: Short name for the command line and for project files (the preset's file name)
     key: str = field(metadata=_text())
-    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the material list.")))
+    name: str = field(metadata=_text(mark("Name"), mark("Name shown in the material list.")))  #: Shown name
+    #: Kind of machine that the numbers are for
     machine: str = field(metadata=_text(mark("Machine"), mark("Machine these values were measured on.")))
     thickness_mm: float = field(metadata=_number(mark("Thickness"), mark("Sheet thickness."), "mm", 0.005, 50.0, 0.05))
+    #: Full width of the cut, 0 for a blade
     kerf_mm: float = field(
         metadata=_number(mark("Kerf"), mark("Full width of the cut; 0 for a blade."), "mm", 0.0, 5.0, 0.01, zero=True)
     )
+    #: Default finished connector width
     connector_mm: float = field(
         metadata=_number(mark("Connector"), mark("Default finished connector width."), "mm", 0.02, 20.0, 0.05)
     )
+    #: A warning is given about finished ligaments below this
     min_ligament_mm: float = field(
         metadata=_number(
             mark("Smallest ligament"), mark("Warn about ligaments narrower than this."), "mm", 0.005, 20.0, 0.01
         )
     )
+    #: Radius of a stress-relief slit end, 0 for none
     relief_radius_mm: float = field(
         metadata=_number(
             mark("Relief radius"), mark("Radius of the relief hole at a slit's end."), "mm", 0.0, 5.0, 0.05, zero=True
         )
     )
+    #: Speed with the beam on
     speed_mm_s: float = field(
         metadata=_number(mark("Cutting speed"), mark("Speed with the beam on."), "mm/s", 0.01, 10000.0, 5.0, decimals=2)
     )
+    #: Gaps below twice this may be closed by the program that imports the file
     join_tolerance_mm: float = field(
         metadata=_number(
             mark("Joins gaps below"), mark("Gaps that the machine software may close."), "mm", 0.0, 2.0, 0.01, zero=True
         )
     )
-    calibrated: bool = field(metadata=_FLAG)
+    calibrated: bool = field(metadata=_FLAG)  #: False until the numbers were measured on a coupon
     note: str = field(metadata=_text(mark("Note"), mark("Anything worth knowing.")))
+    #: Strain (0.05 = 5 %) above which it stays bent; 0 for what springs back until it breaks, and where nobody knows
     yield_strain: float = field(
         default=0.0,
         metadata=_strain(mark("Yield strain"), mark("Strain above which it stays bent; 0: none."), zero=True),
     )
+    #: Elongation at which it tears when pulled; files without it get that of a brittle sheet
     break_strain: float = field(
         default=0.05, metadata=_strain(mark("Breaking strain"), mark("Strain at which it tears when pulled."))
     )
+    #: Strain of the outer fibre at which a bend breaks; larger than ``break_strain`` in what delaminates or folds
     bend_strain: float = field(
         default=0.05,
         metadata=_strain(mark("Bending strain"), mark("Strain of the outer fibre at which a bend breaks.")),
     )
+    #: How many times the job is cut; 1 in files without it
     passes: int = field(
         default=1,
         metadata=Setting(
@@ -204,16 +158,19 @@ class Material:
             error=FabricationError,
         ).metadata,
     )
+    #: A warning is given about slits shorter than this; 0.1 in files without it
     min_slit_mm: float = field(
         default=0.1,
         metadata=_number(mark("Shortest slit"), mark("Shortest slit for this material."), "mm", 0.005, 20.0, 0.05),
     )
+    #: Young's modulus; 3 in files without it, as many plastics have
     young_gpa: float = field(
         default=3.0,
         metadata=_number(
             mark("Stiffness"), mark("Young's modulus of the material."), "GPa", 0.0001, 1000.0, 0.5, decimals=4
         ),
     )
+    #: Power of the laser while it cuts, 0 to 100; 0 for a blade, and where nobody knows it
     power_percent: float = field(
         default=0.0,
         metadata=_number(
@@ -227,23 +184,31 @@ class Material:
             zero=True,
         ),
     )
+    #: A warning is given about panels narrower than this or than the smallest ligament; 0 in files without it
     min_panel_mm: float = field(
         default=0.0,
         metadata=_number(
             mark("Smallest panel"), mark("Warn about panels narrower than this."), "mm", 0.0, 100.0, 0.5, zero=True
         ),
     )
+    #: False where no style, width and sheet size is known whose connectors survive opening
     connectors_hold: bool = field(default=True, metadata=_FLAG)
+    #: Way of making sheets that works best in it
     construction: Construction = field(default=Construction.ONE_SHEET, metadata=_WORD)
-    backing: bool = field(default=False, metadata=_FLAG)
+    backing: bool = field(default=False, metadata=_FLAG)  #: Whether it is meant as the hinge layer under tiles
+    #: Usual width of the flat sheet
     sheet_mm: float = field(
         default=100.0,
         metadata=_number(mark("Usual width"), mark("Usual width of the flat sheet."), "mm", 5.0, 3000.0, 10.0, 1),
     )
-    style: ConnectorStyle = field(default=ConnectorStyle.CENTRED, metadata=_WORD)
+    style: ConnectorStyle = field(default=ConnectorStyle.CENTRED, metadata=_WORD)  #: Style that works at that width
+    #: Where the figures of entries are from, or that they are an estimate; no part of comparisons
     sources: Mapping[str, str] = field(default_factory=FrozenMapping, compare=False)
+    #: measured_on and measured_by: Day (ISO 8601) and author of the calibration, both may be empty
     measured_on: str = field(default="", metadata=_text())
     measured_by: str = field(default="", metadata=_text())
+    #: travel_mm_s, acceleration_mm_s2, on_delay_s, off_delay_s, bed_width_mm and bed_height_mm: The machine's, in files
+    #: from before machines stood apart; None in others, see ``machine.machine_of``
     travel_mm_s: float | None = field(default=None, metadata=_machine_number())
     acceleration_mm_s2: float | None = field(default=None, metadata=_machine_number())
     on_delay_s: float | None = field(default=None, metadata=_machine_number(zero=True))

@@ -51,51 +51,25 @@ Item = TypeVar("Item", bound=Kept)
 
 @dataclass(frozen=True, slots=True)
 class Contents(Generic[Item]):
-    """All values of a shelf that there are.
+    """All values of a shelf that there are."""
 
-    Attributes
-    ----------
-    items : mapping of str to Item
-        By key: the first, the other bundled ones in alphabetical order, then own ones with keys of their own.
-    own : frozenset of str
-        Keys of those that are not bundled, or that stand for the bundled ones of the same key.
-    faults : tuple of Note
-        One for each own file that cannot be used.
-    """
-
+    #: By key: the first, the other bundled ones in alphabetical order, then own ones with keys of their own
     items: Mapping[str, Item]
-    own: frozenset[str]
-    faults: tuple[Note, ...]
+    own: frozenset[str]  #: Keys of those that are not bundled, or that stand for the bundled ones of the same key
+    faults: tuple[Note, ...]  #: One for each own file that cannot be used
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shelf(Generic[Item]):
-    """Where values of one kind are kept.
+    """Where values of one kind are kept."""
 
-    Attributes
-    ----------
-    kind : type
-        A frozen dataclass; its field ``key`` is the file's name.
-    folder : str
-        Of ``resources``, and beside the user's settings.
-    variable : str
-        Environment variable that names another folder of the user's own.
-    first : str
-        Key of the bundled one that is listed first.
-    codes : mapping of str to str
-        Codes of the problems, by what they are about.
-    judged : frozenset of str
-        Fields that nobody changes by name.
-    now : callable
-        Makes entries of today's files of those that older files have.
-    """
-
-    kind: type[Item]
-    folder: str
-    variable: str
-    first: str
-    codes: Mapping[str, str]
-    judged: frozenset[str] = frozenset({"key"})
+    kind: type[Item]  #: A frozen dataclass; its field ``key`` is the file's name
+    folder: str  #: Of ``resources``, and beside the user's settings
+    variable: str  #: Environment variable that names another folder of the user's own
+    first: str  #: Key of the bundled one that is listed first
+    codes: Mapping[str, str]  #: Codes of the problems, by what they are about
+    judged: frozenset[str] = frozenset({"key"})  #: Fields that nobody changes by name
+    #: Makes entries of today's files of those that older files have
     now: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda entries: entries
 
     def bundled(self) -> dict[str, Item]:

@@ -60,32 +60,17 @@ Key = tuple[bool, bool, bool, bool, bool, float, bool, float, int]
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """What the user wants first.
+    """What the user wants first."""
 
-    Attributes
-    ----------
-    regular : float, 0..1
-        From match alone (0) to even panels (1).
-    width_mm : float
-        Width of the flat sheet.
-    least_feature_mm : float
-        Least panel edge and neck that the material allows, 0 where that is not known.
-    least_gap_mm : float
-        How far apart pins have to stay; 0 for sheets without pins.
-    jam_phi : mapping of Candidate to float, radians
-        Angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others.
-    refusals : mapping of Candidate to Note
-        Why designs that were looked at closely cannot be cut; they come after all others that are feasible.
-    losses : mapping of Candidate to float
-        Worth that designs which were looked at closely lose by being cut.
-    """
-
-    regular: float = 0.5
-    width_mm: float = 100.0
-    least_feature_mm: float = 0.0
-    least_gap_mm: float = 0.0
+    regular: float = 0.5  #: 0..1; from match alone (0) to even panels (1)
+    width_mm: float = 100.0  #: Width of the flat sheet
+    least_feature_mm: float = 0.0  #: Least panel edge and neck that the material allows, 0 where that is not known
+    least_gap_mm: float = 0.0  #: How far apart pins have to stay; 0 for sheets without pins
+    #: radians; angles at which designs are expected to jam as cut, 0 for those that close; nothing is known of others
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+    #: Why designs that were looked at closely cannot be cut; they come after all others that are feasible
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
+    #: Worth that designs which were looked at closely lose by being cut
     losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
 
     @classmethod

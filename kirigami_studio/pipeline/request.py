@@ -30,45 +30,15 @@ WIDER = 1.005
 
 @dataclass(frozen=True, slots=True)
 class Request(DesignChoices):
-    """One design task.  The same request gives the same candidates, bit by bit, unless a budget ends it.
-
-    Attributes
-    ----------
-    target : Outline
-    grid : (rows, columns) voids, 2..64 each, or None
-        None leaves the choice to the run, see :meth:`resolved`.
-    least_panel : float, unit cells, 0..0.9
-        Panel edges and necks that no fit falls below, wherever a sheet near by allows that; 0 for any size.  What the
-        material needs (``least_feature_mm``) is kept in any case, see :attr:`kept_size`.
-    trim : bool
-        Also fit the best designs to cover the target and trim their edge panels; the best trimmed one then comes first.
-    keep : float, unit cells, 0.02..0.4
-        Depth of the material that trimming leaves at every hinge.
-    budget_seconds : float, > 0, optional
-        Wall time after which the best so far are returned; the first batch is always scored.
-    near : Sheet, optional
-        A design of the same grid that the samples are to be like; they have its rim unless an even one is asked for.
-    nearness : float, 0..1 without 1
-        How near they are to lie: the time of the flow at which they start from that design.  0 starts from noise alone,
-        in that design's pose.
-    width_mm : float, > 0
-        Width of the flat sheet.
-    least_feature_mm : float, >= 0
-        Least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not known.
-    room_mm : float, >= 0
-        Panel edge and neck that fits leave, so that connectors have their full width; smaller ones can still be cut.
-    least_gap_mm : float, >= 0
-        How far apart pins stay, between their centres, of pinned sheets; 0 for others.
-    grid_chosen : bool
-        Whether the run chose the grid.
-    guided : int, 0..64
-        Designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of all,
-        and none without ``polish``, near another design, or on a budget.  By default two ways from a few poses.
-    """
+    """One design task.  The same request gives the same candidates, bit by bit, unless a budget ends it."""
 
     target: Outline
+    #: (rows, columns); none leaves the choice to the run, see :meth:`resolved`
     grid: tuple[int, int] | None = USUAL_GRID
+    #: unit cells, 0..0.9; panel edges and necks that no fit falls below, wherever a sheet near by allows that; 0 for
+    #: any size.  What the material needs (``least_feature_mm``) is kept in any case, see :attr:`kept_size`.
     least_panel: float = field(default=0.0, kw_only=True)
+    #: Also fit the best designs to cover the target and trim their edge panels; the best trimmed one then comes first
     trim: bool = field(
         default=False,
         kw_only=True,
@@ -76,7 +46,9 @@ class Request(DesignChoices):
             help="trim the best design to the target: adds trimmed_iou and trims cut.dxf", option="--trim"
         ).metadata,
     )
+    #: unit cells, 0.02..0.4; depth of the material that trimming leaves at every hinge
     keep: float = field(default=KEEP, kw_only=True)
+    #: > 0, optional; wall time after which the best so far are returned; the first batch is always scored
     budget_seconds: float | None = field(
         default=None,
         kw_only=True,
@@ -89,27 +61,38 @@ class Request(DesignChoices):
             metavar="SECONDS",
         ).metadata,
     )
+    #: A design of the same grid that the samples are to be like; they have its rim unless an even one is asked for
     near: Sheet | None = field(default=None, kw_only=True)
+    #: 0..1 without 1; how near they are to lie: the time of the flow at which they start from that design.  0 starts
+    #: from noise alone, in that design's pose.
     nearness: float = field(
         default=0.0,
         kw_only=True,
         metadata=Setting(least=0.0, most=1.0, below_most=True, code="request.nearness_out_of_range").metadata,
     )
+    #: > 0; width of the flat sheet
     width_mm: float = field(
         default=100.0,
         kw_only=True,
         metadata=Setting(least=0.0, above_least=True, code="request.width_not_positive").metadata,
     )
+    #: >= 0; least panel edge and neck, between centre lines of cuts, that the material allows; 0 where that is not
+    #: known
     least_feature_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
     )
+    #: >= 0; panel edge and neck that fits leave, so that connectors have their full width; smaller ones can still be
+    #: cut
     room_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
     )
+    #: >= 0; how far apart pins stay, between their centres, of pinned sheets; 0 for others
     least_gap_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
     )
-    grid_chosen: bool = field(default=False, kw_only=True)
+    grid_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the grid
+    #: 0..64; designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of
+    #: all, and none without ``polish``, near another design, or on a budget.  By default two ways from a few poses.
     guided: int = field(default=8, kw_only=True, metadata=Setting(least=0, most=64).metadata)
 
     def __post_init__(self) -> None:

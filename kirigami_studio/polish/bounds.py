@@ -21,25 +21,15 @@ from kirigami_studio.polish.sensitivity import OutlineModel
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeBounds:
-    """Which shapes a fit may reach.
+    """Which shapes a fit may reach."""
 
-    Attributes
-    ----------
-    sheet : Sheet
-        Where the fit begins.
-    start : (S,) float
-        Its shape.
-    low, high : (S,) float
-        The limits; both are the start's own value for what is locked, and for mouths at corners of the start outline.
-    basis : Basis
-        The variables that move it.
-    """
-
-    sheet: Sheet
-    start: FloatArray
+    sheet: Sheet  #: Where the fit begins
+    start: FloatArray  #: (S,); its shape
+    #: low and high: (S,); the limits; both are the start's own value for what is locked, and for mouths at corners of
+    #: the start outline
     low: FloatArray
     high: FloatArray
-    basis: Basis
+    basis: Basis  #: The variables that move it
     _locked: BoolArray
 
     @classmethod

@@ -133,39 +133,18 @@ class Way(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FitOptions:
-    """What all fits of one request ask for beside the match.
-
-    Attributes
-    ----------
-    preference : Preference
-    least_panel : float, unit cells
-    free_rim : bool
-    even : float
-        Weight of even panels in the end.
-    symmetry : KeptSymmetry
-        Which symmetries of the target sheets may keep.
-    evenness_price : float
-        IoU that a coefficient of variation of panel areas lower by 1 is worth.
-    symmetry_price : float
-        IoU that a symmetric sheet may lack and still wins.
-    start : StartShape
-        What the sheets look like while they are flat.
-    second : SecondTarget, optional
-        What they should also show on their way.
-    least_gap : float, unit cells
-        Of pinned sheets, which keep turns alone, see ``pinwheel``; 0 for others.
-    """
+    """What all fits of one request ask for beside the match."""
 
     preference: Preference = field(default_factory=Preference)
-    least_panel: float = 0.0
+    least_panel: float = 0.0  #: unit cells
     free_rim: bool = False
-    even: float = 0.0
-    symmetry: KeptSymmetry = KeptSymmetry.AUTO
-    evenness_price: float = 0.0
-    symmetry_price: float = FAIR_LOSS
-    start: StartShape = RECTANGLE
-    second: SecondTarget | None = None
-    least_gap: float = 0.0
+    even: float = 0.0  #: Weight of even panels in the end
+    symmetry: KeptSymmetry = KeptSymmetry.AUTO  #: Which symmetries of the target sheets may keep
+    evenness_price: float = 0.0  #: IoU that a coefficient of variation of panel areas lower by 1 is worth
+    symmetry_price: float = FAIR_LOSS  #: IoU that a symmetric sheet may lack and still wins
+    start: StartShape = RECTANGLE  #: What the sheets look like while they are flat
+    second: SecondTarget | None = None  #: What they should also show on their way
+    least_gap: float = 0.0  #: unit cells; of pinned sheets, which keep turns alone, see ``pinwheel``; 0 for others
 
     @property
     def hands(self) -> tuple[int, ...]:
@@ -592,17 +571,10 @@ def _centred(design: Sheet | RatioField, phi: float, angle: float) -> Similarity
 
 @dataclass(frozen=True, slots=True)
 class EasyShape:
-    """One shape on the way.
-
-    Attributes
-    ----------
-    outline : Outline
-    frame : Similarity
-        Carries ``outline``'s own unit-area frame to the target's frame.
-    """
+    """One shape on the way."""
 
     outline: Outline
-    frame: Similarity
+    frame: Similarity  #: Carries ``outline``'s own unit-area frame to the target's frame
 
     @classmethod
     def of(cls, shape: shapely.geometry.base.BaseGeometry) -> EasyShape:

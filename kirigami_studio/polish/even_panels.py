@@ -38,36 +38,21 @@ def even_weight(regular: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EvenPanels:
-    """The term for one grid and start outline, with weight 1.
+    """The term for one grid and start outline, with weight 1."""
 
-    Attributes
-    ----------
-    grid : (rows, columns) voids
-    difference : (E, N) sparse
-        Reads the panel edges off the compact nodes, scaled so that the squares' sum is their mean in uniform edges.
-    uniform : (E, 2) float
-        The same of the uniform sheet, unfolded where its start has hollows.
-    stiffness : (2 N, 2 N) sparse
-        Second derivative of the edges' part by the nodes' x, then their y.
-    edges, areas : float
-        Shares of edges and areas.
-    mean_area : float, unit cells squared
-        Of the panels of the uniform sheet.
-    asked : float or (P,) float
-        Areas that panels are pulled to, as multiples of the mean: 1, or those of a pinwheel.
-    large : float
-        Weight of large panels beside it, see ``large_panels``.
-    """
-
-    grid: tuple[int, int]
+    grid: tuple[int, int]  #: (rows, columns)
+    #: (E, N), sparse; reads the panel edges off the compact nodes, scaled so that the squares' sum is their mean in
+    #: uniform edges
     difference: csr_matrix
-    uniform: FloatArray
-    stiffness: csr_matrix
+    uniform: FloatArray  #: (E, 2); the same of the uniform sheet, unfolded where its start has hollows
+    stiffness: csr_matrix  #: (2 N, 2 N), sparse; second derivative of the edges' part by the nodes' x, then their y
+    #: edges and areas: Shares of edges and areas
     edges: float
     areas: float
-    mean_area: float
+    mean_area: float  #: unit cells squared; of the panels of the uniform sheet
+    #: a number or (P,); areas that panels are pulled to, as multiples of the mean: 1, or those of a pinwheel
     asked: float | FloatArray
-    large: float
+    large: float  #: Weight of large panels beside it, see ``large_panels``
 
     @classmethod
     def of(cls, sheet: Sheet, model: Sheet | None = None) -> EvenPanels:

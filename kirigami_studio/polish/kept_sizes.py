@@ -48,20 +48,11 @@ VIOLATED = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Sized:
-    """Where the steps end.
+    """Where the steps end."""
 
-    Attributes
-    ----------
-    look : Look
-        The state found; the one given, if no sheet near by keeps all sizes.
-    kept : bool
-        Whether all edges and necks are at least as long, and all pins as far apart, as asked for.
-    steps, evaluations : int
-        Steps taken and layouts decoded.
-    """
-
-    look: Look
-    kept: bool
+    look: Look  #: The state found; the one given, if no sheet near by keeps all sizes
+    kept: bool  #: Whether all edges and necks are at least as long, and all pins as far apart, as asked for
+    #: steps and evaluations: Steps taken and layouts decoded
     steps: int
     evaluations: int
 
@@ -203,25 +194,13 @@ class _SizeDescent:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _SizeProblem:
-    """The quadratic problem at one state, by V variables and the P numbers of the poses.
+    """The quadratic problem at one state, by V variables and the P numbers of the poses."""
 
-    Attributes
-    ----------
-    gradient : (V + P,) float
-    hessian : (V + P, V + P) float
-    slopes : (F, V + P) float
-        Of the sizes near the least one.
-    added : (F,) float
-        What a step has to add to them.
-    shape : (S,) float
-    bounds : ShapeBounds
-    """
-
-    gradient: FloatArray
-    hessian: FloatArray
-    slopes: FloatArray
-    added: FloatArray
-    shape: FloatArray
+    gradient: FloatArray  #: (V + P,)
+    hessian: FloatArray  #: (V + P, V + P)
+    slopes: FloatArray  #: (F, V + P); of the sizes near the least one
+    added: FloatArray  #: (F,); what a step has to add to them
+    shape: FloatArray  #: (S,)
     bounds: ShapeBounds
 
     @classmethod

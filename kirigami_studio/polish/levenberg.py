@@ -57,28 +57,14 @@ STIFFNESS_STEPS = 7
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """A polished sheet.
-
-    Attributes
-    ----------
-    sheet : Sheet
-    pose : Similarity
-        Carries the layout at the target angle to the target's frame.
-    cost : float
-    steps : int
-        Accepted steps.
-    evaluations : int
-        Decodings of a layout, each with or without derivative: comparable with the paper's #F.
-    second_pose : Similarity or None
-        The same at the second target's angle, where there is one.
-    """
+    """A polished sheet."""
 
     sheet: Sheet
-    pose: Similarity
+    pose: Similarity  #: Carries the layout at the target angle to the target's frame
     cost: float
-    steps: int
-    evaluations: int
-    second_pose: Similarity | None = None
+    steps: int  #: Accepted steps
+    evaluations: int  #: Decodings of a layout, each with or without derivative: comparable with the paper's #F
+    second_pose: Similarity | None = None  #: The same at the second target's angle, where there is one
 
     @property
     def field(self) -> RatioField:

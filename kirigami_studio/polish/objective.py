@@ -58,48 +58,25 @@ NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SecondTerm:
-    """What a second target adds to the cost.
+    """What a second target adds to the cost."""
 
-    Attributes
-    ----------
-    model : OutlineModel
-        Of the same sheets at its angle.
-    target : BoundaryTarget
-    weight : float
-    """
-
-    model: OutlineModel
+    model: OutlineModel  #: Of the same sheets at its angle
     target: BoundaryTarget
     weight: float
 
 
 @dataclass(frozen=True, slots=True)
 class FitPhase:
-    """What counts for some steps of a fit.
+    """What counts for some steps of a fit."""
 
-    Attributes
-    ----------
-    steps : int
-        Accepted steps at most.
-    trust : float, unit-area lengths
-        Distance beyond which a boundary residual counts linearly: large ones let far parts pull, small ones serve the
-        area.
-    even : float
-        Weight of even panels, see ``even_panels``.
-    transport : float
-        Weight of the transport map of the inside, see ``transport_map``.
-    least_gain : float
-        The phase ends with a step that lowers the cost by no more than this share.
-    junctions : float
-        Weight of cuts that meet at shallow angles, see ``junctions``.
-    """
-
-    steps: int
+    steps: int  #: Accepted steps at most
+    #: unit-area lengths; distance beyond which a boundary residual counts linearly: large ones let far parts pull,
+    #: small ones serve the area
     trust: float = TRUST
-    even: float = 0.0
-    transport: float = 0.0
-    least_gain: float = SETTLED
-    junctions: float = 0.0
+    even: float = 0.0  #: Weight of even panels, see ``even_panels``
+    transport: float = 0.0  #: Weight of the transport map of the inside, see ``transport_map``
+    least_gain: float = SETTLED  #: The phase ends with a step that lowers the cost by no more than this share
+    junctions: float = 0.0  #: Weight of cuts that meet at shallow angles, see ``junctions``
 
 
 #: Nothing but the match and what the ratios prefer.
@@ -323,26 +300,16 @@ class Objective:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slopes:
-    """Derivatives at one state by the V variables that move, the pose's last where it takes part.
+    """Derivatives at one state by the V variables that move, the pose's last where it takes part."""
 
-    Attributes
-    ----------
-    basis : Basis
-        How the variables move the shape.
-    outline : (2 L, V + 4) float
-        Of the outline in the target's frame; of that at the second target's angle below it, in 4 columns more.
-    motion : NodeMotion
-        Of the compact nodes.
-    stiffness : (V, V) float or None
-        Second derivative of the term for even panels with weight 1, there or nearby.
-    centroids : (2 P, V + 4) float or None
-        Of the panel centroids in the target's frame, where there is a transport map.
-    """
-
-    basis: Basis
+    basis: Basis  #: How the variables move the shape
+    #: (2 L, V + 4); of the outline in the target's frame; of that at the second target's angle below it, in 4 columns
+    #: more
     outline: FloatArray
-    motion: NodeMotion
+    motion: NodeMotion  #: Of the compact nodes
+    #: (V, V); second derivative of the term for even panels with weight 1, there or nearby
     stiffness: FloatArray | None
+    #: (2 P, V + 4); of the panel centroids in the target's frame, where there is a transport map
     centroids: FloatArray | None
 
 
@@ -356,44 +323,19 @@ class SecondLook:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
-    """The objective at one state.
+    """The objective at one state."""
 
-    Attributes
-    ----------
-    state : (S + P,) float
-        P is 4, or 8 where there is a second target.
-    decoded : CompactLayout
-        The compact sheet.
-    outline : (L, 2) float
-        The layout's outline in the target's frame.
-    matching : Matching
-    second : SecondLook or None
-    small : PanelSizes
-        Edges and necks below the least size.
-    close : PinDistances
-        Distances between pins below the least one.
-    shallow : JunctionAngles
-        Where cuts meet at shallow angles, if the phase asks for open junctions.
-    large : PanelAreas
-        Panels that are large, if the phase asks for even ones.
-    excess : float
-        Share of a round start's area that chords cut off beyond what is allowed.
-    gaps : (P, 2) float or None
-        From each panel centroid's image to the centroid, where there is a transport map.
-    cost : float
-    """
-
-    state: FloatArray
-    decoded: CompactLayout
-    outline: FloatArray
+    state: FloatArray  #: (S + P,); p is 4, or 8 where there is a second target
+    decoded: CompactLayout  #: The compact sheet
+    outline: FloatArray  #: (L, 2); the layout's outline in the target's frame
     matching: Matching
     second: SecondLook | None
-    small: PanelSizes
-    close: PinDistances
-    shallow: JunctionAngles
-    large: PanelAreas
-    excess: float
-    gaps: FloatArray | None
+    small: PanelSizes  #: Edges and necks below the least size
+    close: PinDistances  #: Distances between pins below the least one
+    shallow: JunctionAngles  #: Where cuts meet at shallow angles, if the phase asks for open junctions
+    large: PanelAreas  #: Panels that are large, if the phase asks for even ones
+    excess: float  #: Share of a round start's area that chords cut off beyond what is allowed
+    gaps: FloatArray | None  #: (P, 2); from each panel centroid's image to the centroid, where there is a transport map
     cost: float
 
 

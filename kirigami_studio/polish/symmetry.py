@@ -37,24 +37,14 @@ class KeptSymmetry(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SymmetricPose:
-    """A symmetry that a target and suitable lattices share, and how the target has to lie for it.
-
-    Attributes
-    ----------
-    symmetry : Symmetry
-    angle : float or None, radians
-        Direction in the target's frame that the sheet's upward direction must have, or the opposite one; None when
-        any will do.
-    overlap : float
-        IoU of the target and its worst image under the symmetry.
-    axes : tuple of MirrorAxis
-        The target's axes that it uses: none for a turn, two for two mirrors.
-    """
+    """A symmetry that a target and suitable lattices share, and how the target has to lie for it."""
 
     symmetry: Symmetry
+    #: radians; direction in the target's frame that the sheet's upward direction must have, or the opposite one; None
+    #: when any will do
     angle: float | None
-    overlap: float = 1.0
-    axes: tuple[MirrorAxis, ...] = ()
+    overlap: float = 1.0  #: IoU of the target and its worst image under the symmetry
+    axes: tuple[MirrorAxis, ...] = ()  #: The target's axes that it uses: none for a turn, two for two mirrors
 
     def fits(self, grid: tuple[int, int], start: StartShape = RECTANGLE) -> bool:
         """Whether sheets of a grid and start can have it; one that has, has it at every angle of deployment."""

@@ -86,41 +86,26 @@ class Source(Enum):
 class AsCut:
     """What is expected of a cut sheet.
 
-    Attributes
-    ----------
-    jam_phi : float, radians
-        Angle at which it jams, from 0 for a sheet that closes to pi for one that stays flat.
-    phi : float, radians
-        At which it is meant to show the target.
-    outcome : Outcome
-    stretch : float
-        Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not.
-    strain : float
-        Strain, of the figure that is believed, of the connector nearest to breaking on the way to where the sheet
-        comes to.
-    figure : StrainFigure
-    iou, ideal_iou : float or None
-        Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None in an estimate,
-        and without a target.
-    source : Source
-    strain_limit, thinness, yields_at : float
-        Of that connector, see :class:`Survival`.
-
     Raises
     ------
     AngleError
         A jam outside of 0 to pi.
     """
 
-    jam_phi: float
-    phi: float
+    jam_phi: float  #: radians; angle at which it jams, from 0 for a sheet that closes to pi for one that stays flat
+    phi: float  #: radians; at which it is meant to show the target
     outcome: Outcome
-    stretch: float
+    stretch: float  #: Largest stretch of a connector on the way to ``phi``, in its widths; tolerated or not
+    #: Strain, of the figure that is believed, of the connector nearest to breaking on the way to where the sheet comes
+    #: to
     strain: float
     figure: StrainFigure
+    #: iou and ideal_iou: Exact IoU with the target where the sheet comes to, and of the ideal motion at ``phi``; None
+    #: in an estimate, and without a target
     iou: float | None = None
     ideal_iou: float | None = None
     source: Source = Source.SIMULATION
+    #: strain_limit, thinness and yields_at: Of that connector, see :class:`Survival`
     strain_limit: float = math.inf
     thinness: float = 0.0
     yields_at: float = 0.0
@@ -186,28 +171,14 @@ def jam_json(found: AsCut | None) -> dict[str, object]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimulatedSheet:
-    """A sheet that was closed on its connectors.
-
-    Attributes
-    ----------
-    as_cut : AsCut
-    closing : Closing
-    node : (H,) int
-        Node of the lattice at which each connector is.
-    width_mm : float
-        Width of the flat sheet.
-    panels : CutPanels
-        As the cuts leave them, in the frame of the closing's network.
-    made : Deployment or None
-        The sheet that is cut where that is not quite the design.
-    """
+    """A sheet that was closed on its connectors."""
 
     as_cut: AsCut
     closing: Closing
-    node: IntArray
-    width_mm: float
-    panels: CutPanels
-    made: Deployment | None = None
+    node: IntArray  #: (H,); node of the lattice at which each connector is
+    width_mm: float  #: Width of the flat sheet
+    panels: CutPanels  #: As the cuts leave them, in the frame of the closing's network
+    made: Deployment | None = None  #: The sheet that is cut where that is not quite the design
 
     def stretch_at(self, phi: float) -> FloatArray:
         """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""

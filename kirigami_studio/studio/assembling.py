@@ -46,19 +46,11 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
 
 @dataclass(frozen=True, eq=False)
 class Assembled:
-    """The pieces of a design, and what their check found.
-
-    Attributes
-    ----------
-    plan : PinnedPlan
-    report : PinnedReport
-    as_cut : AsCut
-        Its motion: exact, on pins that bend nothing.
-    """
+    """The pieces of a design, and what their check found."""
 
     plan: PinnedPlan
     report: PinnedReport
-    as_cut: AsCut
+    as_cut: AsCut  #: Its motion: exact, on pins that bend nothing
 
     @property
     def assembly(self) -> Assembly:

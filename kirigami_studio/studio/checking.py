@@ -31,21 +31,11 @@ from kirigami_studio.studio.verdict import Level, Verdict, refused
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
-    """Findings on a cut file.
+    """Findings on a cut file."""
 
-    Attributes
-    ----------
-    report : FileReport
-        What the file alone shows: whether it is sound.
-    verification : Verification or None
-        Beside the cuts of its design, where one was named.
-    verdict : Verdict or None
-        On the sheet of that design.
-    """
-
-    report: FileReport
-    verification: Verification | None = None
-    verdict: Verdict | None = None
+    report: FileReport  #: What the file alone shows: whether it is sound
+    verification: Verification | None = None  #: Beside the cuts of its design, where one was named
+    verdict: Verdict | None = None  #: On the sheet of that design
 
     @property
     def sound(self) -> bool:

@@ -64,32 +64,16 @@ MOST_MATCH_LOST = 0.03
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fix:
-    """A change that was tried and that helps.
+    """A change that was tried and that helps."""
 
-    Attributes
-    ----------
-    change : Note
-        What to do, in a sentence.
-    candidate : Candidate
-        The design that is then cut.
-    settings : FabricationSettings
-        How it is then cut.
-    verdict : Verdict
-        What is then to be expected.
-    as_cut : AsCut
-    instead : tuple of Candidate
-        Designs on another grid, best first, that take the place of all there are; empty where those stay.
-    solves : tuple of str
-        Codes of the problems that are then gone.
-    """
-
-    change: Note
-    candidate: Candidate
-    settings: FabricationSettings
-    verdict: Verdict
+    change: Note  #: What to do, in a sentence
+    candidate: Candidate  #: The design that is then cut
+    settings: FabricationSettings  #: How it is then cut
+    verdict: Verdict  #: What is then to be expected
     as_cut: AsCut
+    #: Designs on another grid, best first, that take the place of all there are; empty where those stay
     instead: tuple[Candidate, ...] = ()
-    solves: tuple[str, ...] = ()
+    solves: tuple[str, ...] = ()  #: Codes of the problems that are then gone
 
     @property
     def line(self) -> str:
@@ -129,18 +113,10 @@ class Fix:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Advice:
-    """What was found.
+    """What was found."""
 
-    Attributes
-    ----------
-    fixes : tuple of Fix
-        The best first; empty where nothing that was tried works.
-    tried : Note
-        What was tried, in a sentence.
-    """
-
-    fixes: tuple[Fix, ...]
-    tried: Note
+    fixes: tuple[Fix, ...]  #: The best first; empty where nothing that was tried works
+    tried: Note  #: What was tried, in a sentence
 
     @property
     def lines(self) -> tuple[str, ...]:

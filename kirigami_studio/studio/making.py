@@ -75,61 +75,32 @@ class Motion(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
-    """A cut plan and what its check found.
-
-    Attributes
-    ----------
-    plan : CutPlan
-    report : PlanReport
-    verdict : Verdict
-        What is to be expected as long as nobody has closed the sheet on its connectors.
-    removed_share : float, 0..1
-        Share of the sheet that was trimmed away.
-    work : Work or None
-        Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies.
-    """
+    """A cut plan and what its check found."""
 
     plan: CutPlan
     report: PlanReport
-    verdict: Verdict
-    removed_share: float = 0.0
+    verdict: Verdict  #: What is to be expected as long as nobody has closed the sheet on its connectors
+    removed_share: float = 0.0  #: 0..1; share of the sheet that was trimmed away
+    #: Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies
     work: Work | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class TimedDesign:
-    """Time of cutting a design.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    settings : FabricationSettings
-        How it is cut.
-    seconds : float
-    """
+    """Time of cutting a design."""
 
     candidate: Candidate
-    settings: FabricationSettings
+    settings: FabricationSettings  #: How it is cut
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """What is to be written.
+    """What is to be written."""
 
-    Attributes
-    ----------
-    path : Path
-        A file, whose extension names its kind; or the folder of a whole set.
-    name : str or None
-        Of the cut files of a whole set, without extension; None for one file.
-    record : bool
-        Whether all settings are written beside them as .json.
-    """
-
-    path: Path
-    name: str | None = None
-    record: bool = False
+    path: Path  #: A file, whose extension names its kind; or the folder of a whole set
+    name: str | None = None  #: Of the cut files of a whole set, without extension; None for one file
+    record: bool = False  #: Whether all settings are written beside them as .json
 
     @property
     def has_pdf(self) -> bool:
@@ -139,40 +110,21 @@ class Output:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExportedFiles:
-    """A file, or a folder of files, that is on disk.
+    """A file, or a folder of files, that is on disk."""
 
-    Attributes
-    ----------
-    path : Path
-        The file, or the folder of a whole set.
-    planned : Planned or None
-        What it holds; pictures hold no plan.
-    verifications : tuple of Verification
-        What two readers found in each cut file; kinds of file that are not verified this way have none.
-    motion : CutMotion or None
-        What an animation shows; None for the ideal motion, and for other kinds of file.
-    not_as_cut : str
-        Why an animation cannot show the sheet as cut, a sentence, or "".
-    older, removed : tuple of str
-        Names of what an earlier export left in the folder and this one does not have: all of it, and what was removed.
-    verdict : Verdict or None
-        On the sheet that a cut file holds; coupons and pictures have none.
-    files : tuple of Path
-        All of them, in the order of writing.
-    pieces : MadePieces or None
-        Of a pinned design, which has no plan.
-    """
-
-    path: Path
-    planned: Planned | None
+    path: Path  #: The file, or the folder of a whole set
+    planned: Planned | None  #: What it holds; pictures hold no plan
+    #: What two readers found in each cut file; kinds of file that are not verified this way have none
     verifications: tuple[Verification, ...] = ()
-    motion: CutMotion | None = None
-    not_as_cut: str = ""
+    motion: CutMotion | None = None  #: What an animation shows; None for the ideal motion, and for other kinds of file
+    not_as_cut: str = ""  #: Why an animation cannot show the sheet as cut, a sentence, or ""
+    #: older and removed: Names of what an earlier export left in the folder and this one does not have: all of it, and
+    #: what was removed
     older: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
-    verdict: Verdict | None = None
-    files: tuple[Path, ...] = ()
-    pieces: MadePieces | None = None
+    verdict: Verdict | None = None  #: On the sheet that a cut file holds; coupons and pictures have none
+    files: tuple[Path, ...] = ()  #: All of them, in the order of writing
+    pieces: MadePieces | None = None  #: Of a pinned design, which has no plan
 
     @property
     def ok(self) -> bool:
@@ -182,44 +134,23 @@ class ExportedFiles:
 
 @dataclass(frozen=True, slots=True)
 class ManyPages:
-    """Nothing was written yet: the PDF would have many pages, which a person has to want.
-
-    Attributes
-    ----------
-    pages : int
-    note : str
-        A sentence.
-    """
+    """Nothing was written yet: the PDF would have many pages, which a person has to want."""
 
     pages: int
-    note: str
+    note: str  #: A sentence
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutRequest:
-    """The design that is to be cut, and how.
-
-    Attributes
-    ----------
-    candidate : Candidate
-    deployment : Deployment
-        Of the candidate's final field: that of the trim, if it is trimmed.
-    target : Outline or None
-    settings : FabricationSettings
-    as_cut : AsCut, str or None
-        How it does as cut, or why that cannot be told, if that is known already.
-    document : Document or None
-        The project of the design, which cut files carry with this design alone.
-    engraved : str or None
-        The name that the sheet gets engraved if the settings say so; that of the design unless given.
-    """
+    """The design that is to be cut, and how."""
 
     candidate: Candidate
-    deployment: Deployment
+    deployment: Deployment  #: Of the candidate's final field: that of the trim, if it is trimmed
     target: Outline | None
     settings: FabricationSettings
-    as_cut: AsCut | str | None = None
-    document: Document | None = None
+    as_cut: AsCut | str | None = None  #: How it does as cut, or why that cannot be told, if that is known already
+    document: Document | None = None  #: The project of the design, which cut files carry with this design alone
+    #: The name that the sheet gets engraved if the settings say so; that of the design unless given
     engraved: str | None = None
 
     @classmethod
@@ -309,14 +240,7 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
 
 @dataclass(frozen=True, eq=False)
 class MadePieces:
-    """The pieces of a pinned design, laid on the beds of its machine, and judged.
-
-    Attributes
-    ----------
-    made : Assembled
-    job : AssemblyJob
-    verdict : Verdict
-    """
+    """The pieces of a pinned design, laid on the beds of its machine, and judged."""
 
     made: Assembled
     job: AssemblyJob
@@ -533,6 +457,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         paper=request.settings.paper,
         markers=request.settings.markers,
         provenance=request.facts,
+        width_mm=request.settings.width_mm,
         artwork=request.artwork,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )

@@ -181,30 +181,17 @@ class Verdict:
     """Expectations of a design that is cut, and the reasons.
 
     A design may match as roughly as it does and be ready to cut: only a match that is lost by cutting is a problem.
-
-    Attributes
-    ----------
-    problems : tuple of Problem
-        Worst first.  With an error the sheet will not work, with a warning it is cut with care.
-    notes : tuple of Note
-        What is worth knowing beside them.
-    source : Source or None
-        An estimate gives way to the simulation; None where neither can be, because no cuts can be planned or no sheet
-        hangs together.
-    as_cut : AsCut or None
-        How it does as cut, by the same source; None where that is not known.
-    match : float or None
-        IoU with the target: as cut where that is known, else as designed.
-    read : bool
-        Whether its files were read back.
     """
 
+    #: Worst first.  With an error the sheet will not work, with a warning it is cut with care.
     problems: tuple[Problem, ...] = ()
-    notes: tuple[Note, ...] = ()
+    notes: tuple[Note, ...] = ()  #: What is worth knowing beside them
+    #: An estimate gives way to the simulation; None where neither can be, because no cuts can be planned or no sheet
+    #: hangs together
     source: Source | None = None
-    as_cut: AsCut | None = None
-    match: float | None = None
-    read: bool = False
+    as_cut: AsCut | None = None  #: How it does as cut, by the same source; None where that is not known
+    match: float | None = None  #: IoU with the target: as cut where that is known, else as designed
+    read: bool = False  #: Whether its files were read back
 
     @property
     def level(self) -> Level:
@@ -319,20 +306,11 @@ def _level_of(problems: Sequence[Problem]) -> Level:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assessment:
-    """A design whose cuts were planned, checked, and closed on their connectors.
-
-    Attributes
-    ----------
-    plan : CutPlan
-    report : PlanReport
-    as_cut : AsCut or str
-        How the sheet does as cut, or a sentence on why that cannot be told.
-    verdict : Verdict
-    """
+    """A design whose cuts were planned, checked, and closed on their connectors."""
 
     plan: CutPlan
     report: PlanReport
-    as_cut: AsCut | str
+    as_cut: AsCut | str  #: How the sheet does as cut, or a sentence on why that cannot be told
     verdict: Verdict
 
 
@@ -394,18 +372,12 @@ def closing_as_cut(
 
 @dataclass(frozen=True, slots=True)
 class CloseLook:
-    """Findings of a close look at a design.
+    """Findings of a close look at a design."""
 
-    Attributes
-    ----------
-    refusal : Note or None
-        Why it cannot be cut; None where it can: its cuts can be planned, the sheet comes to its angle, no connector
-        breaks and no panel is too small.
-    as_cut : AsCut or None
-        How it does as cut; None where nobody had to look so far, or where that cannot be told.
-    """
-
+    #: Why it cannot be cut; None where it can: its cuts can be planned, the sheet comes to its angle, no connector
+    #: breaks and no panel is too small
     refusal: Note | None
+    #: How it does as cut; None where nobody had to look so far, or where that cannot be told
     as_cut: AsCut | None = None
 
     @property

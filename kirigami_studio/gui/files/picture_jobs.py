@@ -34,22 +34,12 @@ NAP, LATE, GIVEN = 0.0005, 0.002, 0.25
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
-    """How a view was painted.
-
-    Attributes
-    ----------
-    strokes : QPicture
-    size : QSize
-        Of the view, pixels.
-    ground : QColor
-    facts : mapping of str to str
-        Where the design that is shown comes from.
-    """
+    """How a view was painted."""
 
     strokes: QPicture
-    size: QSize
+    size: QSize  #: Of the view, pixels
     ground: QColor
-    facts: Mapping[str, str] = field(default_factory=dict)
+    facts: Mapping[str, str] = field(default_factory=dict)  #: Where the design that is shown comes from
 
     def bands(self, scale: int, cancel: Cancel) -> Iterator[QImage]:
         """The view in pixels, ``scale`` of them for one that was seen: strips of it, from the top."""

@@ -207,18 +207,10 @@ def with_transform(painter: QPainter, transform: ViewTransform) -> None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutSteps:
-    """The job as a row of steps: after step s the first s paths are cut.
+    """The job as a row of steps: after step s the first s paths are cut."""
 
-    Attributes
-    ----------
-    seconds : (P + 1,) float
-        From the start of the job until a step is done; 0 first, ascending.
-    length_mm : (P + 1,) float
-        Cut length so far.
-    """
-
-    seconds: FloatArray
-    length_mm: FloatArray
+    seconds: FloatArray  #: (P + 1,); from the start of the job until a step is done; 0 first, ascending
+    length_mm: FloatArray  #: (P + 1,); cut length so far
 
     def __post_init__(self) -> None:
         self.seconds.setflags(write=False)

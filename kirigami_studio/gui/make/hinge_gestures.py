@@ -146,19 +146,11 @@ class HingeGestures(QObject):
 
 @dataclass(frozen=True, slots=True)
 class HingeDrag:
-    """Where the drag began.
-
-    Attributes
-    ----------
-    hinge : int
-    start : QPointF, pixels
-    width_mm : float
-        Finished width there; not a number where the connector was removed.
-    """
+    """Where the drag began."""
 
     hinge: int
     start: QPointF
-    width_mm: float
+    width_mm: float  #: Finished width there; not a number where the connector was removed
 
     def width_at(self, place: QPointF, fine: bool) -> float:
         """Width in mm that a place of the mouse asks for; ``fine`` makes steps and distances a tenth."""

@@ -33,24 +33,12 @@ CAPACITY = 32
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VerdictState:
-    """What is known of the design on the stage.
+    """What is known of the design on the stage."""
 
-    Attributes
-    ----------
-    verdict : Verdict or None
-        None without a design, and before its cuts are planned.
-    pending : bool
-        Whether the sheet is still being planned or closed on its connectors.
-    advice : Advice or None
-        Fixes that were tried, once they were.
-    searching : bool
-        Whether they are being tried.
-    """
-
-    verdict: Verdict | None = None
-    pending: bool = False
-    advice: Advice | None = None
-    searching: bool = False
+    verdict: Verdict | None = None  #: None without a design, and before its cuts are planned
+    pending: bool = False  #: Whether the sheet is still being planned or closed on its connectors
+    advice: Advice | None = None  #: Fixes that were tried, once they were
+    searching: bool = False  #: Whether they are being tried
 
     @property
     def known(self) -> bool:

@@ -30,17 +30,10 @@ LAYERS = (1, 2)
 
 @dataclass(frozen=True, eq=False)
 class ShownPieces:
-    """The pieces of a design, as the stage shows them over its target.
-
-    Attributes
-    ----------
-    made : MadePieces
-    design : PosedDesign
-        The lattice of the pieces: smaller than that of the design by their margin.
-    """
+    """The pieces of a design, as the stage shows them over its target."""
 
     made: MadePieces
-    design: PosedDesign
+    design: PosedDesign  #: The lattice of the pieces: smaller than that of the design by their margin
 
     @classmethod
     def of(cls, made: MadePieces, design: PosedDesign) -> ShownPieces:

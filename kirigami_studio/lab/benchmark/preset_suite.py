@@ -7,14 +7,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.material import Material, find_material, presets
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import new_settings
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, new_settings
 from kirigami_studio.studio.as_cut import AsCut
+from kirigami_studio.studio.assembling import assembled
 from kirigami_studio.studio.designing import completed, request_for, run_design
-from kirigami_studio.studio.verdict import Level, assess
+from kirigami_studio.studio.verdict import Level, Verdict, assess, judge_assembled
 
 #: Shapes of the table, from easy to hard.
 SHAPES = ("hexagon", "house", "heart", "star", "letter-l", "gear")
@@ -146,17 +149,23 @@ def measure_presets(
 
 
 def judged_preset(material: Material, shape: str, k: int, seed: int = 0) -> PresetSheet:
-    """Design a shape as ``design --material`` does, and judge the best."""
+    """Design a shape as ``design --material`` does, in the construction that suits the material; judge the best."""
     target, settings = load(shape), new_settings({"material": material.key})
     wanted = DesignSettings(k=k, seed=seed)
     best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best
     try:
-        found = assess(best, settings, target)
+        found = _judged(best, settings, target)
     except KirigamiError as error:
         return PresetSheet(material.key, shape, Level.FAILS.value, (error.code,), best.sheet.grid)
-    codes = tuple(problem.code for problem in found.verdict.problems)
-    sheet = PresetSheet(material.key, shape, found.verdict.level.value, codes, best.sheet.grid)
-    return sheet if isinstance(found.as_cut, str) else _with_figures(sheet, found.as_cut)
+    codes = tuple(problem.code for problem in found.problems)
+    sheet = PresetSheet(material.key, shape, found.level.value, codes, best.sheet.grid)
+    return sheet if found.as_cut is None else _with_figures(sheet, found.as_cut)
+
+
+def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> Verdict:
+    if is_pinned(settings):
+        return judge_assembled(best, assembled(best, settings, target))
+    return assess(best, settings, target).verdict
 
 
 def _with_figures(sheet: PresetSheet, as_cut: AsCut) -> PresetSheet:

@@ -41,6 +41,12 @@ def test_that_a_material_is_designed_and_judged_at_its_usual_size() -> None:
     assert found.sentences()[2].count("ready") + found.sentences()[2].count("care") == 1
 
 
+@pytest.mark.torch
+def test_that_a_board_is_judged_by_its_pieces_on_pins() -> None:
+    (sheet,) = measure_presets(["acrylic-co2"], ["hexagon"], k=1).sheets
+    assert sheet.works and sheet.jam_deg == 0.0 and sheet.iou_as_cut > 0.95
+
+
 def test_that_an_unknown_material_is_refused() -> None:
     with pytest.raises(UsageError) as caught:
         measure_presets(["oak"])
