@@ -103,7 +103,14 @@ def for_each(
 
 def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
     """The choice of parts that the options make; None where they make none."""
-    return PartChoice.of(arguments.parts, arguments.join, arguments.bridge, arguments.stroke_outline)
+    return PartChoice.of(
+        arguments.parts,
+        arguments.join,
+        arguments.bridge,
+        arguments.stroke_outline,
+        arguments.object,
+        arguments.not_object,
+    )
 
 
 def warn(name: str, target: Outline) -> list[str]:

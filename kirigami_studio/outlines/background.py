@@ -205,7 +205,7 @@ def _separated(
     if (ground_found := _ground(small, border)) is None:
         return None
     model, known = ground_found
-    uneven = float(np.max(np.ptp(_lab(_evaluated(model, small.shape[:2])), axis=(0, 1)))) > UNEVEN
+    uneven = float(np.max(np.ptp(colours_in_lab(_evaluated(model, small.shape[:2])), axis=(0, 1)))) > UNEVEN
     judged = np.where(within, _distance(small, model, uneven), 0.0)
     if uneven and (better := _evened(small, judged, within)) is not None:
         model = better
@@ -234,7 +234,7 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
     """
     rows, columns = np.nonzero(border)
     terms, seen = _terms(rows, columns, small.shape[:2]), small[rows, columns]
-    lab = _lab(seen[None])[0]
+    lab = colours_in_lab(seen[None])[0]
     near = max(0.04 * min(small.shape[:2]), 1.5)
     corners = np.array(
         [
@@ -243,7 +243,7 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
         ]
     )
     model, good = _fitted(terms, seen)
-    there = _lab(np.clip(_terms(*_corners(rows, columns).T, small.shape[:2]) @ model, 0.0, 1.0)[None])[0]
+    there = colours_in_lab(np.clip(_terms(*_corners(rows, columns).T, small.shape[:2]) @ model, 0.0, 1.0)[None])[0]
     fits = np.sum(np.linalg.norm(corners - there, axis=1) <= 2.0 * SAME_GROUND)
     if np.mean(good) < EXPLAINED or fits < CORNERS:
         centre = _colour_of_corners(corners, lab)
@@ -317,19 +317,19 @@ def _mean(model: FloatArray) -> FloatArray:
 def _distance(colours: FloatArray, model: FloatArray, uneven: bool) -> FloatArray:
     """Distance (H, W) of each pixel from the ground; light that falls unevenly is divided out first."""
     if not uneven:
-        return _norm(_lab(colours) - _lab(_mean(model)[None, None]))
+        return _norm(colours_in_lab(colours) - colours_in_lab(_mean(model)[None, None]))
     ground = _evaluated(model, colours.shape[:2])
     lightest = ground.max(axis=(0, 1))
     evened = np.clip(colours * (lightest / ground), 0.0, 1.0).astype(colours.dtype)
-    return _norm(_lab(evened) - _lab(lightest[None, None]))
+    return _norm(colours_in_lab(evened) - colours_in_lab(lightest[None, None]))
 
 
 def _norm(differences: FloatArray) -> FloatArray:
     return np.sqrt(np.sum(differences * differences, axis=-1)).astype(np.float64)
 
 
-def _lab(colours: FloatArray) -> FloatArray:
-    """Colours (H, W, 3) in CIELAB; grey levels (H, W, 1) in per cent."""
+def colours_in_lab(colours: FloatArray) -> FloatArray:
+    """Colours (H, W, 3), 0..1, in CIELAB; grey levels (H, W, 1) in per cent."""
     return 100.0 * colours if colours.shape[-1] == 1 else np.asarray(rgb2lab(colours))
 
 
@@ -356,7 +356,7 @@ def _page(distance: FloatArray, level: float, small: FloatArray) -> BoolArray | 
     corners = shapely.simplify(hull, 0.04 * hull.length).exterior.coords
     if len(corners) > 5 or hull.area < PAGE_FILLS * shapely.minimum_rotated_rectangle(hull).area * 0.85:
         return None
-    lab = _lab(small)
+    lab = colours_in_lab(small)
     if lab.shape[2] == 1:
         lab = np.concatenate([lab, np.zeros((*lab.shape[:2], 2))], axis=2)
     rim = whole & ~ndimage.binary_erosion(whole, iterations=8)

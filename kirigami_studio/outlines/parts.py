@@ -165,6 +165,14 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
+class Strokes:
+    """Places on a picture by which an object is told, (x, y) in source pixels from the upper left corner, y down."""
+
+    taken: tuple[tuple[float, float], ...] = ()  #: on the object
+    left: tuple[tuple[float, float], ...] = ()  #: beside it
+
+
+@dataclass(frozen=True, slots=True)
 class UsualChoice:
     """Which parts are the silhouette that is seen."""
 

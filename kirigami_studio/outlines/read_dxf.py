@@ -67,9 +67,10 @@ CUT_WORDS = re.compile(
     r"cut|outline|contou?r|kontur|umriss|schnitt|schneid|d[eé]coupe|coupe|corte|taglio|profile?|laser|mill|fr[aä]s"
 )
 ASIDE_WORDS = re.compile(
-    r"dims?|te?xte?s?|text[oi]s?|test[oi]|tekst|notes?|anno|aux|ax[ei]s?|assei?|assi|ejes?|achsen?|cot[ae]s?|quot[ae]s?|"
+    r"dims?|te?xte?s?|text[oi]s?|test[oi]|tekst|notes?|anno|aux|ax[ei]s?|ass[ei]|ejes?|achsen?|cot[ae]s?|"
+    r"quot[ae]s?|"
     r"ma(?:ss|ß)e?|maate?n?|cent(?:re|er|ro)|cl|guides?|hidden|hilf|sketch|skizze|titles?|labels?|leaders?|vports?|"
-    r"ос[ьи]|dimension\w*|(?:be|ver)ma(?:ss|ß)\w*|cotation\w*|quotatur\w*|acota\w*|maatvoer\w*|wymiar\w*|размер\w*|"
+    r"dimension\w*|(?:be|ver)ma(?:ss|ß)\w*|cotation\w*|quotatur\w*|acota\w*|maatvoer\w*|wymiar\w*|размер\w*|"
     r"annot\w*|beschrift\w*|schrift[fk]\w*|cente?re?l\w*|mittel[lp]\w*|hartlijn\w*|symmetr\w*|constr\w*|konstruk\w*|"
     r"hilfs\w*|costruzion\w*|auxilia\w*|defpoint\w*|viewport\w*|ansichtsf\w*|titleb\w*|cartouche\w*|cajet\w*|"
     r"cartigl\w*|zeichnungsr\w*|blattrahm\w*|verdeckt\w*|phantom\w*|helper\w*|guidel\w*|referen[cz]\w*|вспомог\w*|"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import warnings
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -118,9 +119,9 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
     """Connected regions of a picture as parts: dark or light ones, and those of each colour.
 
-    A coloured picture has a layer for each of its main colours but the one of its border.  A picture in grey has
-    regions by its threshold alone, as have all where ``in_colour`` is not asked for.  Regions below ``LEAST_SHARE`` of
-    the picture are specks.
+    A coloured picture has a layer for each of its main colours but the one of its border, which nobody takes without
+    asking.  A picture in grey has regions by its threshold alone, as have all where ``in_colour`` is not asked for.
+    Regions below ``LEAST_SHARE`` of the picture are specks.
 
     Raises
     ------
@@ -135,11 +136,12 @@ def image_parts(path: str | Path, threshold: float | None = None, in_colour: boo
         found, specks = _regions(ink, levels.reduction, "", "")
         for colour, field, reduction in _colours(content) if in_colour else ():
             more, dust = _regions(field, reduction, colour, colour)
-            found, specks = found + more, specks + dust
+            found += [replace(part, is_aside=True) for part in more]
+            specks += dust
         if not found:
             raise TargetError("trace.specks", specks=specks)
         parts, too_many = numbered(found, float(max(levels.size)))
-        notes = too_many
+        notes = (*levels.notes, *too_many)
         if specks:
             notes = (tr_n("{count} speck was left out.", "{count} specks were left out.", specks), *notes)
         return SourceParts(path.stem, parts, notes, "px")
@@ -177,7 +179,7 @@ def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
     if image.width * image.height > MOST_PIXELS_IN_COLOUR:
         return []
     reduction = math.ceil(max(image.size) / COLOUR_SIDE)
-    flat = _on_paper(image)
+    flat = on_paper(image)
     small = flat.reduce(reduction) if reduction > 1 else flat
     few = small.quantize(MOST_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     table, places = few.getpalette() or [], np.asarray(few)
@@ -200,6 +202,34 @@ def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
     x, y = (ring.min(axis=0) - scale * outline.points.min(axis=0)).tolist()
     below = levels.grey.shape[0] * levels.reduction - levels.size[1]  # the last row of grey may reach out below
     return Traced(outline, scale, (x, y - below), levels.size)
+
+
+def picture_size(path: str | Path) -> tuple[int, int]:
+    """Width and height of a picture, turned upright, pixels.
+
+    Raises
+    ------
+    TargetError
+        Not a picture, or blank.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "source.image_damaged"):
+        return _levels(content).size
+
+
+def is_plain_picture(path: str | Path) -> bool:
+    """Whether the shape of a picture is meant without doubt: sharp edges on a background of one colour.
+
+    Raises
+    ------
+    TargetError
+        Not a picture, or blank.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "source.image_damaged"):
+        return _levels(content).is_plain
 
 
 def automatic_threshold(path: str | Path) -> float:
@@ -282,10 +312,10 @@ def _decoded_levels(content: bytes) -> Levels:
     coloured = None
     if image.mode.startswith(("I", "F")):
         grey = stretched(_array(image.convert("F"), reduction))
-    elif (alpha := _alpha(image)) is not None:
+    elif (alpha := alpha_of(image)) is not None:
         return _opaque(_array(alpha, reduction) / 255.0, reduction, image.size)
     else:
-        flat = image.convert("L") if image.mode in ("1", "L") else _on_paper(image)
+        flat = image.convert("L") if image.mode in ("1", "L") else on_paper(image)
         grey = _array(flat.convert("L"), reduction) / 255.0
         if flat.mode != "L":
             seen = _array(flat, reduction, np.float32)
@@ -338,7 +368,7 @@ def stretched(deep: FloatArray) -> FloatArray:
     return (deep - lowest) / max(highest - lowest, 1e-12)
 
 
-def _alpha(image: Image.Image) -> Image.Image | None:
+def alpha_of(image: Image.Image) -> Image.Image | None:
     """The opacity of a picture whose border is transparent."""
     if not image.has_transparency_data:
         return None
@@ -348,7 +378,7 @@ def _alpha(image: Image.Image) -> Image.Image | None:
     return alpha if is_border_clear and float(np.max(opacity)) > CLEAR else None
 
 
-def _on_paper(image: Image.Image) -> Image.Image:
+def on_paper(image: Image.Image) -> Image.Image:
     """The colours of a picture, white where it is transparent."""
     if not image.has_transparency_data:
         return image.convert("RGB")

@@ -38,7 +38,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "json_outline.not_a_pair": mark("Vertex {number} must be a pair [x, y] of numbers, got {value!r:.40}."),
     # Pictures and masks
     "source.image_damaged": mark(
-        "{name} is damaged or not a picture (PNG, JPG or BMP): {reason:.100}. Open it in the program that made it and "
+        "{name} is damaged or not a picture (PNG, JPG, BMP, WebP, TIFF, GIF or AVIF): {reason:.100}. Open it in the program that made it and "
         "save it again."
     ),
     "image.too_many_pixels": mark(
@@ -50,6 +50,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "image.one_colour": mark("At threshold {threshold:.2f} the picture is all one colour. Try another threshold."),
     "image.threshold": mark("The threshold must be between 0 (black) and 1 (white), got {value!r:.40}."),
+    "object.no_place": mark("Say where the object is: at least one place on it."),
+    "object.outside": mark("({x:g}, {y:g}) is outside the picture, which has {width} x {height} pixels."),
+    "object.nothing_there": mark("There is only background at that place. Click on the object."),
+    "object.no_picture": mark("'{source:.80}' is no picture. A place on the object is for pictures: {kinds}."),
+    "object.not_a_place": mark("A place is two numbers, X,Y, in pixels from the upper left corner, got {value!r:.40}."),
     "mask.wrong_shape": mark("A mask must have shape (height, width), got {shape!s:.60}."),
     "mask.empty": mark("The mask is empty. It must be true inside the shape."),
     "trace.thinner_than_a_pixel": mark("The shape is thinner than a pixel. Use a larger or bolder picture."),
@@ -138,6 +143,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "parts.or_as_painted": mark("{reason} Or take the lines as painted: --stroke-outline."),
     "option.bridge_without_join": mark("--bridge is the width of bridges: use it with --join bridge, or alone."),
+    "option.object_with_parts": mark("Say either where the object is or which parts are meant, not both."),
     "parts.tightness": mark("The tightness of a hull must be between 0 and 1, got {value!r:.40}."),
     # Drawings and loose lines
     "drawing.no_area": mark("The drawing encloses no area. Draw one closed shape."),

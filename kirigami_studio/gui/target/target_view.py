@@ -316,9 +316,13 @@ class TargetView(Canvas):
 
     def _types(self, event: QKeyEvent) -> bool:
         """Whether a key is a letter for the text tool, not a command."""
-        others = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+        others = (
+            Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+        )
         letter = event.text()
-        return self.tool is Tool.TEXT and not event.modifiers() & others and letter.isprintable() and bool(letter.strip())
+        return (
+            self.tool is Tool.TEXT and not event.modifiers() & others and letter.isprintable() and bool(letter.strip())
+        )
 
     def _zooms_or_pans(self, event: QKeyEvent) -> bool:
         plain = not event.modifiers() & ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
