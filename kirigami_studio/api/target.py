@@ -92,9 +92,9 @@ def load_target(
     Parameters
     ----------
     source : str, path, array or geometry
-        A name out of :func:`target_names`; an image, SVG, DXF, PDF, AI or JSON file; vertices (L, 2), y up; a mask (H, W), row 0
-        on top, of which is inside what is above half of its highest value; a polygon or several, of which the largest
-        piece counts, its holes filled.
+        A name out of :func:`target_names`; an image, SVG, DXF, PDF, AI or JSON file; vertices (L, 2), y up; a mask
+        (H, W), row 0 on top, of which is inside what is above half of its highest value; a polygon or several, of which
+        the largest piece counts, its holes filled.
     name : str, optional
         What it is called; by default as its source.
     parts : str, optional
