@@ -18,6 +18,7 @@ import sys
 import tarfile
 import tempfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 from PIL import Image
@@ -45,6 +46,8 @@ SETS = {
 }
 #: Pixels of the longer side, and the overlap from which on both show the same.
 SIDE, SAME = 1200, 0.98
+#: What sticks out of the page is read; here the page is larger to all sides by this share.
+ROOM = 0.1
 
 
 def drawings(package: str, folder: str, keep: Path) -> list[tuple[str, bytes]]:
@@ -60,10 +63,22 @@ def drawings(package: str, folder: str, keep: Path) -> list[tuple[str, bytes]]:
         return sorted((one.name, archive.extractfile(one).read()) for one in members)
 
 
-def painted(path: Path) -> np.ndarray:
+def on_larger_page(content: bytes) -> tuple[bytes, float]:
+    """The drawing on a page with room for what sticks out of its own, without a size; and the page's width, pixels."""
+    root = ElementTree.fromstring(content)
+    stated = root.attrib.pop("width", "").removesuffix("px")
+    root.attrib.pop("height", None)
+    left, top, width, height = (float(word) for word in root.get("viewBox", f"0 0 {stated} {stated}").split())
+    grown = (left - ROOM * width, top - ROOM * height, (1 + 2 * ROOM) * width, (1 + 2 * ROOM) * height)
+    root.set("viewBox", " ".join(map(str, grown)))
+    scale = float(stated) / width if stated.replace(".", "", 1).isdigit() else 1.0
+    return ElementTree.tostring(root), grown[2] * scale
+
+
+def painted(content: bytes) -> np.ndarray:
     """The largest connected piece of what a drawing shows, filled: (H, W) bool."""
     size = ["--width", str(SIDE), "--height", str(SIDE), "--keep-aspect-ratio"]
-    found = subprocess.run(["rsvg-convert", *size, str(path)], capture_output=True, check=True, timeout=60)
+    found = subprocess.run(["rsvg-convert", *size], input=content, capture_output=True, check=True, timeout=60)
     opaque = np.asarray(Image.open(io.BytesIO(found.stdout)).convert("RGBA"))[..., 3] >= 128
     pieces, count = ndimage.label(ndimage.binary_fill_holes(opaque), structure=np.ones((3, 3)))
     areas = np.bincount(pieces.ravel(), minlength=count + 1)
@@ -84,9 +99,10 @@ def overlap(outline: Outline, shown: np.ndarray, pixels: float) -> float:
     return float(np.sum(drawn & shown) / np.sum(drawn | shown))
 
 
-def judged(path: Path, width: float) -> dict[str, object]:
-    """What the program takes of a drawing that is so wide, and how it fits what is painted."""
-    shown = painted(path)
+def judged(path: Path) -> dict[str, object]:
+    """What the program takes of a drawing, and how it fits what is painted."""
+    content, width = on_larger_page(path.read_bytes())
+    shown = painted(content)
     try:
         source = svg_parts(path)
         outline = usual_outline(source)
@@ -118,22 +134,13 @@ def main() -> int:
             for name, content in chosen:
                 path = arguments.out / f"{kind}-{Path(name).name}"
                 path.write_bytes(content)
-                found = {"name": name, **judged(path, page_width(content))}
+                found = {"name": name, **judged(path)}
                 results[str(found["result"])] += 1
                 record.write(json.dumps(found) + "\n")
                 if found["result"] == "same":
                     path.unlink()
         sys.stdout.write(json.dumps({"kind": kind, "icons": len(chosen), "seed": arguments.seed, **results}) + "\n")
     return 0
-
-
-def page_width(content: bytes) -> float:
-    """Pixels of a page's width: that which is stated, or that of its view."""
-    from xml.etree import ElementTree
-
-    root = ElementTree.fromstring(content)
-    stated = root.get("width", "").removesuffix("px")
-    return float(stated) if stated.replace(".", "", 1).isdigit() else float(root.get("viewBox", "").split()[2])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A page to share: one HTML file that moves the design exactly, needs no network and holds the project.
+"""A page to share: one HTML file with the exact motion and the project, without network.
 
 Every part of the sheet is rigid and its corners move as ``A + B exp(-i phi)`` (Eq. 1): in the page a part has its own
 corners, which turn one way, and one vector that carries it and turns the other way.  A policy in the page allows its
@@ -170,7 +170,7 @@ def _turn(posed: PosedDesign) -> float:
 
 
 def _moving_parts(posed: PosedDesign, scale: float) -> list[tuple[int, complex, ComplexArray]]:
-    """For every part, mm: whether it turns by +a instead of -a, the vector that carries it, and its own corners.
+    """For every part, mm: whether it turns by +a, the vector that carries it, its own corners.
 
     Two angles tell both: without the pose's turn a corner is ``exp(-i a) U + exp(i a) V`` with 2 a = pi - phi, and one
     of U and V is the same for all corners of a part, that of its neighbours.
@@ -187,7 +187,7 @@ def _moving_parts(posed: PosedDesign, scale: float) -> list[tuple[int, complex, 
 
 
 def _box(parts: list[tuple[int, complex, ComplexArray]], posed: PosedDesign) -> Any:
-    """Lower left and upper right corner (2, 2), mm, of the whole motion, with room around it."""
+    """Lower left and upper right corner (2, 2), mm, of the whole motion, with room."""
     ends = []
     for phi in np.linspace(posed.phi_target, math.pi, LOOKS).tolist():
         points = np.concatenate([corners_at(part, posed.phi_target, _turn(posed), phi) for part in parts])

@@ -16,6 +16,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.contour import thinned
+from kirigami_studio.outlines.crossings import CLEARLY_MEANT
 from kirigami_studio.outlines.joining import open_contour
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import QUARTER, Part, SourceParts, text_left_out
@@ -165,7 +166,8 @@ def usual_outline(source: SourceParts) -> Outline:
         )
     rings = {b"" if part.ring is None else part.ring.tobytes(): part.ring for part in parts}
     ring = next(iter(rings.values())) if len(rings) == 1 and not choice.as_painted else None
-    if ring is not None and not any(part.lines for part in parts):
+    areas = [part.region.area for part in parts]
+    if ring is not None and not any(part.lines for part in parts) and max(areas) > CLEARLY_MEANT * sum(areas):
         # Left as it is, so that crossings are judged and named.
         return _outline(source, ring, notes, source.name)[0]
     merging = Merging(as_painted=choice.as_painted)

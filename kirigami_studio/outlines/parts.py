@@ -53,6 +53,8 @@ SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
 LARGER = 1e-6
 #: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
 FRAME = 0.05
+#: Cosine of the turn of a line below which it has a corner.
+STRAIGHT = 0.996
 #: Vertices of a quarter circle at the ends and corners of strokes, and deviation of stroked lines, share of the size.
 QUARTER, STROKED_FLATNESS = 16, 1.0 / 8000.0
 #: Digits of the areas by which it is told which part lies around which; a fill and a stroke of one outline differ by
@@ -294,10 +296,32 @@ def shell(region: BaseGeometry) -> FloatArray:
 
 def stroked(lines: Sequence[FloatArray], pen: StrokeStyle, width: float) -> BaseGeometry:
     """What lines (P, 2) cover that are painted with a pen of some width."""
-    limit = max(pen.mitre_limit, 1.0)
-    return MultiLineString([LineString(line) for line in lines]).buffer(
-        0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=pen.join, mitre_limit=limit
+    join = "bevel" if pen.join == "mitre" else pen.join
+    painted = MultiLineString([LineString(line) for line in lines]).buffer(
+        0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join
     )
+    tips = [tip for line in lines for tip in _mitres(line, 0.5 * width, pen.mitre_limit)] if pen.join == "mitre" else []
+    return shapely.union_all([painted, *tips]) if tips else painted
+
+
+def _mitres(line: FloatArray, half: float, limit: float) -> list[Polygon]:
+    """The tips of a line's corners; one that is longer than ``limit`` widths stays cut off."""
+    if np.array_equal(line[0], line[-1]):
+        line = np.concatenate([line, line[1:2]])
+    along = np.diff(line, axis=0)
+    length = np.linalg.norm(along, axis=1)
+    line, along = line[np.append(True, length > 0.0)], along[length > 0.0] / length[length > 0.0, None]
+    before, after = along[:-1], along[1:]
+    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    straight = np.clip(np.sum(before * after, axis=1), -1.0, 1.0)
+    half_angle = np.sqrt(0.5 * (1.0 + straight))  # the sine of half the angle between the two lines
+    tips = []
+    for index in np.flatnonzero((straight < STRAIGHT) & (half_angle * limit >= 1.0)).tolist():
+        corner, side = line[index + 1], -np.sign(turn[index]) * half
+        sides = [side * np.array([-way[1], way[0]]) for way in (before[index], after[index])]
+        tip = (sides[0] + sides[1]) / (1.0 + straight[index])
+        tips.append(Polygon([corner, corner + sides[0], corner + tip, corner + sides[1]]))
+    return tips
 
 
 def _usual(source: SourceParts) -> UsualChoice:

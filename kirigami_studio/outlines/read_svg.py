@@ -33,6 +33,8 @@ from kirigami_studio.outlines.text_curves import text_parts
 
 #: An open stroke whose ends are nearer than this share of its size is meant to be closed.
 WIDEST_GAP = 0.02
+#: A white rectangle is paper if it covers this share of the page.
+PAPER = 0.9
 
 
 def read_svg(path: str | Path) -> Outline:
@@ -80,7 +82,7 @@ def _parts(name: str, content: bytes) -> SourceParts:
 def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:
     """The parts of a drawing as it is painted, of an SVG or of a page."""
     refuse_scribbles([chain for shape in read.drawn for chain in shape.chains])
-    drawn, paper = _without_paper(read.drawn)
+    drawn, paper = _without_paper(read.drawn, read.page)
     notes = [*read.left_out]
     if paper is not None:
         notes.append(tr("The white background was left out."))
@@ -155,8 +157,10 @@ def _colour(paint: Paint | None) -> str:
     return "" if paint is None else "#" + "".join(f"{round(255.0 * level):02x}" for level in paint[:3])
 
 
-def _without_paper(drawn: tuple[Drawn, ...]) -> tuple[list[Drawn], tuple[float, float, float, float] | None]:
-    """Leave out a white rectangle that lies behind all others: the page, not the target; and its box."""
+def _without_paper(
+    drawn: tuple[Drawn, ...], size: tuple[float, float] | None
+) -> tuple[list[Drawn], tuple[float, float, float, float] | None]:
+    """Leave out a white rectangle that covers the page behind all others: it is not the target; and its box."""
     first = next((shape for shape in drawn if shape.fill is not None), None)
     others = [shape for shape in drawn if shape is not first]
     if first is None or first.fill is None or min(first.fill[:3]) < WHITE or first.stroke is not None:
@@ -167,8 +171,11 @@ def _without_paper(drawn: tuple[Drawn, ...]) -> tuple[list[Drawn], tuple[float, 
     low, high = page.min(axis=0), page.max(axis=0)
     inner = np.concatenate([chain for shape in others if shape.fill is not None for chain in shape.chains] or [page])
     slack = 1e-6 * (high - low)
-    is_rectangle = first.region().area >= RECTANGLE * float(np.prod(high - low))
-    if is_rectangle and np.all(inner.min(axis=0) >= low - slack) and np.all(inner.max(axis=0) <= high + slack):
+    is_paper = first.region().area >= RECTANGLE * float(np.prod(high - low))
+    covered = np.maximum(np.minimum(high, size or high) - np.maximum(low, 0.0), 0.0)
+    if size is not None and np.prod(covered) < PAPER * np.prod(size):
+        return list(drawn), None
+    if is_paper and np.all(inner.min(axis=0) >= low - slack) and np.all(inner.max(axis=0) <= high + slack):
         (left, top), (right, bottom) = low.tolist(), high.tolist()
         return others, (left, top, right, bottom)
     return list(drawn), None

@@ -78,7 +78,7 @@ def checked(corners: FloatArray) -> FloatArray:
     if not np.isfinite(corners).all():
         raise TargetError("drawing.not_finite")
     if (largest := float(np.max(np.abs(corners)))) > MOST_COORDINATE:
-        raise TargetError("contour.extreme_size", largest=largest, span=float(np.max(np.ptp(corners, axis=0))))
+        raise TargetError("contour.extreme_size", largest=largest, span=largest)
     return corners
 
 

@@ -90,6 +90,7 @@ class SvgDrawing:
     drawn: tuple[Drawn, ...]
     texts: tuple[Text, ...]
     left_out: tuple[str, ...]
+    page: tuple[float, float] | None  #: drawing units; width and height of the page; None where they are not stated
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,10 +139,14 @@ class _Painter:
 
     def drawing(self) -> SvgDrawing:
         size = self._page()
-        page = np.diag([self._scale, self._scale, 1.0]) @ _viewport(self._root, (0.0, 0.0, *size))
-        frame = _Frame(page, self._view(self._root, size))
+        is_stated = _view_box(self._root) is not None or None not in map(
+            _stated_length, (self._root.get("width"), self._root.get("height"))
+        )
+        to_page = np.diag([self._scale, self._scale, 1.0]) @ _viewport(self._root, (0.0, 0.0, *size))
+        page = (size[0] * self._scale, size[1] * self._scale)
+        frame = _Frame(to_page, self._view(self._root, size))
         drawn = tuple(self._children(self._root, replace(frame, style=self._style(self._root, frame))))
-        return SvgDrawing(drawn, tuple(self._texts), tuple(self._said.values()))
+        return SvgDrawing(drawn, tuple(self._texts), tuple(self._said.values()), page if is_stated else None)
 
     def _page(self) -> tuple[float, float]:
         """Width and height of the page, pixels; those of its view where they are not stated."""

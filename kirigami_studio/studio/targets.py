@@ -166,8 +166,9 @@ class PartChoice:
         source = image_parts(path, threshold) if is_picture(path) else read_parts(path)
         if not is_picture(path) and self == PartChoice(LARGEST, Merging()):
             return usual_target(path, source)
+        chosen = source.chosen(self.words)
         with decoding(path, "source.image_damaged"):
-            return merged(source, source.chosen(self.words), self.merging).outline
+            return merged(source, chosen, self.merging).outline
 
 
 def _object(path: Path, strokes: Strokes) -> Outline:

@@ -1,4 +1,4 @@
-"""What the whole program makes of a set of targets: best of K, polished, searched for and trimmed, shape by shape."""
+"""Best designs of a set of targets: polished, searched for and trimmed, shape by shape."""
 
 from __future__ import annotations
 
@@ -178,12 +178,12 @@ def shape_figures(one: Made) -> dict[str, object]:
 
 
 def _expected(one: Made) -> float | None:
-    """The match that was expected of the grid before the run; None where the grid was given."""
+    """The match expected of the grid before the run; None where the grid was given."""
     return known_for(one.request).predicted_match if one.request.grid_chosen else None
 
 
 def _sheet_figures(designs: Sequence[Candidate], made: Sequence[Made]) -> dict[str, object]:
-    """What the sheets look like, whatever they open into."""
+    """Figures of the flat sheets, whatever they open into."""
     figures = [design.score.evenness for design in designs]
     rankings = [Ranking.of(one.request) for one in made]
     return {
