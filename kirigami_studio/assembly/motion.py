@@ -4,6 +4,9 @@ In the frame that turns with layer 1, a node of a panel with I + J even is U + R
 for all nodes of that panel, its *drift*.  Seen from a piece with drift V', the panel is therefore shifted by
 (R(t) - 1) (V - V') from its place in the flat sheet: along an exact arc of radius |V - V'|.  Layer 2 is the same with U
 and the other sense of rotation.
+
+Panels of the other layer share U, their drift, instead of V: seen from that piece, they turn about U + V' by t.  So
+where both layers lie in one plane, every point moves along an exact arc, too.
 """
 
 from __future__ import annotations
@@ -41,6 +44,9 @@ class LayerMotion:
         Corners with a pin.
     layer : (P,) int
         1 for panels with I + J even, 2 for the others.
+    plane : (P,) int
+        Pieces of one plane pass each other, those of different planes may lie on each other: 1 and 2 as the layers, or
+        1 for all.
     drift : (P,) complex, mm
     sense : (P,) float
         Of the rotation that carries a layer's pieces past each other: 1 in layer 1, -1 in layer 2.
@@ -52,21 +58,24 @@ class LayerMotion:
     nodes: IntArray
     hinged: BoolArray
     layer: IntArray
+    plane: IntArray
     drift: ComplexArray
     sense: FloatArray
     opening: float
 
     @classmethod
-    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float) -> LayerMotion:
+    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, in_one_plane: bool = False) -> LayerMotion:
         """The motion of a design from flat to its target angle."""
         panels = all_panels(*deployment.sheet.grid)
         even, odd = as_plane(deployment.even_part) * cell_mm, as_plane(deployment.odd_part) * cell_mm
         first = panels.corners[:, 0]
+        layer = np.where(panels.even, 1, 2)
         return cls(
             corners=(even + odd)[panels.corners],
             nodes=panels.corners,
             hinged=panels.hinged,
-            layer=np.where(panels.even, 1, 2),
+            layer=layer,
+            plane=np.ones_like(layer) if in_one_plane else layer,
             drift=np.where(panels.even, odd[first], even[first]),
             sense=np.where(panels.even, 1.0, -1.0),
             opening=math.pi - check_phi(phi_target),
@@ -103,29 +112,39 @@ class LayerMotion:
         return _moved(shapes, forth, (1.0 - np.exp(1j * self.sense[index] * turn)) * self.drift[index])
 
     def close_pairs(self, reach: float) -> IntArray:
-        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other.
+        """Pairs (K, 2) of panels of one plane that come within ``reach`` mm of each other.
 
         Both ways round, over the whole motion, judged by the circles around them: never too few.
         """
         middle = self.corners.mean(axis=1)
         radius = np.abs(self.corners - middle[:, None]).max(axis=1)
         found = []
-        for layer in (1, 2):
-            members = np.flatnonzero(self.layer == layer)
+        for plane in np.unique(self.plane):
+            members = np.flatnonzero(self.plane == plane)
             one, other = (axis.ravel() for axis in np.meshgrid(members, members, indexing="ij"))
             one, other = one[one != other], other[one != other]
             apart = self.distance_on_arc(middle[other], middle[one], one, other)
             found.append(np.stack([one, other], axis=1)[apart <= radius[one] + radius[other] + reach])
         return np.concatenate(found)
 
+    def seen_drift(self, one: IntArray, other: IntArray, moving: ComplexArray) -> ComplexArray:
+        """Drifts (K, ...) of points (K, ...), mm, of panels ``one`` in the flat sheet, seen from panels ``other``.
+
+        A point is at its place in the flat sheet plus (R(t) - 1) times its drift, in the sense of ``other``.
+        """
+        shape = (-1, *[1] * (moving.ndim - 1))
+        mine, theirs = self.drift[one].reshape(shape), self.drift[other].reshape(shape)
+        alike = (self.layer[one] == self.layer[other]).reshape(shape)
+        return np.asarray(np.where(alike, mine, moving - mine) - theirs)
+
     def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
         """Least distance (K,) between points of panels ``other`` and points moving with ``one``."""
-        drift = self.drift[one] - self.drift[other]
+        drift = self.seen_drift(one, other, moving)
         seen = points - (moving - drift)
         radius = np.abs(drift)
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
-        ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
-        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
+        ahead = np.mod(self.sense[other] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
+        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[other] * self.opening)))
         return np.asarray(np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends))
 
 
@@ -219,7 +238,8 @@ def swept_hulls(
     Parameters
     ----------
     corners : (C, K) complex, mm
-    drifts : (C,) complex, mm
+    drifts : (C, K) or (C, 1) complex, mm
+        Of every corner.
     turn : float, radians
         As for :func:`swept_discs`.
     tolerance : float, mm
@@ -228,8 +248,8 @@ def swept_hulls(
     """
     farthest = float(np.abs(drifts).max(initial=0.0))
     steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
-    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0) * drifts[:, None]
-    points = corners[:, None, :] + shifts[:, :, None]
+    turned = np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0
+    points = corners[:, None, :] + turned[:, None] * drifts[:, None, :]
     both = np.concatenate([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2 * corners.shape[1])
     near = (
         (both.real.max(axis=1) >= window[0])

@@ -159,7 +159,11 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
     """
     reach, spent = shaping.options.reach_mm, 0.0
     placed = shaping.placed(state.turn)
-    gaps = shapely.get_parts(less(less(state.outline, united(*placed)), state.voids))
+    missing = less(less(state.outline, united(*placed)), state.voids)
+    if shaping.options.in_one_plane:  # the clearance all round is none
+        seam = 0.5 * shaping.options.clearance_mm + OVERLAP
+        missing = missing.buffer(-seam, join_style="mitre").buffer(seam, join_style="mitre")
+    gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
     rims = shapely.intersects(gaps, state.outline.exterior)
     for by_shares in (True, False):

@@ -68,8 +68,9 @@ class Shaping:
     cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
 
     def __post_init__(self) -> None:
-        members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
-        self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
+        planes = np.unique(self.motion.plane).tolist()
+        members = {plane: np.flatnonzero(self.motion.plane == plane) for plane in planes}
+        self._parts = {plane: _ConvexParts(one, self.motion.corners[one]) for plane, one in members.items()}
         self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
         self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
@@ -80,7 +81,7 @@ class Shaping:
 
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target)
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
         made = cls(motion, options)
         made._begin(deployment)
         for _ in range(ROUNDS):
@@ -97,7 +98,11 @@ class Shaping:
     def _begin(self, deployment: Deployment) -> None:
         """Cut the notches; ears that would cut a piece through become smaller, halfway first."""
         motion, options = self.motion, self.options
-        panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
+        panels = polygons(motion.corners)
+        if options.in_one_plane:  # any two sides may meet
+            panels = shapely.buffer(panels, -0.5 * options.clearance_mm, join_style="mitre")
+        else:
+            panels = _less(panels, self._rubbing_sides(deployment))
         owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
         for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
@@ -162,18 +167,19 @@ class Shaping:
 
     @cached_property
     def pairs(self) -> IntArray:
-        """Pairs (K, 2) of pieces of one layer that may come near each other; the second is passed."""
+        """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
         return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
-        """Ears, as flat indices of corners, and the panels of their layer that they may touch."""
+        """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
         motion, options = self.motion, self.options
         one, other = self.pairs.T
         ear = (4 * one[:, None] + np.arange(4)).ravel()
         seen = np.repeat(other, 4)
-        hinged = motion.hinged.ravel()[ear]
-        ear, seen = ear[hinged], seen[hinged]
+        # An ear on a panel's own node is shaped to it by the joint.
+        passing = motion.hinged.ravel()[ear] & np.all(motion.nodes[seen] != motion.nodes.ravel()[ear, None], axis=1)
+        ear, seen = ear[passing], seen[passing]
         middle = motion.corners.mean(axis=1)
         radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
         radius += options.ear_mm + options.clearance_mm + options.reach_mm
@@ -185,13 +191,13 @@ class Shaping:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
         motion = self.motion
         radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
-        drift = motion.drift[ear // 4] - motion.drift[seen]
+        drift = motion.seen_drift(ear // 4, seen, motion.corners.ravel()[ear])
         turn = motion.sense[seen] * motion.opening
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Two ears in one layer (flat indices of corners), and their least distance, mm.
+        """Two ears in one plane (flat indices of corners), and their least distance, mm.
 
         Of each pair of pieces that pass each other, both ways round.
         """
@@ -204,7 +210,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window that others need in the layer of piece ``index``, seen from it."""
+        """The area near a window that others need in the plane of piece ``index``, seen from it."""
         motion, options = self.motion, self.options
         if window.is_empty:
             return Polygon()
@@ -218,10 +224,11 @@ class Shaping:
             seen = np.full(len(mover), index)
             return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= half + grown + radius
 
-        parts = self._parts[motion.layer[index] - 1]
+        parts = self._parts[int(motion.plane[index])]
         moving = parts.owner != index
         moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
-        drifts = motion.drift[parts.owner[moving]] - motion.drift[index]
+        owner = parts.owner[moving]
+        drifts = motion.seen_drift(owner, np.full(len(owner), index), parts.corners[moving])
         hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, box)
         zone = window.buffer(grown)
         shapely.prepare(zone)
@@ -266,8 +273,8 @@ class Shaping:
         """Give a piece a larger shape; it is kept in mind by all that move past it later."""
         added = shapely.get_parts(less(shape, self.bodies[index]))
         parts = [convex for part in added[shapely.area(added) > TOO_SMALL] for convex in _convex_parts(part)]
-        layer = self.motion.layer[index] - 1
-        self._parts[layer] = self._parts[layer].with_more(index, parts)
+        plane = int(self.motion.plane[index])
+        self._parts[plane] = self._parts[plane].with_more(index, parts)
         self.bodies[index] = shape
 
     def placed(self, turn: float) -> GeometryArray:

@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
@@ -40,7 +41,14 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, named_machine, note_before_run
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    construction_for,
+    is_printed,
+    machine_for,
+    named_machine,
+    note_before_run,
+)
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
@@ -370,7 +378,7 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     made, refusal = None, ""
     if request.is_pinned:
         _write_pictures(request, None, paths)
-        paths["cut"] = folder / "cut"
+        paths["cut"] = folder / ("print" if is_printed(request.settings) else "cut")
         try:
             verdict = written_pieces(request, Output(paths["cut"], "cut")).verdict
         except (ExportError, UsageError, FabricationError) as error:
@@ -385,6 +393,8 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     if made is None:
         raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
     machine, verdicts = named_machine(request.settings), []
+    if machine is None and machine_for(request.settings).kind is MachineKind.PRINTER:
+        machine = machine_for(request.settings)
     if machine is not None and machine.file != paths["cut"].suffix:
         paths["machine_cut"] = paths["cut"].with_suffix(machine.file)
     for role in [name for name in ("cut", "machine_cut") if name in paths]:

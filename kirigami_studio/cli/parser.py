@@ -51,6 +51,9 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
 WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", "machine", over=USUAL)
+CONSTRUCTION = setting_options(
+    FabricationSettings, "construction", "fastener", "pin_mm", "ear_mm", "clearance_mm", "gap_mm", over=USUAL
+)
 PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
 SINGLE_CONNECTORS = (
     option(
@@ -140,11 +143,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
         *WIDTHS,
+        *CONSTRUCTION,
         *ENGRAVE,
         SCHEDULER,
         JSON,
     ), (
         "kirigami-studio design heart --out out/heart",
+        "kirigami-studio design heart --construction printed --out out/printed-heart",
         "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
         "kirigami-studio design butterfly --symmetry mirror --regular 0.8 --out out/butterfly",
         "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",

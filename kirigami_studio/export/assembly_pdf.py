@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -66,6 +66,7 @@ STEPS = (
     "Put in the pins row by row from the top, in the order of the list; leave them loose.",
     "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn.",
 )
+LEGEND: Mapping[int, str] = {1: "layer 1, in front", 2: "layer 2, behind"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +83,11 @@ class AssemblySheet:
         The parts list.
     target : (L, 2) float or None, mm
         Target outline behind the opened sheet.
+    steps : sequence of str
+    legend : mapping of int to str
+        Words on the layers.
+    pins_are_put_in : bool
+        Whether pins are listed in their order.
     """
 
     assembly: Assembly
@@ -89,6 +95,9 @@ class AssemblySheet:
     about: Mapping[str, str]
     lines: Sequence[str]
     target: FloatArray | None = None
+    steps: Sequence[str] = STEPS
+    legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
+    pins_are_put_in: bool = True
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -343,25 +352,25 @@ def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, y, scale)
+    _legend(canvas, sheet.legend, y, scale)
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
     column.head("Parts")
     for line in sheet.lines:
         column.text(line)
     column.head("Assembly")
-    for number, line in enumerate(STEPS, start=1):
+    for number, line in enumerate(sheet.steps, start=1):
         column.text(line, f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
 
 
-def _legend(canvas: Any, y: float, scale: float) -> None:
+def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
-    for layer, words in ((1, "layer 1, in front"), (2, "layer 2, behind")):
+    for layer, words in legend.items():
         ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
@@ -398,7 +407,7 @@ def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
 
 def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> int:
     """List the pins in their order; return the number of pages."""
-    if not sheet.assembly.hinges:
+    if not (sheet.assembly.hinges and sheet.pins_are_put_in):
         return 0
     width = (page[0] - 2.0 * MARGIN_MM - (COLUMNS - 1) * GAP_MM) / COLUMNS
     lines: list[tuple[bool, str]] = []

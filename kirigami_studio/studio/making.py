@@ -15,6 +15,7 @@ import shapely
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
     Cancelled,
@@ -27,15 +28,18 @@ from kirigami_studio.foundation.errors import (
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     is_pinned,
+    is_printed,
     machine_for,
     material_for,
     pin_sizes,
+    printed_pins,
 )
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import refuse_errors
@@ -43,14 +47,18 @@ from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.checks import PinnedReport
+    from kirigami_studio.assembly.nesting import LaidShape
+    from kirigami_studio.assembly.pieces import Piece
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.export.print_files import PrintJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
+    from kirigami_studio.foundation.arrays import FloatArray
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
@@ -238,12 +246,21 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
     yield pieces_of(request) if request.is_pinned else planned(request, cancel)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LaidBed:
+    """Pieces with their places on a bed or a plate, and the size (width, height; mm) that they take."""
+
+    title: str
+    placed: tuple[tuple[Piece, LaidShape], ...]
+    size_mm: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False)
 class MadePieces:
     """The pieces of a pinned design, laid on the beds of its machine, and judged."""
 
     made: Assembled
-    job: AssemblyJob
+    job: AssemblyJob | PrintJob
     verdict: Verdict
 
     @property
@@ -252,9 +269,41 @@ class MadePieces:
         return self.made.report
 
     @property
+    def printing(self) -> PrintJob | None:
+        """The job of what is printed; None where pieces are cut."""
+        from kirigami_studio.export.print_files import PrintJob
+
+        return self.job if isinstance(self.job, PrintJob) else None
+
+    @property
+    def cutting(self) -> AssemblyJob | None:
+        """The job of what is cut; None where pieces are printed."""
+        from kirigami_studio.export.assembly_files import AssemblyJob
+
+        return self.job if isinstance(self.job, AssemblyJob) else None
+
+    @property
+    def beds(self) -> tuple[LaidBed, ...]:
+        """Pieces on each bed, or on each plate of what is printed."""
+        if self.printing is not None:
+            return tuple(
+                LaidBed(tr("Plate {number}", number=plate.number), plate.placed, plate.size_mm)
+                for plate in self.printing.plates
+            )
+        beds = () if self.cutting is None else self.cutting.beds
+        return tuple(
+            LaidBed(
+                tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
+                tuple((cuts.piece, place) for cuts, place in bed.placed),
+                bed.size_mm,
+            )
+            for bed in beds
+        )
+
+    @property
     def works(self) -> tuple[Work, ...]:
-        """Length and time of the cuts of each bed."""
-        return self.job.works
+        """Length and time of the cuts of each bed; none of what is printed."""
+        return () if self.cutting is None else self.cutting.works
 
     @property
     def flat_size_mm(self) -> tuple[float, float]:
@@ -281,16 +330,41 @@ def pieces_of(request: CutRequest) -> MadePieces:
     FabricationError, UsageError
         No such material, or sizes that do not go together.
     """
-    from kirigami_studio.export.assembly_files import AssemblyJob
-    from kirigami_studio.project.store import packed_design
     from kirigami_studio.studio.assembling import assembled
     from kirigami_studio.studio.verdict import judge_assembled
 
     settings, target = request.settings, request.target
     if target is None:
         raise ProjectError("export.no_chosen_design")
-    made, material, sizes = assembled(request.candidate, settings, target), material_for(settings), pin_sizes(settings)
-    job = AssemblyJob(
+    made = assembled(request.candidate, settings, target)
+    shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
+    job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown)
+    return MadePieces(made, job, judge_assembled(request.candidate, made))
+
+
+def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
+    from kirigami_studio.export.print_files import PrintJob
+
+    settings = request.settings
+    return PrintJob(
+        made.assembly,
+        material_for(settings),
+        machine_for(settings),
+        printed_pins(settings),
+        name=request.name,
+        paper=settings.paper,
+        target=shown,
+        provenance=request.facts,
+    )
+
+
+def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> AssemblyJob:
+    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.project.store import packed_design
+
+    settings = request.settings
+    material, sizes = material_for(settings), pin_sizes(settings)
+    return AssemblyJob(
         made.assembly,
         material,
         machine_for(settings),
@@ -304,11 +378,10 @@ def pieces_of(request: CutRequest) -> MadePieces:
         dxf_version=settings.dxf_version,
         paper=settings.paper,
         order=settings.options.order,
-        target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
+        target=shown,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
-    return MadePieces(made, job, judge_assembled(request.candidate, made))
 
 
 def writes_pieces(output: Output) -> bool:
@@ -330,7 +403,7 @@ def judged_pieces(request: CutRequest) -> Verdict:
 def written_pieces(request: CutRequest, output: Output, picture_phi: float | None = None) -> ExportedFiles:
     """Write the folder of a pinned design, read its files back, and judge it; or a picture of it.
 
-    A file's name stands for the folder without its extension, which gets cut files of that kind alone.  Pictures show
+    A file's name stands for the folder without its extension, which gets files of that kind alone.  Pictures show
     the ideal motion, which is that of the pieces, at ``picture_phi`` (radians) or the target angle.
 
     Raises
@@ -339,8 +412,11 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         An unwritable place, a kind of file that pieces have none of, or one that did not pass its own re-reading.
     """
     from kirigami_studio.export.assembly_files import KINDS, write_assembly
+    from kirigami_studio.export.print_files import KINDS as PRINTED
+    from kirigami_studio.export.print_files import write_print
     from kirigami_studio.studio.verdict import judge_assembled
 
+    kinds = PRINTED if is_printed(request.settings) else KINDS
     kind = output.path.suffix.lower()
     if output.name is None and kind and not kind_of(kind).cuts:
         from kirigami_studio.export.registry import export
@@ -348,17 +424,21 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         place = export(replace(export_job(request, None), picture_phi=picture_phi), output.path)
         made = pieces_of(request)
         return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
-    if output.name is None and kind not in ("", ".pdf", *KINDS):
-        raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *KINDS)))
+    if output.name is None and kind not in ("", ".pdf", *kinds):
+        raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *kinds)))
     pieces = pieces_of(request)
-    one = output.name is None and kind in KINDS
+    wanted = (kind,) if output.name is None and kind in kinds else kinds
     folder = output.path.with_suffix("") if output.name is None else output.path
 
     def level(verifications: Sequence[Verification]) -> str:
         return judge_assembled(request.candidate, pieces.made, verifications).level.value
 
     try:
-        found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
+        if pieces.printing is not None:
+            found = write_print(pieces.printing, folder, wanted, level)
+        else:
+            assert pieces.cutting is not None  # one of both
+            found = write_assembly(pieces.cutting, folder, wanted, level)
     except ExportError as error:
         broken = next((one for one in pieces.report.problems if one.severity is Severity.ERROR), None)
         if broken is None:
@@ -448,8 +528,13 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
 
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
+    machine = machine_for(request.settings) if made is not None else None
+    bed = machine.reach_mm if machine is not None and machine.kind is MachineKind.PRINTER else (0.0, 0.0)
     if made is not None and (request.settings.construction is Construction.BACKED or made.plan.material.backing):
-        job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=TileSizes(request.settings.gap_mm)))
+        tiles = TileSizes(request.settings.gap_mm)
+        job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=tiles, bed_mm=bed))
+    elif any(bed):
+        job = replace(job, printing=Printing(bed_mm=bed))
     return replace(
         job,
         profile=request.settings.profile,
@@ -734,6 +819,8 @@ def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDe
     importing.import_as_cut()
     for request in requests:
         try:
+            if is_printed(request.settings):
+                continue  # the slicer knows
             if request.is_pinned:
                 seconds = pieces_of(request).seconds
             else:

@@ -101,7 +101,9 @@ class CutsPage(QWidget):
     def summary(self) -> tuple[str, ...]:
         """What the header says, longest first."""
         if self._pieces is not None:
-            pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.job.beds)
+            pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.beds)
+            if self._pieces.printing is not None:
+                return (tr("{pieces} pieces  ·  {plates} plates", pieces=pieces, plates=beds),)
             return (tr("{pieces} pieces  ·  {beds} beds", pieces=pieces, beds=beds),)
         if self._plan is None:
             return ()
