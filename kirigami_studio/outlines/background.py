@@ -32,6 +32,8 @@ BORDER = 0.01
 SAME_GROUND, SAME_CORNERS = 8.0, 12.0
 #: Share of the border, and corners, that a slowly changing ground must explain.
 EXPLAINED, CORNERS = 0.5, 3
+#: Times as much as over the border that light may change over the picture.
+EXTRAPOLATED = 2.5
 #: Share of the border that has one colour where the corners differ.
 MOST_OF_BORDER = 0.6
 #: Change of the ground over the picture, distance, from which light is evened out.
@@ -245,7 +247,7 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
     model, good = _fitted(terms, seen)
     there = colours_in_lab(np.clip(_terms(*_corners(rows, columns).T, small.shape[:2]) @ model, 0.0, 1.0)[None])[0]
     fits = np.sum(np.linalg.norm(corners - there, axis=1) <= 2.0 * SAME_GROUND)
-    if np.mean(good) < EXPLAINED or fits < CORNERS:
+    if np.mean(good) < EXPLAINED or fits < CORNERS or _leaves(model, seen[good]):
         centre = _colour_of_corners(corners, lab)
         good = np.linalg.norm(lab - centre, axis=1) < SAME_CORNERS
         if np.mean(good) < MOST_OF_BORDER and np.sum(np.linalg.norm(corners - centre, axis=1) < SAME_CORNERS) < CORNERS:
@@ -267,6 +269,13 @@ def _fitted(terms: FloatArray, seen: FloatArray) -> tuple[FloatArray, BoolArray]
         if not good.any():
             good = off <= np.median(off)
     return model, off <= SAME_CORNERS
+
+
+def _leaves(model: FloatArray, seen: FloatArray) -> bool:
+    """Whether a model changes far more over the picture than the colours (N, C) it was made of: it is no light."""
+    low, high = np.quantile(seen, (0.1, 0.9), axis=0)
+    change = np.ptp(_evaluated(model, (9, 9)), axis=(0, 1))
+    return bool(np.any(change > EXTRAPOLATED * (high - low) + 0.01 * SAME_GROUND))
 
 
 def _evened(small: FloatArray, judged: FloatArray, within: BoolArray) -> FloatArray | None:
