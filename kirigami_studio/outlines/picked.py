@@ -34,6 +34,8 @@ GRAIN = 1.0
 MOST_PLACES = 40
 #: Half the side of the square around a place in which the object has to be met, pixels.
 REACH = 2
+#: Colours (distance) that are one.
+SAME = 6.0
 Place = tuple[float, float]
 
 
@@ -61,13 +63,14 @@ def picked_part(path: str | Path, strokes: Strokes) -> Part:
         looked = _looked(content)
         if not strokes.taken:
             raise TargetError("object.no_place")
-        nearest = _nearest(looked.colours, [_pixel(place, looked) for place in _some(strokes.taken)])
+        taken, left = ([_pixel(place, looked) for place in _some(places)] for places in (strokes.taken, strokes.left))
         beside = looked.ground
-        if strokes.left:
-            beside = np.minimum(
-                beside, _nearest(looked.colours, [_pixel(place, looked) for place in _some(strokes.left)])
-            )
-        ink = _connected(beside - nearest, [_pixel(place, looked) for place in strokes.taken])
+        if left:
+            off = _nearest(looked.colours, left)
+            beside = np.minimum(beside, off)
+            # What was taken before goes where it is of a colour that was left out.
+            taken = [place for place in taken if off[place] > SAME] or taken
+        ink = _connected(beside - _nearest(looked.colours, taken), taken)
         if ink is None:
             raise TargetError("object.nothing_there")
         ring, _ = trace(ink)

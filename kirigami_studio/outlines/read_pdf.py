@@ -156,7 +156,7 @@ def _drawing(document: pypdfium2.PdfDocument, budget: TimeBudget) -> SvgDrawing:
         notes.append(text_left_out())
     if seen.has_picture:
         notes.append(tr("An embedded picture was left out. Export it as PNG if it is the shape."))
-    return SvgDrawing(drawn, (), tuple(notes))
+    return SvgDrawing(drawn, (), tuple(notes), (MM_PER_POINT * width, MM_PER_POINT * height))
 
 
 def _unfolded(
