@@ -38,8 +38,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "json_outline.not_a_pair": mark("Vertex {number} must be a pair [x, y] of numbers, got {value!r:.40}."),
     # Pictures and masks
     "source.image_damaged": mark(
-        "{name} is damaged or not a picture (PNG, JPG, BMP, WebP, TIFF, GIF or AVIF): {reason:.100}. Open it in the program that made it and "
-        "save it again."
+        "{name} is damaged or not a picture (PNG, JPG, BMP, WebP, TIFF, GIF or AVIF): {reason:.100}. Open it in the "
+        "program that made it and save it again."
     ),
     "image.too_many_pixels": mark(
         "The picture has {width} x {height} pixels, more than {limit} million. Save it smaller."
