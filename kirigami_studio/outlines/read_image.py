@@ -41,8 +41,8 @@ LEAST_SHARE, MOST_REGIONS, MARGIN = 2e-4, 200, 6
 #: its channels that makes a colour.
 MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
 MOST_PIXELS_IN_COLOUR = 25_000_000
-#: A picture of more regions is noise.
-MOST_SPECKS = 10_000
+#: A picture of more regions is noise; a colour of more specks is texture.
+MOST_SPECKS, TEXTURE = 10_000, 200
 
 #: As Pillow calls them; of an animation the first picture is read.
 FORMATS = ("PNG", "JPEG", "BMP", "WEBP", "TIFF", "GIF", "AVIF")
@@ -136,6 +136,8 @@ def image_parts(path: str | Path, threshold: float | None = None, in_colour: boo
         found, specks = _regions(ink, levels.reduction, "", "")
         for colour, field, reduction in _colours(content) if in_colour else ():
             more, dust = _regions(field, reduction, colour, colour)
+            if dust > TEXTURE:
+                continue
             found += [replace(part, is_aside=True) for part in more]
             specks += dust
         if not found:
