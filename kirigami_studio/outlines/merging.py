@@ -1,4 +1,4 @@
-"""Chosen parts of a source -> one outline: united, bridged, or their hull; lines by what they enclose or as painted."""
+"""Chosen parts of a source -> one outline: united, bridged, or their hull."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ FLATNESS = 1.0 / 8000.0
 
 
 class Join(Enum):
-    """What makes one outline of several parts."""
+    """Ways to make one outline of several parts."""
 
     UNION = "union"  #: parts that overlap or touch; of several pieces the largest
     BRIDGE = "bridge"  #: pieces are held together by bridges between their nearest places
@@ -62,7 +62,7 @@ class Merging:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Merged:
-    """What came of it."""
+    """The outline of merged parts."""
 
     outline: Outline
     shape: Polygon  #: source units, y up; the outline in its place among the parts
@@ -120,7 +120,7 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
 
 
 def usual_outline(source: SourceParts) -> Outline:
-    """The silhouette that is seen: what is taken of a source without asking; its notes tell what was left out.
+    """The silhouette that is taken of a source without asking; its notes name the rest.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def usual_outline(source: SourceParts) -> Outline:
 def _outline(
     source: SourceParts, region: BaseGeometry | FloatArray, notes: Sequence[str], name: str
 ) -> tuple[Outline, Polygon]:
-    """The outline of a region or of a ring, and the polygon in its place; y runs as in the source meanwhile."""
+    """The outline of a region or a ring, judged with y as in the source; and its polygon."""
     way = np.array([1.0, -1.0]) if source.is_turned else np.ones(2)
     dropped: tuple[str, ...] = ()
     if isinstance(region, np.ndarray):

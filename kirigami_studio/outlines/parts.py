@@ -1,4 +1,4 @@
-"""What a file holds, part by part: shapes and lines with layer, colour and size, of which a target is made.
+"""Parts of a file: shapes and lines with layer, colour and size, of which a target is made.
 
 A part is a connected filled region, a closed contour of lines, or a connected open line.  Its geometry is in the units
 of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline of chosen parts.
@@ -66,7 +66,7 @@ ALL, LARGEST = "all", "largest"
 
 
 class DrawnPartKind(Enum):
-    """What makes a part."""
+    """Kinds of parts."""
 
     FILLED = "filled"
     CLOSED = "closed"  #: lines around an area
@@ -134,7 +134,7 @@ class Part:
         return float(self.region.area) if self.is_closed else max(width * height, 1e-3 * max(width, height) ** 2)
 
     def seen(self, size: float, with_lines: bool = False) -> BaseGeometry:
-        """The region that is painted: with its stroke where it is filled; its lines count only where they are to.
+        """The region that is painted; lines that fill nothing count only ``with_lines``.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ class SourceParts:
 
     @property
     def choice(self) -> UsualChoice:
-        """What is taken without asking."""
+        """The parts that are taken without asking."""
         if self._choice is None:
             object.__setattr__(self, "_choice", _usual(self))
         assert self._choice is not None
@@ -295,7 +295,7 @@ def shell(region: BaseGeometry) -> FloatArray:
 
 
 def stroked(lines: Sequence[FloatArray], pen: StrokeStyle, width: float) -> BaseGeometry:
-    """What lines (P, 2) cover that are painted with a pen of some width."""
+    """The region of lines (P, 2) that are painted with a pen of some width."""
     join = "bevel" if pen.join == "mitre" else pen.join
     painted = MultiLineString([LineString(line) for line in lines]).buffer(
         0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join
@@ -383,7 +383,7 @@ def _usual(source: SourceParts) -> UsualChoice:
 
 
 def _is_letter_apart(source: SourceParts, number: int, taken: Sequence[Part]) -> bool:
-    """Whether a part is a letter that does not belong to what is taken: it stands beside the shape."""
+    """Whether a part is a letter that stands beside the shape."""
     return source.parts[number - 1].is_letter and all(part.number != number for part in taken)
 
 
@@ -441,7 +441,7 @@ def _outside(region: BaseGeometry, silhouette: Polygon) -> float:
 
 
 def _open_contour(thin: Sequence[Part], solid: Mapping[int, BaseGeometry], size: float) -> Gap | None:
-    """The gap of thin open lines that would surround everything closed, one by its box or all of them joined."""
+    """The gap of thin open lines around everything closed: one by its box, or all joined."""
     lines = _all_lines(part for part in thin if not part.is_closed)
     closed = [*solid.values(), *(part.region for part in thin if part.is_closed)]
     if not lines or not closed:
@@ -506,7 +506,7 @@ def _stands_apart(closed: Sequence[Part], regions: Mapping[int, BaseGeometry], s
 
 
 def _is_framed(outer: Sequence[Part], closed: Sequence[Part]) -> bool:
-    """Whether one is a rectangle around another one that is worth asking about: a page or a frame."""
+    """Whether one is a rectangle around another one of some size: a page or a frame."""
     inside = [part for part in closed if part not in outer]
     for frame in outer:
         width, height = frame.size
@@ -519,7 +519,7 @@ def _is_framed(outer: Sequence[Part], closed: Sequence[Part]) -> bool:
 
 
 def parts_of_region(region: BaseGeometry, like: Part) -> list[Part]:
-    """The connected pieces of a filled region, each as a part; lines and pen are those of the whole."""
+    """The connected pieces of a filled region as parts, with lines and pen of the whole."""
     pieces = [piece for piece in shapely.get_parts(region) if isinstance(piece, Polygon) and piece.area > 0]
     if len(pieces) == 1:
         return [replace(like, region=pieces[0])]
@@ -551,7 +551,7 @@ def _shared(lines: Sequence[FloatArray], regions: Sequence[Polygon]) -> list[tup
 def parts_of_groups(
     groups: Sequence[tuple[Sequence[FloatArray], Part]], widest_gap: float, unit: str
 ) -> tuple[list[Part], list[str], float]:
-    """What groups of lines enclose or draw, such as those of each layer, one like a part each.
+    """The parts that groups of lines make, such as those of each layer, one like a part each.
 
     Open lines of different groups that enclose something together are parts of their own.
 
@@ -654,5 +654,5 @@ def numbered(parts: Sequence[Part], size: float) -> tuple[tuple[Part, ...], tupl
 
 
 def text_left_out() -> str:
-    """What is said where texts are not read."""
+    """The sentence where texts are not read."""
     return tr("Text was left out. Convert it to paths if it belongs to the shape.")

@@ -23,7 +23,7 @@ MOST_WINDINGS = 30_000_000
 
 
 def painted(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
-    """What rings (P, 2) fill together by the even-odd or the nonzero rule, holes left open."""
+    """The region of rings (P, 2) by the even-odd or the nonzero rule, holes left open."""
     closed = [ring if np.array_equal(ring[0], ring[-1]) else np.concatenate([ring, ring[:1]]) for ring in rings]
     closed = [ring for ring in closed if len(ring) > 3]
     if len(closed) == 1 and (whole := Polygon(closed[0])).is_valid:
@@ -48,7 +48,7 @@ def painted(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
 
 
 def _by_direction(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
-    """What rings fill: exact as long as no three of one direction lie over each other."""
+    """The region of rings: exact as long as no three of one direction lie over each other."""
     turned: dict[bool, list[BaseGeometry]] = {True: [], False: []}
     for ring in rings:
         faces = shapely.unary_union(enclosed(LineString(ring)))
@@ -62,7 +62,7 @@ def _by_direction(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometr
 
 
 def united(regions: Sequence[BaseGeometry], size: float) -> BaseGeometry:
-    """Regions as one; those that share an edge stay together although rounding has moved the edge.
+    """Regions as one; those that share an edge stay together although it was rounded.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ PAPER = 0.9
 
 
 def read_svg(path: str | Path) -> Outline:
-    """Outline of the silhouette that an SVG file shows: the rule of :mod:`~kirigami_studio.outlines.parts`.
+    """Outline of the silhouette that an SVG file shows, by the rule of ``outlines.parts``.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def read_svg(path: str | Path) -> Outline:
 
 
 def svg_parts(path: str | Path) -> SourceParts:
-    """All parts of an SVG file: every connected filled region, and what strokes enclose or draw, by layer and colour.
+    """All parts of an SVG file: connected filled regions, contours and lines.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def _colour(paint: Paint | None) -> str:
 def _without_paper(
     drawn: tuple[Drawn, ...], size: tuple[float, float] | None
 ) -> tuple[list[Drawn], tuple[float, float, float, float] | None]:
-    """Leave out a white rectangle that covers the page behind all others: it is not the target; and its box."""
+    """Leave out a white rectangle that covers the page behind all others; and its box."""
     first = next((shape for shape in drawn if shape.fill is not None), None)
     others = [shape for shape in drawn if shape is not first]
     if first is None or first.fill is None or min(first.fill[:3]) < WHITE or first.stroke is not None:

@@ -1,4 +1,4 @@
-"""Paths of SVG -> chains of vertices: curves by chords that lie close to them, counted before they are made."""
+"""Paths of SVG -> chains of vertices, counted before they are made."""
 
 from __future__ import annotations
 
@@ -83,12 +83,12 @@ def checked(corners: FloatArray) -> FloatArray:
 
 
 def _behind(before: FloatArray, controls: FloatArray) -> FloatArray:
-    """The end of a line, or the controls of a curve with its start, which is the end of what is ``before`` it."""
+    """The end of a line, or the controls of a curve with its start, the end ``before`` it."""
     return controls if len(controls) == 1 else np.concatenate([before[-1:], controls])
 
 
 def _vertices_of(chain: list[FloatArray], tolerance: float) -> int:
-    """How many vertices it has when it is flattened; curves are counted together, which takes no time."""
+    """The number of vertices of a chain once it is flattened."""
     by_length = [[one for one in chain if len(one) == length] for length in (1, 3, 4)]
     return len(by_length[0]) + sum(int(curve_pieces(np.stack(same), tolerance).sum()) for same in by_length[1:] if same)
 

@@ -1,4 +1,4 @@
-"""An SVG as it is painted: visible shapes and texts in their order, each with its paint, its pen and what clips it.
+"""An SVG as it is painted: visible shapes and texts, with paint, pen and clip.
 
 Everything lies in one frame, the page's, y down, in the unit that it is scaled to.  Groups, ``use``, symbols, nested
 drawings, ``switch``, transforms, clip paths and masks are resolved here; the cascade is
@@ -110,7 +110,7 @@ class _Frame:
 
 
 def svg_drawing(root: Element, scale: float, budget: TimeBudget) -> SvgDrawing:
-    """What is painted in a checked document.
+    """Everything painted in a checked document.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ class _Painter:
             yield from self._children(element, replace(frame, layer=layer))
 
     def _nested(self, element: Element, stating: Element, frame: _Frame) -> Iterator[Drawn]:
-        """What a nested drawing or a symbol shows; ``stating`` has its width and height."""
+        """Shapes of a nested drawing or a symbol; ``stating`` has its width and height."""
         corner = [self._length(element, name, frame, axis) for axis, name in enumerate(("x", "y"))]
         size = []
         for axis, name in enumerate(("width", "height")):
@@ -376,7 +376,7 @@ class _Painter:
         return frame
 
     def _region_of(self, source: Element, element: Element, frame: _Frame) -> BaseGeometry:
-        """What a clip path or a mask leaves of an element, on the page."""
+        """The region of a clip path or a mask for an element, on the page."""
         is_clip = tag_of(source) == "clipPath"
         units = source.get("clipPathUnits" if is_clip else "maskContentUnits", "userSpaceOnUse").strip()
         matrix, view = frame.matrix, frame.view
@@ -619,12 +619,13 @@ def _moved(x: float, y: float) -> FloatArray:
 
 
 def _placed(points: FloatArray, matrix: FloatArray) -> FloatArray:
-    found: FloatArray = points @ matrix[:2, :2].T + matrix[:2, 2]
+    with np.errstate(over="ignore", invalid="ignore"):
+        found: FloatArray = points @ matrix[:2, :2].T + matrix[:2, 2]
     return found
 
 
 def _viewport(element: Element, at: tuple[float, float, float, float]) -> FloatArray:
-    """From the user space of a drawing to the one around it, where it takes a rectangle (left, top, width, height)."""
+    """The matrix from a drawing to the space around it: a rectangle (left, top, width, height)."""
     left, top, width, height = at
     box = _view_box(element)
     if box is None:
@@ -691,7 +692,7 @@ def _label(element: Element) -> str:
 
 
 def _layer_of(group: Element, outer: str) -> str:
-    """The layer of what is in a group: a layer of a drawing program, or the outermost group with a name."""
+    """The layer of a group: one of a drawing program, or the outermost group with a name."""
     name = _label(group) or group.get("id", "")
     is_layer = any(key.endswith("}groupmode") and text == "layer" for key, text in group.items())
     return name if name and (is_layer or not outer) else outer

@@ -1,4 +1,4 @@
-"""Checks on an SVG document before it is unfolded: no bombs, no entities but short plain texts."""
+"""Checks on an SVG before it is unfolded: no bombs, no entities but short plain texts."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def checked_svg(content: bytes) -> tuple[Element, float | None]:
 
 
 def _check_entities(content: bytes) -> None:
-    """Refuse entities that lead to other files or to each other, or stand for a lot: the rest is expanded as text."""
+    """Refuse entities that lead to other files or to each other, or stand for a lot."""
     # Without the zero bytes UTF-16 text is searched as well.
     plain = content.replace(b"\0", b"")
     if b"<!entity" not in plain.lower():

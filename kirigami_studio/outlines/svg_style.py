@@ -1,4 +1,4 @@
-"""Style sheets, ``style`` attributes and presentation attributes of an SVG -> the properties of each element.
+"""Style sheets and attributes of an SVG -> the properties of each element.
 
 The cascade is CSS's: selectors by cssselect2, declarations and colours by tinycss2, order and inheritance here.
 """
@@ -186,7 +186,7 @@ def computed(declared: Properties, outer: Properties) -> dict[str, str]:
 
 
 def substituted(text: str, values: Properties, depth: int = 0) -> str | None:
-    """A value with its variables replaced; None where one is neither known nor has a value in its place."""
+    """A value with its variables replaced; None where one is not known."""
     if depth > DEEPEST_VARIABLE or len(text) > LONGEST_VALUE:
         return None
     found = _without_variables(tinycss2.parse_component_value_list(text), values, depth)
