@@ -817,7 +817,7 @@ class Pieces:
         return Exported(found.files, found.verifications, self)
 
     def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
-        return judge_assembled(self._request.candidate, self._made.made, verifications)
+        return judge_assembled(self._request.candidate, self._made.made, self._request.settings, verifications)
 
     def __repr__(self) -> str:
         level = self.verdict.words

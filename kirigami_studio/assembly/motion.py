@@ -28,6 +28,8 @@ GeometryArray = npt.NDArray[np.object_]
 
 #: Vertices of a polygon that stands for a disc.
 DISC = 64
+#: A pin is needed if its conditions are implied by others to less than this share.
+NEEDED = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,12 +89,24 @@ class LayerMotion:
         They are left out one by one: a pin without which pieces would move in other ways stays.  Where all stay it is
         this motion itself.
         """
-        found = self
-        for node in sorted(nodes):
-            fewer = replace(found, hinged=found.hinged & (found.nodes != node))
-            if freedom(fewer) == 1:
-                found = fewer
-        return found
+        if not nodes:
+            return self
+        pins, conditions = _conditions(self)
+        parts, sizes, _ = np.linalg.svd(conditions, full_matrices=False)
+        parts = parts[:, sizes > sizes.max(initial=0.0) * max(conditions.shape) * np.finfo(np.float64).eps]
+        if 3 * len(self.layer) - 3 - parts.shape[1] != 1:
+            return self
+        # Conditions can go if others imply them: if their part of this projection, onto what holds the sheet no more
+        # than others do, is not singular.
+        spare = np.eye(len(conditions)) - parts @ parts.T
+        left_out = []
+        for node in sorted(set(nodes) & set(pins.tolist())):
+            at = 2 * int(np.searchsorted(pins, node)) + np.arange(2)
+            own = spare[np.ix_(at, at)]
+            if float(np.linalg.eigvalsh(own)[0]) > NEEDED:
+                spare -= spare[:, at] @ np.linalg.solve(own, spare[at])
+                left_out.append(node)
+        return replace(self, hinged=self.hinged & ~np.isin(self.nodes, left_out)) if left_out else self
 
     def placed(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
         """Carry shapes of the flat sheet with their panels to t = ``turn``; deployment's frame, mm.
@@ -150,12 +164,18 @@ class LayerMotion:
 
 def freedom(motion: LayerMotion) -> int:
     """Count the small motions of a half open sheet on its pins, beside those of the whole."""
+    return 3 * len(motion.layer) - 3 - int(np.linalg.matrix_rank(_conditions(motion)[1]))
+
+
+def _conditions(motion: LayerMotion) -> tuple[IntArray, FloatArray]:
+    """Nodes (N,) with pins in ascending order, and the conditions (2 N, 3 P) that they put to shifts and turns."""
     turn = 0.5 * motion.opening
     drift, spin = motion.drift[:, None], np.exp(1j * motion.sense * turn)[:, None]
     points = np.exp(-0.5j * motion.sense * turn)[:, None] * (motion.corners + (spin - 1.0) * drift)
     piece, corner = np.nonzero(motion.hinged)
     order = np.argsort(motion.nodes[piece, corner], kind="stable")
-    piece, place = piece[order], points[piece, corner][order]
+    piece, corner = piece[order], corner[order]
+    place = points[piece, corner]
     # The two pieces of a pin follow each other: shifts and turns of both are the same at the pin.
     row, count = np.arange(len(piece) // 2), len(motion.layer)
     conditions = np.zeros((len(piece), 3 * count))
@@ -163,7 +183,7 @@ def freedom(motion: LayerMotion) -> int:
         conditions[2 * row, 3 * one] = conditions[2 * row + 1, 3 * one + 1] = sign
         conditions[2 * row, 3 * one + 2] = -sign * at.imag
         conditions[2 * row + 1, 3 * one + 2] = sign * at.real
-    return 3 * count - 3 - int(np.linalg.matrix_rank(conditions))
+    return motion.nodes[piece[::2], corner[::2]], conditions
 
 
 def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> GeometryArray:
@@ -249,12 +269,18 @@ def swept_hulls(
     farthest = float(np.abs(drifts).max(initial=0.0))
     steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
     turned = np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0
-    points = corners[:, None, :] + turned[:, None] * drifts[:, None, :]
-    both = np.concatenate([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2 * corners.shape[1])
+    shifts = turned[:, None] * drifts[:, None, :]
+    begin, end = shifts[:, :-1], shifts[:, 1:]
+    low, high = np.minimum(begin.real, end.real).min(axis=2), np.maximum(begin.real, end.real).max(axis=2)
+    under, over = np.minimum(begin.imag, end.imag).min(axis=2), np.maximum(begin.imag, end.imag).max(axis=2)
     near = (
-        (both.real.max(axis=1) >= window[0])
-        & (both.imag.max(axis=1) >= window[1])
-        & (both.real.min(axis=1) <= window[2])
-        & (both.imag.min(axis=1) <= window[3])
+        (corners.real.max(axis=1)[:, None] + high >= window[0])
+        & (corners.imag.max(axis=1)[:, None] + over >= window[1])
+        & (corners.real.min(axis=1)[:, None] + low <= window[2])
+        & (corners.imag.min(axis=1)[:, None] + under <= window[3])
     )
-    return np.asarray(shapely.convex_hull(shapely.multipoints(as_points(both[near]))), dtype=object)
+    polygon, step = np.nonzero(near)
+    both = corners[polygon][:, None, :] + shifts[polygon[:, None], step[:, None] + np.arange(2)]
+    # Hulls of lines, which are quicker to make than multipoints.
+    lines = shapely.linestrings(as_points(both.reshape(len(both), 2 * corners.shape[1])))
+    return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)

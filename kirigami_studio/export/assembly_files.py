@@ -12,6 +12,7 @@ import io
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -23,16 +24,20 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
-from kirigami_studio.export.cut_bed import CutBed, laid_on_beds, too_large
+from kirigami_studio.export.cut_bed import CutBed, laid_on_beds
+from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
-from kirigami_studio.export.file_content import FileContent, bent_otherwise, largest_shift
+from kirigami_studio.export.file_content import FileContent
+from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
-from kirigami_studio.export.pieces_read import FoundPiece, found_pieces, motion_findings, same_pieces
+from kirigami_studio.export.pieces_read import FoundPiece, KnownOutlines, found_pieces, motion_findings
 from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, find_profile
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
@@ -41,6 +46,7 @@ from kirigami_studio.export.verification import FORMATS, Finding, Format, Verifi
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import CutOrder
@@ -55,12 +61,12 @@ ANGLES = 181
 LENGTH_DECIMALS, TURN_DECIMALS = 6, 9
 #: Chords of a round hole there miss it by this (mm).
 RING_CHORD_MM = 5e-4
-#: Points that readers find within this (mm) of each other are the same.
-ALIKE_MM = 1e-9
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
-OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
+OWN_NAME = re.compile(
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+)
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
 
@@ -97,6 +103,12 @@ class AssemblyJob:
         The design as a packed project, which the first DXF and SVG carry; empty for none.
     verdict : str
         Level of the verdict on the design; "" where nobody has judged it.
+    hold : HoldOptions
+        Parts that hold it in its end states.
+    holds : tuple of HoldPlace
+        Where they are.
+    drive : DriveParts or None
+        Board and arms that move it.
     """
 
     assembly: Assembly
@@ -118,6 +130,14 @@ class AssemblyJob:
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     record: bytes = b""
     verdict: str = ""
+    hold: HoldOptions = field(default_factory=HoldOptions)
+    holds: tuple[HoldPlace, ...] = ()
+    drive: DriveParts | None = None
+
+    @property
+    def whole(self) -> Assembly:
+        """The assembly with the parts of its drive."""
+        return self.assembly if self.drive is None else self.drive.assembly
 
     @cached_property
     def beds(self) -> tuple[CutBed, ...]:
@@ -128,7 +148,7 @@ class AssemblyJob:
         FabricationError
             A hole or an opening that is narrower than the kerf.
         """
-        return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
+        return laid_on_beds(self.whole.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
     @property
     def allowed_mm(self) -> float:
@@ -139,13 +159,14 @@ class AssemblyJob:
     def notes(self) -> tuple[Note, ...]:
         """Notes to read before cutting."""
         room = self.machine.reach_mm
-        large = [
-            Note.of("pieces.larger_than_bed", piece=bed.pieces[0].piece.id, width_mm=room[0], height_mm=room[1])
-            for bed in self.beds
-            if too_large(bed, room)
+        layers = Counter(bed.layer for bed in self.beds)
+        several = [
+            Note.of("pieces.several_beds", layer=layer, count=count, width_mm=room[0], height_mm=room[1])
+            for layer, count in layers.items()
+            if count > 1
         ]
         note = find_profile(self.profile).note
-        return (*large, *([] if note is None else [note]))
+        return (*several, *([] if note is None else [note]))
 
     @cached_property
     def works(self) -> tuple[Work, ...]:
@@ -222,15 +243,17 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     """Write all files into a new folder and read them back."""
     verified: list[Verification] = []
     by_kind: dict[str, dict[str, FoundPiece]] = {}
+    known = KnownOutlines()
     for kind in kinds:
         for bed in job.beds:
-            found, pieces = _bed_written(job, bed, fresh, home, kind)
+            found, pieces = _bed_written(job, bed, fresh, home, kind, known)
             verified.append(found)
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces})
-    write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
-    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind))
+    record = pieces_json(job.whole, holds=job.holds)
+    write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
+    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target)
+    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:
@@ -274,7 +297,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
 
 
 def _bed_written(
-    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str
+    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str, known: KnownOutlines
 ) -> tuple[Verification, list[FoundPiece]]:
     """Write a bed's file, and find its pieces in it."""
     profile = find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
@@ -298,11 +321,7 @@ def _bed_written(
     contents = [_content(read, path) for read in how.readers]
     version = "R2010" if kind != ".dxf" else job.dxf_version
     found = agreed(contents, [reader_findings(content, strokes, version, how) for content in contents])
-    of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm) for content in contents[:1]]
-    if _alike(contents):
-        of_pieces *= 2
-    else:
-        of_pieces.append(found_pieces(contents[1].strokes, bed, job.allowed_mm))
+    of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
     found += agreed(contents, [findings for findings, _ in of_pieces])
     work = job.works[job.beds.index(bed)]
     verification = Verification(
@@ -323,18 +342,11 @@ def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
     return laid_together([read(part) for part in layer_paths(path)], path) if path.is_dir() else read(path)
 
 
-def _alike(contents: Sequence[FileContent]) -> bool:
-    """Whether two readers found the same strokes."""
-    one, other = (content.strokes for content in contents)
-    look, wanted = ([(stroke.layer, stroke.closed) for stroke in strokes] for strokes in (one, other))
-    return look == wanted and largest_shift(one, other) <= ALIKE_MM and not bent_otherwise(one, other, ALIKE_MM)
-
-
 # pieces and motion ----------------------------------------------------------------------------------------------------
 
 
-def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
-    """Pieces, hinges and motion, as plain lists.
+def pieces_json(assembly: Assembly, angles: int = ANGLES, holds: Sequence[HoldPlace] = ()) -> dict[str, Any]:
+    """Pieces, hinges, motion and, where there are any, places that hold the pieces, as plain lists.
 
     Outlines, holes (as rings) and hinge points are in the frame of their piece, in mm; a pose turns a piece about its
     origin, then moves it.
@@ -359,6 +371,7 @@ def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
             {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)}
             for phi in phis.tolist()
         ],
+        **({"holds": holds_json(holds, LENGTH_DECIMALS)} if holds else {}),
     }
 
 
@@ -384,21 +397,16 @@ def _ring(hole: RoundHole) -> FloatArray:
 
 
 def _motion_verified(
-    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]]
+    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]], known: KnownOutlines
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.assembly)
+    right = record == pieces_json(job.whole, holds=job.holds)
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
-    known: list[tuple[Mapping[str, FoundPiece], list[Finding]]] = []
     for kind, pieces in by_kind.items():
-        if not right or set(pieces) != set(job.assembly.by_id):
+        if not right or set(pieces) != set(job.whole.by_id):
             continue
-        # Files of one design mostly hold the same numbers: those are moved once.
-        moved = next((found for other, found in known if same_pieces(pieces, other, ALIKE_MM)), None)
-        if moved is None:
-            moved = motion_findings(pieces, record)
-            known.append((pieces, moved))
+        moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
     far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
@@ -406,7 +414,7 @@ def _motion_verified(
         path=goal,
         ok=all(finding.ok for finding in findings),
         size_mm=(width, height),
-        pieces=len(job.assembly.pieces),
+        pieces=len(job.whole.pieces),
         cut_length_mm=sum(work.cut_length_mm for work in job.works),
         seconds_low=sum(work.times.low for work in job.works),
         seconds_high=sum(work.times.high for work in job.works),
@@ -450,7 +458,7 @@ COLUMNS = tuple(entry.name for entry in fields(PartLine))
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
-    """The parts list: pieces of each bed, pins, material, and all together."""
+    """The parts list: pieces of each bed, pins, parts that hold, material, and all together."""
     found = []
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)
@@ -477,6 +485,13 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
         )
         found.append(pins)
+    found += [
+        PartLine(line.item, count=line.count, diameter_mm=line.diameter_mm, length_mm=line.length_mm, note=line.note)
+        for line in (
+            *hold_lines(job.holds, job.hold),
+            *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
+        )
+    ]
     sheet = f"{job.material.name}; area of the rectangles round what is cut"
     found.append(
         PartLine(
@@ -489,8 +504,8 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
     found.append(
         PartLine(
             "all cuts",
-            count=len(job.assembly.pieces),
-            area_mm2=sum(map(_area, job.assembly.pieces)),
+            count=len(job.whole.pieces),
+            area_mm2=sum(map(_area, job.whole.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.works),
             seconds=sum(work.times.total for work in job.works),
             note=f"on {job.machine.name}",
@@ -536,6 +551,9 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
             lines.append(
                 f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
             )
+        elif part.item != "all cuts":
+            size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
+            lines.append(f"{part.count} {part.item}{f', {size} mm' if size else ''}, {part.note}")
         else:
             lines.append(
                 f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"

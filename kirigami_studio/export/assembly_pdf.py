@@ -20,9 +20,13 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Hinge
 from kirigami_studio.export import picture
 from kirigami_studio.export.cut_bed import CutBed
+from kirigami_studio.export.drive_files import drive_steps
+from kirigami_studio.export.hold_files import HOLD_STEPS
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, PAPERS, Paper, Size, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.pdf import ROUNDING_MM, SAME_LENGTH, length_in_cell, read_pages
 from kirigami_studio.export.pdf_library import Canvas, mm
@@ -37,14 +41,22 @@ from kirigami_studio.export.pdf_pages import (
     to_page,
 )
 from kirigami_studio.export.picture import Colour
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
-#: Fill and edge of the pieces of each layer: the first solid, the other lighter.
-FILLS: Mapping[int, Colour] = {1: picture.PANEL, 2: (236, 242, 248)}
-EDGES: Mapping[int, Colour] = {1: picture.PANEL_EDGE, 2: (120, 146, 178)}
+#: Fill and edge of the pieces of each layer: the first solid, the other lighter; then arms, board and handle.
+FILLS: Mapping[int, Colour] = {
+    1: picture.PANEL, 2: (236, 242, 248), 3: (255, 224, 178), 4: (245, 239, 227), 5: (255, 240, 214),
+}  # fmt: skip
+EDGES: Mapping[int, Colour] = {
+    1: picture.PANEL_EDGE, 2: (120, 146, 178), 3: (176, 112, 32), 4: (140, 120, 90), 5: (190, 150, 90),
+}  # fmt: skip
 PIN: Colour = picture.TARGET_EDGE
+#: Places that hold the sheet, and how far their numbers stand beside them (points).
+HOLD: Colour = (178, 34, 34)
+BESIDE_POINTS = 3.0
 #: Corners nearer than this (mm) to the line of their neighbours are left out of pictures.
 UNSEEN_MM = 0.02
 #: Corners of a pin's circle.
@@ -83,6 +95,10 @@ class AssemblySheet:
         The parts list.
     target : (L, 2) float or None, mm
         Target outline behind the opened sheet.
+    holds : sequence of HoldPlace
+        Places that hold the sheet, shown in their states.
+    drive : DriveParts or None
+        Board and arms that move it, which have a page of their own.
     steps : sequence of str
     legend : mapping of int to str
         Words on the layers.
@@ -95,6 +111,8 @@ class AssemblySheet:
     about: Mapping[str, str]
     lines: Sequence[str]
     target: FloatArray | None = None
+    holds: Sequence[HoldPlace] = ()
+    drive: DriveParts | None = None
     steps: Sequence[str] = STEPS
     legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
     pins_are_put_in: bool = True
@@ -126,8 +144,11 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     canvas.setSubject(sheet.about["subject"])
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setLineJoin(1)
-    _first_page(canvas, sheet, flat, upright)
+    _first_page(canvas, sheet, upright)
     before = 1 + _pages_of_pins(canvas, sheet, flat, upright) + _pages_of_beds(canvas, sheet.beds, upright)
+    if sheet.drive is not None:
+        _page_of_drive(canvas, sheet.drive, upright)
+        before += 1
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
     about = f"{sheet.about['title']}, flat, at true size: {flat.size[0]:.1f} x {flat.size[1]:.1f} mm"
     draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
@@ -167,15 +188,20 @@ class _Drawing:
     pins : (H, 2) float, mm
     target : (L, 2) float or None, mm
     size : (width, height), mm
+    holds : tuple of (number, tuple of (K, 2) float, mm)
+        Numbers of places that hold the sheet, and rings round their holes and tabs.
     """
 
     shapes: tuple[_Shape, ...]
     pins: FloatArray
     target: FloatArray | None
     size: Size
+    holds: tuple[tuple[str, tuple[FloatArray, ...]], ...] = ()
 
     @classmethod
-    def of(cls, assembly: Assembly, phi: float, target: FloatArray | None = None) -> _Drawing:
+    def of(
+        cls, assembly: Assembly, phi: float, target: FloatArray | None = None, holds: Sequence[HoldPlace] = ()
+    ) -> _Drawing:
         """The sheet at an angle."""
         pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
         placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
@@ -200,7 +226,14 @@ class _Drawing:
         ]
         pins = np.array([_pin_place(assembly, hinge, phi) - low for hinge in assembly.hinges]).reshape(-1, 2)
         width, height = (high - low).tolist()
-        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height))
+        signs = []
+        for place in holds:
+            rings: list[FloatArray] = []
+            for name, at in zip(place.parts, place.at, strict=True):
+                points = assembly.placed(assembly.by_id[name], at, phi) - low
+                rings += [point + 0.5 * place.hole_mm * CIRCLE for point in points] if place.hole_mm else [points]
+            signs.append((f"{place.number}", tuple(rings)))
+        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height), tuple(signs))
 
     @classmethod
     def of_bed(cls, bed: CutBed) -> _Drawing:
@@ -254,6 +287,13 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)
     for shape in drawing.shapes:
         _number(canvas, shape, scale, corner)
+    for number, rings in drawing.holds:
+        for ring in rings:
+            _fill(canvas, [corner + scale * ring], HOLD)
+        x, y = ((corner + scale * np.concatenate(rings).max(axis=0)) * mm).tolist()
+        canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
+        canvas.setFont("Helvetica-Bold", MOST_POINTS)
+        canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)
 
 
 def _coarse(ring: FloatArray) -> FloatArray:
@@ -336,8 +376,10 @@ def _title(canvas: Any, text: str, page: Size) -> float:
     return top - GAP_MM
 
 
-def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> None:
-    opened = _Drawing.of(sheet.assembly, sheet.assembly.phi_target, sheet.target)
+def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
+    here = {state: [place for place in sheet.holds if place.state is state] for state in HeldState}
+    flat = _Drawing.of(sheet.assembly, math.pi, holds=here[HeldState.FLAT])
+    opened = _Drawing.of(sheet.assembly, sheet.assembly.phi_target, sheet.target, here[HeldState.OPEN])
     top = _title(canvas, sheet.about["title"], page)
     width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
     room = (width, 0.42 * page[1])
@@ -352,20 +394,21 @@ def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, sheet.legend, y, scale)
+    _legend(canvas, sheet.legend, y, scale, held=bool(sheet.holds))
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
     column.head("Parts")
     for line in sheet.lines:
         column.text(line)
     column.head("Assembly")
-    for number, line in enumerate(sheet.steps, start=1):
+    held = [HOLD_STEPS[kind] for kind in dict.fromkeys(place.kind for place in sheet.holds)]
+    for number, line in enumerate((*sheet.steps, *held), start=1):
         column.text(line, f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
 
 
-def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float) -> None:
+def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float, *, held: bool) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
@@ -379,6 +422,9 @@ def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float) -> N
     stroke_colour(canvas, PIN)
     draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
     x = _words(canvas, "pin", x + 5.0, y)
+    if held:
+        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
+        x = _words(canvas, "keeps it so", x + 5.0, y)
     _words(canvas, f"pictures at 1 : {1.0 / scale:.1f}", x, y)
 
 
@@ -429,6 +475,30 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
         canvas.showPage()
         pages += 1
     return pages
+
+
+def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
+    """Show board and arms at both ends of the motion, with the pieces that they move."""
+    top = _title(canvas, "Board and arms, seen from the front", page)
+    width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
+    parts = drive.parts
+    ends = ((math.pi, "Flat"), (parts.phi_target, f"Opened, {math.degrees(parts.phi_target):.0f} degrees"))
+    drawings = [_Drawing.of(parts, phi) for phi, _ in ends]
+    scale = min(_fitting(drawing, (width, 0.42 * page[1])) for drawing in drawings)
+    for number, (drawing, (_, words)) in enumerate(zip(drawings, ends, strict=True)):
+        left = MARGIN_MM + number * (width + GAP_MM)
+        _ink(canvas)
+        canvas.setFont("Helvetica-Bold", HEAD_POINTS)
+        canvas.drawString(left * mm, top * mm, words)
+        _draw(canvas, drawing, scale, np.array([left, top - 4.0 - scale * drawing.size[1]]))
+    y = top - 4.0 - scale * max(drawing.size[1] for drawing in drawings) - GAP_MM
+    column = _Column(canvas, MARGIN_MM, y, page[0] - 2.0 * MARGIN_MM)
+    column.text(f"Pictures at 1 : {1.0 / scale:.1f}. {drive.fixed} is fixed to the board.")
+    for number, line in enumerate(drive_steps(drive), start=1):
+        column.text(line, f"{number}.")
+    _ink(canvas)
+    draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
+    canvas.showPage()
 
 
 def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:

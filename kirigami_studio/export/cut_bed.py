@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+import numpy.typing as npt
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
@@ -38,6 +39,12 @@ BEAM_CHORDS = 64
 CORNER_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Layers of a sheet, and the stem of the file of all parts behind them.
+LAYERS, BOARD = 2, "board"
+#: Distance of numbers from the marks of tabs, mm.
+CLEAR_OF_MARK_MM = 0.5
+#: Designs whose beds are kept, with the order of their cuts.
+MOST_KEPT = 16
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
@@ -56,7 +63,7 @@ class PieceCuts:
     openings : tuple of (K, 2) float
         Those of the piece first, clockwise; then notches that the beam cannot enter by their mouths.
     number : tuple of (P, 2) float
-        Open strokes; none where the number has no room.
+        Open strokes; none where the number has no room, and the piece no marks.
     """
 
     piece: Piece
@@ -84,9 +91,13 @@ class PieceCuts:
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
         rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
         area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
+        marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
+        lines = tuple(shapely.get_coordinates(line) for line in marks if isinstance(line, LineString) and line.length)
+        if piece.marks:  # the number keeps out of them
+            area = area.difference(shapely.union_all([Polygon(mark).buffer(CLEAR_OF_MARK_MM) for mark in piece.marks]))
         parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
         free = max(parts, key=lambda part: part.area, default=Polygon())
-        return cls(piece, outline, holes, openings, written_in(free, piece.id))
+        return cls(piece, outline, holes, openings, (*written_in(free, piece.id), *lines))
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
@@ -124,14 +135,28 @@ def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     """Farthest that a corner of a shape is from another shape, mm."""
-    corners = np.asarray(shapely.points(shapely.get_coordinates(one)), dtype=object).reshape(-1)
-    tree = shapely.STRtree(np.asarray(shapely.points(shapely.get_coordinates(other)), dtype=object).reshape(-1))
-    if not len(corners) or not len(tree):
+    corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
+    if not len(corners) or not len(others):
         return math.inf
-    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
-    # From corner to corner is quick, and nearly always near enough.
-    far = near > SHARP_MM
-    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
+    tree = shapely.STRtree(np.asarray(shapely.points(others), dtype=object).reshape(-1))
+    points = np.asarray(shapely.points(corners), dtype=object).reshape(-1)
+    near = tree.query_nearest(points, return_distance=True, all_matches=False)[1]
+    # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
+    far = np.flatnonzero(near > SHARP_MM)
+    if len(far):
+        shapely.prepare(other)
+        outside = far[~shapely.intersects(other, points[far])]
+        near[far] = 0.0
+        if len(outside):
+            sides = shapely.STRtree(_sides(other))
+            near[outside] = sides.query_nearest(points[outside], return_distance=True, all_matches=False)[1]
+    return float(near.max())
+
+
+def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
+    """The sides of all rings of a shape."""
+    found, ring = shapely.get_coordinates(shapely.get_rings(shapely.get_parts(shape)), return_index=True)
+    return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,8 +181,9 @@ class CutBed:
 
     @property
     def name(self) -> str:
-        """Stem of its file: ``layer-1``, ``layer-1-b2``."""
-        return f"layer-{self.layer}" + (f"-b{self.number}" if self.number > 1 else "")
+        """Stem of its file: ``layer-1``, ``layer-1-b2``, ``board``."""
+        stem = BOARD if self.layer > LAYERS else f"layer-{self.layer}"
+        return stem + (f"-b{self.number}" if self.number > 1 else "")
 
     @property
     def size_mm(self) -> tuple[float, float]:
@@ -223,7 +249,7 @@ def laid_on_beds(
     margin_mm: float = 0.0,
     order: CutOrder = CutOrder.SHORTEST,
 ) -> tuple[CutBed, ...]:
-    """Lay pieces on beds, those of each layer by themselves.
+    """Lay pieces on beds, those of each layer by themselves; the same pieces are not laid again.
 
     Parameters
     ----------
@@ -242,9 +268,18 @@ def laid_on_beds(
     FabricationError
         As :meth:`PieceCuts.of`.
     """
+    return _laid(tuple(pieces), kerf_mm, bed, margin_mm, order)
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def _laid(
+    pieces: tuple[Piece, ...], kerf_mm: float, bed: tuple[float, float], margin_mm: float, order: CutOrder
+) -> tuple[CutBed, ...]:
     found = []
-    for layer in sorted({piece.layer for piece in pieces}):
-        cuts = [PieceCuts.of(piece, kerf_mm) for piece in pieces if piece.layer == layer]
+    # The parts of a drive lie together, whatever their layers.
+    sheets = [min(piece.layer, LAYERS + 1) for piece in pieces]
+    for layer in sorted(set(sheets)):
+        cuts = [PieceCuts.of(piece, kerf_mm) for piece, sheet in zip(pieces, sheets, strict=True) if sheet == layer]
         beds = nested([one.outline for one in cuts], bed, kerf_mm + WEB_MM, margin_mm)
         for number, places in enumerate(beds, start=1):
             here = tuple(cuts[place.shape] for place in places)
@@ -254,8 +289,3 @@ def laid_on_beds(
                 CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places), order)
             )
     return tuple(found)
-
-
-def too_large(bed: CutBed, room: tuple[float, float]) -> bool:
-    """Whether what is cut reaches beyond a bed (width, height; mm, 0 for a side without an end)."""
-    return any(0.0 < most < side - math.ulp(most) * 4 for side, most in zip(bed.size_mm, room, strict=True))

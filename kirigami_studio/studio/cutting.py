@@ -9,8 +9,10 @@ from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Note, Severity
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
@@ -85,6 +87,14 @@ def plan_sheet(
         machine=machine,
     )
     told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
+    told += [
+        Note.of(code)
+        for code, wanted in (
+            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
+            ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
+        )
+        if wanted
+    ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
     return replace(plan, notes=(*plan.notes, *told)) if told else plan
@@ -132,7 +142,7 @@ def least_feature_mm(settings: FabricationSettings) -> float:
         No such material.
     """
     material = material_for(settings)
-    return max(material.min_ligament_mm, material.min_panel_mm) + _kerf_mm(settings, material)
+    return max(material.min_ligament_mm, material.min_panel_mm) + kerf_mm(settings, material)
 
 
 def room_mm(settings: FabricationSettings) -> float:
@@ -145,8 +155,9 @@ def room_mm(settings: FabricationSettings) -> float:
     """
     material = material_for(settings)
     connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    return ROOM_IN_WIDTHS * connector + _kerf_mm(settings, material)
+    return ROOM_IN_WIDTHS * connector + kerf_mm(settings, material)
 
 
-def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
+def kerf_mm(settings: FabricationSettings, material: Material) -> float:
+    """Width of the cut: of the settings, or of the material."""
     return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm

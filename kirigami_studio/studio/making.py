@@ -34,6 +34,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     is_pinned,
     is_printed,
     machine_for,
@@ -42,7 +43,7 @@ from kirigami_studio.settings.fabrication import (
     printed_pins,
 )
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import refuse_errors
+from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
@@ -338,8 +339,9 @@ def pieces_of(request: CutRequest) -> MadePieces:
         raise ProjectError("export.no_chosen_design")
     made = assembled(request.candidate, settings, target)
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
-    job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown)
-    return MadePieces(made, job, judge_assembled(request.candidate, made))
+    verdict = judge_assembled(request.candidate, made, settings)
+    job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
+    return MadePieces(made, job, verdict)
 
 
 def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
@@ -358,7 +360,7 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
     )
 
 
-def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> AssemblyJob:
+def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.project.store import packed_design
 
@@ -369,7 +371,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> As
         material,
         machine_for(settings),
         settings.fastener,
-        material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm,
+        kerf_mm(settings, material),
         sizes.hole_mm,
         sizes.ear_mm,
         sizes.clearance_mm,
@@ -379,8 +381,12 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray) -> As
         paper=settings.paper,
         order=settings.options.order,
         target=shown,
+        hold=hold_options(settings),
+        holds=made.held.places,
+        drive=made.drive,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        verdict=verdict.level.value,
     )
 
 
@@ -431,7 +437,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     folder = output.path.with_suffix("") if output.name is None else output.path
 
     def level(verifications: Sequence[Verification]) -> str:
-        return judge_assembled(request.candidate, pieces.made, verifications).level.value
+        return judge_assembled(request.candidate, pieces.made, request.settings, verifications).level.value
 
     try:
         if pieces.printing is not None:
@@ -444,7 +450,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         if broken is None:
             raise
         raise ExportError("export.cannot_be_cut", reason=broken.text) from error
-    verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
+    verdict = judge_assembled(request.candidate, pieces.made, request.settings, found.verifications)
     return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 

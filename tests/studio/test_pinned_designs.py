@@ -11,6 +11,7 @@ import pytest
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
+from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.material import Construction
@@ -23,7 +24,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import construction_for, is_pinned, new_settings
+from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for, new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning, timing
 from kirigami_studio.studio.verdict import Level, look_at
@@ -143,3 +144,49 @@ def test_that_the_time_of_a_pinned_design_is_that_of_its_beds(pinwheel: Document
 def test_that_a_sheet_of_an_unknown_material_is_not_pinned_unless_asked_for(pinwheel: Document) -> None:
     gone = replace(pinwheel.fabrication, material="nothing-anybody-has")
     assert not is_pinned(gone) and is_pinned(replace(gone, construction=Construction.PINNED))
+
+
+def on_bed(document: Document, side_mm: float) -> Document:
+    """The project on a machine with a square bed."""
+    machine = replace(machine_for(document.fabrication), key="my-laser", bed_width_mm=side_mm, bed_height_mm=side_mm)
+    return replace(document, fabrication=replace(document.fabrication, machine="my-laser", own_machine=machine))
+
+
+def test_that_a_piece_larger_than_the_bed_is_a_problem_and_the_width_that_is_told_solves_it(
+    pinwheel: Document, made: MadePieces
+) -> None:
+    largest = max(smallest_rectangle(piece.outline)[0] for piece in made.made.assembly.pieces)
+    small = on_bed(pinwheel, 0.9 * largest)
+    (problem,) = pieces_of(CutRequest.of(small)).verdict.problems
+    assert problem.code == "pieces.larger_than_bed"
+    assert problem.fields["long_mm"] == pytest.approx(largest, abs=0.5)
+    look = look_at(small.candidates[0], small.fabrication, small.target)
+    assert look.refusal is not None and look.refusal.code == problem.code
+    narrower = replace(small.fabrication, width_mm=float(problem.fields["largest_mm"]))
+    codes = {one.code for one in pieces_of(CutRequest.of(small, narrower)).verdict.problems}
+    assert "pieces.larger_than_bed" not in codes
+    ears = pieces_of(CutRequest.of(on_bed(pinwheel, 5.0))).verdict.problems
+    assert [one.code for one in ears] == ["pieces.bed_below_ear"]
+
+
+def test_that_several_beds_are_no_problem(pinwheel: Document, tmp_path: Path) -> None:
+    small = on_bed(pinwheel, 100.0)
+    (found,) = exporting(CutRequest.of(small), Output(tmp_path / "out", "cut"), True, never)
+    assert found.verdict is not None and found.verdict.level is Level.READY
+    assert "layer-1-b2.dxf" in {path.name for path in found.files}
+    assert "pieces.several_beds" in {note.code for note in found.verdict.notes}
+
+
+def test_that_command_line_api_and_window_tell_a_bed_that_is_too_small(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    small = on_bed(pinwheel, 40.0)
+    (planned,) = planning(CutRequest.of(small), never)
+    assert isinstance(planned, MadePieces)
+    (problem,) = planned.verdict.problems
+    project = tmp_path / "small.kiri"
+    store.save(small, project)
+    assert main(["export", str(project), "--out", str(tmp_path / "out"), "--json"]) == 0
+    verdict = json.loads(capsys.readouterr().out)["verdict"]
+    assert verdict["level"] == "cut_with_care" and [one["text"] for one in verdict["problems"]] == [problem.text]
+    assert ks.load_project(project).best.make_pieces().verdict.problems == (problem,)

@@ -403,6 +403,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.pins_miss": mark(
         "The two holes of a pin lie {miss_um:.2f} µm apart at one of {angles} angles. Export it again."
     ),
+    "verify.holds_meet": mark_n(
+        "The holes of {count} place that holds the sheet meet in its state, within {miss_um:.2f} µm, and only there.",
+        "The holes of {count} places that hold the sheet meet in their state, within {miss_um:.2f} µm, and only there.",
+    ),
+    "verify.holds_miss": mark_n(
+        "The holes of {count} place that holds the sheet miss each other by {miss_um:.2f} µm, or meet in both states. "
+        "Export it again.",
+        "Of {count} places that hold the sheet, holes miss each other by {miss_um:.2f} µm, or meet in both states. "
+        "Export it again.",
+    ),
     "verify.pieces_pass": mark("Pieces of one layer pass each other at all {angles} angles."),
     "verify.pieces_collide": mark(
         "Pieces {one} and {other} of one layer share {area_mm2:.4f} mm² at {phi_deg:.0f} degrees. Choose more "

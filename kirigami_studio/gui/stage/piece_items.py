@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.theme import Palette
@@ -26,6 +27,8 @@ UPPER_ALPHA = 205
 #: Pins narrower than this (pixels) are dots.
 DOT = 1.2
 LAYERS = (1, 2)
+#: Within so many radians of an end state, what holds the sheet there is numbered.
+SAME_ANGLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,10 +86,36 @@ class ShownPieces:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(palette.panel_line))
         head = max(0.5 * per_mm * self.made.made.plan.options.head_mm, DOT)
-        for piece, places in zip(pieces, centres, strict=True):
-            if piece.layer == LAYERS[-1]:
-                for x, y in places.tolist():
-                    painter.drawEllipse(QPointF(x, y), head, head)
+        pins: dict[str, list[FloatArray]] = {piece.id: [] for piece in pieces}
+        for hinge in self.assembly.hinges:
+            pins[hinge.pieces[1]].append(hinge.at[1])
+        for places in self._placed(phi, [np.reshape(at, (-1, 2)) for at in pins.values()]):
+            for x, y in transform.to_pixels(places).tolist():
+                painter.drawEllipse(QPointF(x, y), head, head)
+        self._paint_holds(painter, phi, transform, palette)
+
+    def _paint_holds(self, painter: QPainter, phi: float, transform: ViewTransform, palette: Palette) -> None:
+        """Draw places that hold the sheet, those of a state with their numbers there."""
+        names = [piece.id for piece in self.assembly.pieces]
+        for place in self.made.made.held.places:
+            here = abs(phi - (self.design.phi_target if place.state is HeldState.OPEN else np.pi)) < SAME_ANGLE
+            painter.setPen(QPen(QColor(palette.accent), 1.5 if here else 0.75))
+            painter.setBrush(QColor(palette.accent) if here else Qt.BrushStyle.NoBrush)
+            by_name = dict(zip(place.parts, place.at, strict=True))
+            empty = np.zeros((0, 2))
+            placed = self._placed(phi, [by_name.get(name, empty) for name in names])
+            rings = [transform.to_pixels(points) for points in placed if len(points)]
+            radius = max(0.5 * place.hole_mm * transform.scale / self.mm_per_world, DOT)
+            for ring in rings:
+                if place.hole_mm:
+                    for x, y in ring.tolist():
+                        painter.drawEllipse(QPointF(x, y), radius, radius)
+                else:
+                    painter.drawPath(line_path(ring, closed=True))
+            if here:
+                corner = np.concatenate(rings).max(axis=0) + radius * np.array([1.0, 0.0])
+                painter.setPen(QColor(palette.text))
+                painter.drawText(QPointF(*corner.tolist()), f"{place.number}")
 
 
 def paint_piece(
