@@ -99,6 +99,7 @@ class Part:
     pen: StrokeStyle = field(default_factory=StrokeStyle)
     is_named: bool = True  #: whether the name is the source's own
     is_letter: bool = False  #: whether it is a letter of a text
+    is_aside: bool = False  #: whether it is a measure or a construction line: it counts where nothing else is closed
     #: (L, 2) float, source units; of a shape with one subpath that subpath, crossings and all.
     ring: FloatArray | None = None
 
@@ -163,6 +164,14 @@ class Part:
             "area": float(self.region.area),
             "stroke_width": self.pen.width,
         }
+
+
+@dataclass(frozen=True, slots=True)
+class Strokes:
+    """Places on a picture by which an object is told, (x, y) in source pixels from the upper left corner, y down."""
+
+    taken: tuple[tuple[float, float], ...] = ()  #: on the object
+    left: tuple[tuple[float, float], ...] = ()  #: beside it
 
 
 @dataclass(frozen=True, slots=True)
@@ -318,6 +327,8 @@ def _mitres(line: FloatArray, half: float, limit: float) -> list[Polygon]:
 def _usual(source: SourceParts) -> UsualChoice:
     """The one rule; see the module."""
     parts, size = source.parts, source.size
+    if any(part.is_closed and not part.is_aside for part in parts):
+        parts = tuple(part for part in parts if not part.is_aside)
     shapes = [part for part in parts if part.kind is DrawnPartKind.FILLED and not part.is_letter]
     lines = [part for part in parts if part.kind is not DrawnPartKind.FILLED]
     letters = [part for part in parts if part.is_letter]

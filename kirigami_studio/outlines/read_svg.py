@@ -27,7 +27,7 @@ from kirigami_studio.outlines.parts import (
     stroked,
 )
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
-from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, svg_drawing
+from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, SvgDrawing, svg_drawing
 from kirigami_studio.outlines.svg_safety import checked_svg
 from kirigami_studio.outlines.text_curves import text_parts
 
@@ -76,6 +76,11 @@ def _parts(name: str, content: bytes) -> SourceParts:
     root, width_mm = checked_svg(content)
     unit = "px" if width_mm is None else "mm"
     read = svg_drawing(root, 1.0 if width_mm is None else 1.0 / PIXELS_PER_MM, budget)
+    return parts_of_drawing(name, read, unit, budget)
+
+
+def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:
+    """The parts of a drawing as it is painted, of an SVG or of a page."""
     refuse_scribbles([chain for shape in read.drawn for chain in shape.chains])
     drawn, paper = _without_paper(read.drawn, read.page)
     notes = [*read.left_out]
