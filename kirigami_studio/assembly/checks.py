@@ -134,8 +134,8 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             Problem.warning("pinned.ears_meet", plan.gap_at, count=plan.tight, gap_mm=plan.gap_mm, needed_mm=needed)
         )
     if overlap > OVERLAP_MM2:
-        where = {"angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
-        problems.append(Problem.error(COLLISIONS[options.in_one_plane], overlap_mm2=overlap, **where))
+        collision = {"angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
+        problems.append(Problem.error(COLLISIONS[options.in_one_plane], overlap_mm2=overlap, **collision))
     least_wall = options.asked_wall_mm
     thin = sorted((wall, piece.id) for piece, wall in zip(assembly.pieces, walls, strict=True))
     thin = [one for one in thin if one[0] < least_wall - ROUNDNESS_MM]

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
-import shapely
 
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.solids import ROUNDING_MM
@@ -23,8 +22,9 @@ MOST_ALONG = 6
 
 def flat_bounds(assembly: Assembly) -> FloatArray:
     """Bounds (P, 4) of the pieces in the flat sheet: left, bottom, right, top; mm."""
-    found: FloatArray = shapely.bounds([shapely.linearrings(piece.outline) for piece in assembly.pieces])
-    return found + np.tile(assembly.poses(math.pi)[:, :2], 2)
+    found = [[*piece.outline.min(axis=0), *piece.outline.max(axis=0)] for piece in assembly.pieces]
+    bounds: FloatArray = np.array(found) + np.tile(assembly.poses(math.pi)[:, :2], 2)
+    return bounds
 
 
 def size_of(bounds: FloatArray) -> tuple[float, float]:
