@@ -512,7 +512,20 @@ HEADINGS = {
     "seconds": mark("seconds"),
     "note": mark("note"),
 }
-ITEMS = {"pieces": mark("pieces"), "pins": mark("pins"), "material": mark("material"), "all cuts": mark("all cuts")}
+ITEMS = {
+    "pieces": mark("pieces"),
+    "pins": mark("pins"),
+    "material": mark("material"),
+    "all cuts": mark("all cuts"),
+    "magnets": mark("magnets"),
+    "eyelets": mark("eyelets"),
+    "stitches": mark("stitches"),
+    "tabs": mark("tabs"),
+    "spacers": mark("spacers"),
+    "screws": mark("screws"),
+    "square bar": mark("square bar"),
+    "servo": mark("servo"),
+}
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
@@ -628,7 +641,7 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
             )
         elif part.item != "all cuts":
             size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
-            one = f"{part.count} {tr(part.item)}{f', {size} mm' if size else ''}, {part.note}"
+            one = f"{part.count} {tr(ITEMS[part.item])}{f', {size} mm' if size else ''}, {part.note}"
         else:
             one = tr_n(
                 "Together {count} piece, cut {cut:.1f} mm, {time}, {machine}",

@@ -492,10 +492,13 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
 
 def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
     """Show board and arms at both ends of the motion, with the pieces that they move."""
-    top = _title(canvas, "Board and arms, seen from the front", page)
+    top = _title(canvas, tr("Board and arms, seen from the front"), page)
     width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
     parts = drive.parts
-    ends = ((math.pi, "Flat"), (parts.phi_target, f"Opened, {math.degrees(parts.phi_target):.0f} degrees"))
+    ends = (
+        (math.pi, tr("Flat")),
+        (parts.phi_target, tr("Opened, {angle:.0f} degrees", angle=math.degrees(parts.phi_target))),
+    )
     drawings = [_Drawing.of(parts, phi) for phi, _ in ends]
     scale = min(_fitting(drawing, (width, 0.42 * page[1])) for drawing in drawings)
     for number, (drawing, (_, words)) in enumerate(zip(drawings, ends, strict=True)):
@@ -506,9 +509,9 @@ def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
         _draw(canvas, drawing, scale, np.array([left, top - 4.0 - scale * drawing.size[1]]))
     y = top - 4.0 - scale * max(drawing.size[1] for drawing in drawings) - GAP_MM
     column = _Column(canvas, MARGIN_MM, y, page[0] - 2.0 * MARGIN_MM)
-    column.text(f"Pictures at 1 : {1.0 / scale:.1f}. {drive.fixed} is fixed to the board.")
+    column.text(tr("Pictures at 1 : {scale:.1f}. {piece} is fixed to the board.", scale=1.0 / scale, piece=drive.fixed))
     for number, line in enumerate(drive_steps(drive), start=1):
-        column.text(line, f"{number}.")
+        column.text(tr(line), f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()

@@ -8,21 +8,29 @@ from kirigami_studio.assembly.driving import DriveParts
 from kirigami_studio.export.hold_files import PartsEntry
 from kirigami_studio.fabricate.drive import BAR_MM, BEHIND_MM, HORN_MM, DriveKind
 from kirigami_studio.fabricate.fastener import FastenerSize
+from kirigami_studio.foundation.words import mark, tr
 
 #: Steps of assembly, for either drive.
 DRIVE_STEPS: Mapping[DriveKind, tuple[str, ...]] = {
     DriveKind.CRANK: (
-        "Glue the square bar into ARM1, put it through the round hole of the board, and glue it into HANDLE behind.",
+        mark(
+            "Glue the square bar into ARM1, put it through the round hole of the board, and glue it into HANDLE behind."
+        ),
     ),
     DriveKind.SERVO: (
-        "Screw the servo to the board from behind, its shaft through the cut-out. With the servo at one end of its "
-        "way, screw ARM1 to its horn as the picture of the flat sheet shows it.",
+        mark(
+            "Screw the servo to the board from behind, its shaft through the cut-out. With the servo at one end of its "
+            "way, screw ARM1 to its horn as the picture of the flat sheet shows it."
+        ),
     ),
 }
 COMMON_STEPS = (
-    "Screw ARM2, where there is one, to the board with its spacer, so that it turns.",
-    "Put the long screws from the front through the pins of the list, their spacers behind the sheet: into the board "
-    "at the fixed piece, into the arms at the others. Heads and nuts of all other pins turn clear of the spacers.",
+    mark("Screw ARM2, where there is one, to the board with its spacer, so that it turns."),
+    mark(
+        "Put the long screws from the front through the pins of the list, their spacers behind the sheet: into the "
+        "board at the fixed piece, into the arms at the others. Heads and nuts of all other pins turn clear of the "
+        "spacers."
+    ),
 )
 
 
@@ -54,28 +62,35 @@ def drive_lines(drive: DriveParts | None, thickness_mm: float, hole_mm: float, s
     nut, gap = size.beyond_mm, gap_mm(drive.kind, thickness_mm, size.beyond_mm)
     column, whole = nut + thickness_mm + gap, 2.0 * thickness_mm
     columns = ", ".join("+".join(hinge.pieces) for hinge in drive.columns)
-    led = ", ".join(f"{'+'.join(arm.hinge.pieces)} to ARM{number}" for number, arm in enumerate(drive.arms, start=1))
-    wide = f"at most {size.head_mm:g} mm wide"
+    led = ", ".join(
+        f"{'+'.join(arm.hinge.pieces)} \N{RIGHTWARDS ARROW} ARM{number}"
+        for number, arm in enumerate(drive.arms, start=1)
+    )
+    of_board = tr("from the sheet to the board, at most {wide:g} mm wide", wide=size.head_mm)
+    of_arms = tr("from the sheet to the arms, at most {wide:g} mm wide", wide=size.head_mm)
+    instead = tr("instead of pins")
     arms, followers = len(drive.arms), len(drive.arms) - 1
     found = [
-        PartsEntry("spacers", len(drive.columns), hole_mm, column, f"from the sheet to the board, {wide}; {columns}"),
-        PartsEntry(
-            "screws", len(drive.columns), hole_mm, whole + column + thickness_mm + nut, f"instead of pins; {columns}"
-        ),
-        PartsEntry("spacers", arms, hole_mm, nut, f"from the sheet to the arms, {wide}; {led}"),
-        PartsEntry("screws", arms, hole_mm, whole + nut + thickness_mm + nut, f"instead of pins; {led}"),
+        PartsEntry("spacers", len(drive.columns), hole_mm, column, f"{of_board}; {columns}"),
+        PartsEntry("screws", len(drive.columns), hole_mm, whole + column + thickness_mm + nut, f"{instead}; {columns}"),
+        PartsEntry("spacers", arms, hole_mm, nut, f"{of_arms}; {led}"),
+        PartsEntry("screws", arms, hole_mm, whole + nut + thickness_mm + nut, f"{instead}; {led}"),
     ]
     if followers:
         found += [
-            PartsEntry("spacers", followers, hole_mm, gap, "from ARM2 to the board"),
-            PartsEntry("screws", followers, hole_mm, 2.0 * thickness_mm + gap + nut, "for ARM2, in the board"),
+            PartsEntry("spacers", followers, hole_mm, gap, tr("from ARM2 to the board")),
+            PartsEntry("screws", followers, hole_mm, 2.0 * thickness_mm + gap + nut, tr("for ARM2, in the board")),
         ]
     behind = BEHIND_MM
     if drive.kind is DriveKind.CRANK:
         behind = nut + thickness_mm + nut
         bar = 3.0 * thickness_mm + gap + nut
-        found.append(PartsEntry("square bar", 1, BAR_MM, bar, f"{BAR_MM:g} x {BAR_MM:g} mm, from ARM1 to HANDLE"))
+        found.append(
+            PartsEntry("square bar", 1, BAR_MM, bar, tr("{side:g} x {side:g} mm, from ARM1 to HANDLE", side=BAR_MM))
+        )
     else:
-        found.append(PartsEntry("servo", 1, None, None, "SG90, with its horn and screws; measure yours: sizes vary"))
-    found.append(PartsEntry("spacers", 4, None, behind, "from the board to the wall, at its corners"))
+        found.append(
+            PartsEntry("servo", 1, None, None, tr("SG90, with its horn and screws; measure yours: sizes vary"))
+        )
+    found.append(PartsEntry("spacers", 4, None, behind, tr("from the board to the wall, at its corners")))
     return found

@@ -13,21 +13,32 @@ from kirigami_studio.export.pieces_read import HOLE_MM, FoundPiece
 from kirigami_studio.export.verification import Finding
 from kirigami_studio.fabricate.hold import HeldState, HoldKind, HoldOptions
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import rotate
 
 #: Holes that come no farther apart than this (mm) in the other end state hold nothing.
 LEAST_WAY_MM = 1.0
 #: The step of assembly that each kind adds.
 HOLD_STEPS = {
-    HoldKind.MAGNETS: "Glue a magnet into each hole of a numbered place, with the pole in the list towards you (N, S): "
-    "mark one pole of the stack first. Where two letters of layers stand there, A and B, the magnets face each other: "
-    "flush with the faces between the layers. Else they lie side by side.",
-    HoldKind.EYELETS: "Set eyelets into the holes of numbered places. Where A and B stand there, a spare pin goes "
-    "through both layers; else tie both eyelets with a ring or a cord.",
-    HoldKind.STITCHES: "Move the sheet to the picture with the numbered places, then sew through the holes of each.",
-    HoldKind.TABS: "Move the sheet to the picture with the numbered places, then stick tape over the edge of each, on "
-    "the outer face; on layer 2 the engraved mark is on the other one.",
+    HoldKind.MAGNETS: mark(
+        "Glue a magnet into each hole of a numbered place, with the pole in the list towards you (N, S): mark one pole "
+        "of the stack first. Where two letters of layers stand there, A and B, the magnets face each other: flush with "
+        "the faces between the layers. Else they lie side by side."
+    ),
+    HoldKind.EYELETS: mark(
+        "Set eyelets into the holes of numbered places. Where A and B stand there, a spare pin goes through both "
+        "layers; else tie both eyelets with a ring or a cord."
+    ),
+    HoldKind.STITCHES: mark(
+        "Move the sheet to the picture with the numbered places, then sew through the holes of each."
+    ),
+    HoldKind.TABS: mark(
+        "Move the sheet to the picture with the numbered places, then stick tape over the edge of each, on the outer "
+        "face; on layer 2 the engraved mark is on the other one."
+    ),
 }
+#: Names of the lines of the parts list, by what they keep.
+KEPT = {HeldState.FLAT: mark("keep it flat"), HeldState.OPEN: mark("keep it open")}
 #: Parts of each kind at a place.
 COUNTS = {HoldKind.MAGNETS: 2, HoldKind.EYELETS: 2, HoldKind.STITCHES: 1, HoldKind.TABS: 1}
 
@@ -104,18 +115,20 @@ def hold_lines(places: Sequence[HoldPlace], options: HoldOptions) -> list[PartsE
         here = [place for place in places if place.state is state]
         if not here:
             continue
-        count = COUNTS[options.kind] * len(here)
+        count, kept = COUNTS[options.kind] * len(here), tr(KEPT[state])
         where = "; ".join(place_words(place) for place in here)
         if options.kind is HoldKind.MAGNETS:
             beside = [place.apart_mm for place in here if not place.through]
-            pull = f"about {options.pull_n(max(beside)):.2f} N a pair side by side; " if beside else ""
-            note = f"keep it {state.value}: {pull}holes {options.hole_mm:g} mm; {where}"
+            notes = [tr("holes {hole:g} mm", hole=options.hole_mm)]
+            if beside:
+                notes.insert(0, tr("about {pull:.2f} N a pair side by side", pull=options.pull_n(max(beside))))
+            note = f"{kept}: {'; '.join((*notes, where))}"
             found.append(PartsEntry("magnets", count, options.magnet_mm, options.magnet_height_mm, note))
         elif options.kind is HoldKind.TABS:
-            found.append(PartsEntry("tabs", count, None, None, f"keep it {state.value}: adhesive tape; {where}"))
+            found.append(PartsEntry("tabs", count, None, None, f"{kept}: {tr('adhesive tape')}; {where}"))
         else:
-            means = "thread" if options.kind is HoldKind.STITCHES else "with a spare pin, a ring or a cord"
-            note = f"keep it {state.value}: {means}; {where}"
+            sewn = options.kind is HoldKind.STITCHES
+            note = f"{kept}: {tr('thread') if sewn else tr('with a spare pin, a ring or a cord')}; {where}"
             found.append(PartsEntry(options.kind.value, count, options.hole_mm, None, note))
     return found
 
