@@ -134,8 +134,8 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             Problem.warning("pinned.ears_meet", plan.gap_at, count=plan.tight, gap_mm=plan.gap_mm, needed_mm=needed)
         )
     if overlap > OVERLAP_MM2:
-        values = {"overlap_mm2": overlap, "angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
-        problems.append(Problem.error(COLLISIONS[options.in_one_plane], **values))
+        collision = {"angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
+        problems.append(Problem.error(COLLISIONS[options.in_one_plane], overlap_mm2=overlap, **collision))
     least_wall = options.asked_wall_mm
     thin = sorted((wall, piece.id) for piece, wall in zip(assembly.pieces, walls, strict=True))
     thin = [one for one in thin if one[0] < least_wall - ROUNDNESS_MM]
@@ -245,8 +245,13 @@ def largest_overlap(plan: PinnedPlan, bodies: Sequence[Polygon], angles: Sequenc
     if options.in_one_plane:
         plane = np.ones_like(plane)
         joint = 0.5 * options.ear_mm + options.clearance_mm
-        pins = [shapely.multipoints([hole.centre for hole in piece.holes]).buffer(joint) for piece in assembly.pieces]
-        shapes = shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM)
+        pins = [
+            shapely.union_all(shapely.buffer(shapely.points([hole.centre for hole in piece.holes]), joint))
+            for piece in assembly.pieces
+        ]
+        shapes = np.asarray(
+            shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM), dtype=object
+        )
     found = [one for number in (1, 2) for one in passing(shapes[plane == number], poses[:, plane == number]).overlaps]
     worst = max(found, key=lambda one: one.area_mm2, default=None)
     return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])

@@ -21,6 +21,7 @@ from kirigami_studio.fabricate.fastener import Fastener
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.holding import HoldPlace
     from kirigami_studio.assembly.pieces import Assembly, Piece
     from kirigami_studio.assembly.pinned import PinnedPlan
     from kirigami_studio.fabricate.material import Material
@@ -104,14 +105,21 @@ class PosedPieces:
     design: PosedDesign  #: the lattice of the pieces: smaller than that of the design by their margin
     look: PieceLook
     head_mm: float = 0.0  #: diameter of the heads of pins; 0 for none
+    holds: tuple[HoldPlace, ...] = ()  #: places that hold it in its end states
 
     @classmethod
-    def of(cls, plan: PinnedPlan, material: Material, fastener: Fastener = Fastener.BRAD) -> PosedPieces:
+    def of(
+        cls,
+        plan: PinnedPlan,
+        material: Material,
+        fastener: Fastener = Fastener.BRAD,
+        holds: tuple[HoldPlace, ...] = (),
+    ) -> PosedPieces:
         """The pieces of a pinned or printed design."""
         assembly, options = plan.assembly, plan.options
         design = PosedDesign(assembly.deployment, plan.pose, assembly.phi_target)
         look = PieceLook.of(material, fastener, in_one_plane=options.in_one_plane)
-        return cls(assembly, design, look, options.pin_mm if options.in_one_plane else options.head_mm)
+        return cls(assembly, design, look, options.pin_mm if options.in_one_plane else options.head_mm, holds)
 
     @property
     def mm_per_world(self) -> float:
@@ -182,7 +190,7 @@ class PosedPieces:
     @cached_property
     def small(self) -> PosedPieces:
         """The pieces as thumbnails show them."""
-        return self.simplified(SMALL)
+        return replace(self.simplified(SMALL), holds=())
 
     def simplified(self, share: float) -> PosedPieces:
         """The pieces without what is finer than a share of the sheet's width."""

@@ -35,7 +35,7 @@ from kirigami_studio.settings.fabrication import (
     with_choices,
 )
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
-from kirigami_studio.studio.checking import checked
+from kirigami_studio.studio.checking import Checked, checked_together
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
@@ -297,38 +297,49 @@ def _summary(found: Verification) -> dict[str, object]:
 def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     document = None if arguments.design is None else load(arguments.design)
-    found = checked(Path(arguments.file), document)
-    report, record = found.report, found.report.record or found.report.of_pieces
-    problems = [problem.text for problem in report.problems]
+    every = checked_together([Path(name) for name in arguments.file], document)
+    ok = all(found.ok for found in every)
     if arguments.json:
-        answer: dict[str, object] = {
-            "ok": found.ok,
-            "sound": found.sound,
-            "problems": problems,
-            "unit": report.unit,
-            "layers": report.layers,
-            "paths": report.path_count,
-            "size_mm": report.bounds_mm,
-            "cut_length_mm": report.cut_length_mm,
-            "overlap_mm": report.overlap_mm,
-            "pieces": report.pieces,
-            "min_ligament_mm": report.min_ligament_mm,
-            "record": None if record is None else record.to_json(),
-            "verdict_at_export": None if found.said is None else found.said.value,
-        }
-        if found.verification is not None:
-            answer["void_miss_um"] = found.verification.void_miss_um
-        if found.verdict is not None:
-            answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
-        print_json(answer)
-        return 0 if found.ok else 1
-    sound = tr("{file}: the file is sound", file=arguments.file)
-    say(sound if found.sound else tr("{file}: the file is not sound", file=arguments.file))
-    for line in (*problems, *found.lines):
-        say(f"  {line}")
+        answers = [_checked_json(found) for found in every]
+        # One file answers as it always did; of several, those of each stand in a list.
+        print_json(
+            answers[0] if len(every) == 1 else {"ok": ok, "sound": all(one.sound for one in every), "files": answers}
+        )
+        return 0 if ok else 1
+    for name, found in zip(arguments.file, every, strict=True):
+        sound = tr("{file}: the file is sound", file=name)
+        say(sound if found.sound else tr("{file}: the file is not sound", file=name))
+        for line in (*(problem.text for problem in found.report.problems), *found.lines):
+            say(f"  {line}")
+    verdicts = {id(found.verdict): found.verdict for found in every if found.verdict is not None}
+    for verdict in verdicts.values():
+        say_verdict(verdict)
+    return 0 if ok else 1
+
+
+def _checked_json(found: Checked) -> dict[str, object]:
+    report, record = found.report, found.report.record or found.report.of_pieces
+    answer: dict[str, object] = {
+        "file": str(report.path),
+        "ok": found.ok,
+        "sound": found.sound,
+        "problems": [problem.text for problem in report.problems],
+        "unit": report.unit,
+        "layers": report.layers,
+        "paths": report.path_count,
+        "size_mm": report.bounds_mm,
+        "cut_length_mm": report.cut_length_mm,
+        "overlap_mm": report.overlap_mm,
+        "pieces": report.pieces,
+        "min_ligament_mm": report.min_ligament_mm,
+        "record": None if record is None else record.to_json(),
+        "verdict_at_export": None if found.said is None else found.said.value,
+    }
+    if found.verification is not None:
+        answer["void_miss_um"] = found.verification.void_miss_um
     if found.verdict is not None:
-        say_verdict(found.verdict)
-    return 0 if found.ok else 1
+        answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
+    return answer
 
 
 def animate(arguments: argparse.Namespace) -> int:

@@ -9,8 +9,10 @@ from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Note, Severity
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
@@ -85,6 +87,14 @@ def plan_sheet(
         machine=machine,
     )
     told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
+    told += [
+        Note.of(code)
+        for code, wanted in (
+            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
+            ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
+        )
+        if wanted
+    ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
     return replace(plan, notes=(*plan.notes, *told)) if told else plan

@@ -35,6 +35,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     is_pinned,
     is_printed,
     machine_for,
@@ -278,7 +279,7 @@ class MadePieces:
         cut = self.cutting
         if cut is None:
             return PosedPieces.of(self.made.plan, self.job.material)
-        return PosedPieces.of(self.made.plan, cut.material, cut.fastener)
+        return PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
 
     @property
     def printing(self) -> PrintJob | None:
@@ -392,9 +393,13 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         paper=settings.paper,
         order=settings.options.order,
         target=shown,
+        hold=hold_options(settings),
+        holds=made.held.places,
+        drive=made.drive,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
         verdict=verdict.level.value,
+        width_mm=settings.width_mm,
     )
 
 
@@ -412,7 +417,7 @@ def posed_pieces(request: CutRequest) -> PosedPieces | None:
     if request.target is None or not request.is_pinned:
         return None
     made = assembled(request.candidate, request.settings, request.target)
-    return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener)
+    return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener, made.held.places)
 
 
 def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[tuple[CutRequest, PosedPieces | None]]:

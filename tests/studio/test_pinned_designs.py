@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import ezdxf
+import ezdxf.math
 import pytest
 from PIL import Image
 
@@ -13,6 +17,8 @@ import kirigami_studio as ks
 from kirigami_studio.__main__ import main
 from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.assembly.posed_pieces import PieceLook
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export import registry
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PANEL
@@ -22,10 +28,13 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lab.demonstrations.assembled_pieces import MARGIN, SIDE, assembled_pieces
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
 from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.checking import checked, checked_together
 from kirigami_studio.studio.making import (
     CutRequest,
     MadePieces,
@@ -246,3 +255,78 @@ def test_that_command_line_api_and_window_tell_a_bed_that_is_too_small(
     verdict = json.loads(capsys.readouterr().out)["verdict"]
     assert verdict["level"] == "cut_with_care" and [one["text"] for one in verdict["problems"]] == [problem.text]
     assert ks.load_project(project).best.make_pieces().verdict.problems == (problem,)
+
+
+@pytest.fixture(scope="module")
+def folder(pinwheel: Document, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The pinwheel's files, of a sheet wider than its project says."""
+    home = tmp_path_factory.mktemp("beds") / "out"
+    wider = replace(pinwheel.fabrication, width_mm=170.0)
+    list(exporting(CutRequest.of(pinwheel, wider), Output(home, "cut"), True, never))
+    return home
+
+
+@pytest.mark.parametrize("kind", [".dxf", ".svg", ".lbrn2"])
+def test_that_a_bed_is_judged_by_the_pieces_of_its_design(pinwheel: Document, folder: Path, kind: str) -> None:
+    found = checked(folder / f"layer-1{kind}", pinwheel)
+    assert found.ok and found.verdict is not None and found.verdict.level is Level.READY
+    assert found.verification is not None and found.verification.pieces == 8
+    assert {one.code for one in found.verification.findings} >= {"verify.pieces_found"}
+    assert "check.beds_missing" in {note.code for note in found.verdict.notes}
+
+
+def test_that_the_files_of_all_beds_are_put_together(
+    pinwheel: Document, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    both = [folder / "layer-1.dxf", folder / "layer-2.svg"]
+    every = checked_together(both, pinwheel)
+    assert all(one.ok for one in every) and every[0].verdict is every[1].verdict
+    assert every[0].verdict is not None and not every[0].verdict.notes
+    codes = {finding.code for one in every if one.verification for finding in one.verification.findings}
+    assert {"verify.pins_meet", "verify.pieces_pass"} <= codes
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["check", *map(str, both), "--design", str(project), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["ok"] and [one["verdict"]["level"] for one in said["files"]] == ["ready_to_cut"] * 2
+    api = ks.check(both[0], ks.load_project(project).best)
+    assert api.ok and api.verdict is not None
+
+
+def changed(folder: Path, home: Path, change: Callable[[Any], None]) -> Path:
+    """The first bed with a change to its drawing."""
+    document = ezdxf.readfile(folder / "layer-1.dxf")
+    change(document.modelspace())
+    document.saveas(home / "layer-1.dxf")
+    return home / "layer-1.dxf"
+
+
+def hole_moved(space: Any) -> None:
+    circle = space.query("CIRCLE")[0]
+    circle.dxf.center = circle.dxf.center + ezdxf.math.Vec3(0.05, 0.0, 0.0)
+
+
+def outline_moved(space: Any) -> None:
+    space.query("LWPOLYLINE[layer=='OUTLINE']")[0].translate(0.05, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("change", [hole_moved, outline_moved])
+def test_that_a_bed_that_is_not_as_its_design_is_found(
+    pinwheel: Document, folder: Path, tmp_path: Path, change: Callable[[Any], None]
+) -> None:
+    path = changed(folder, tmp_path, change)
+    found = checked(path, pinwheel)
+    assert checked(path).ok and found.sound, "nothing but the design tells"
+    assert not found.ok and found.verdict is not None and found.verdict.level is Level.FAILS
+    assert "verify.in_file" in {problem.code for problem in found.verdict.problems}
+
+
+def test_that_beds_of_other_designs_and_beds_given_twice_are_refused(pinwheel: Document, folder: Path) -> None:
+    other = Sheet(RatioField(1.0 / pinwheel.candidates[0].sheet.field.ratio))
+    candidate = Candidate(other, evaluate(deploy(other), pinwheel.target), 0, 0)
+    strange = checked(folder / "layer-1.dxf", replace(pinwheel, candidates=(candidate,)))
+    assert not strange.ok and strange.verdict is not None
+    assert "check.other_design" in {problem.code for problem in strange.verdict.problems}
+    twice = checked_together([folder / "layer-1.dxf", folder / "layer-1.svg"], pinwheel)
+    assert not any(one.ok for one in twice) and twice[0].verdict is not None
+    assert [problem.code for problem in twice[0].verdict.problems] == ["check.bed_twice"]

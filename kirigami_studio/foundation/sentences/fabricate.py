@@ -456,8 +456,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "printed.material_is_cut": mark("{material} is cut, not printed. Choose a material of a 3D printer, such as PLA."),
     "printed.assembly_larger_than_bed": mark(
-        "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
-        "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."
+        "The print is {width_mm:.1f} x {depth_mm:.1f} mm, and cannot be divided into plates of {bed_width_mm:g} x "
+        "{bed_depth_mm:g} mm. Make the sheet smaller, or choose a larger printer."
+    ),
+    "printed.joined_by_hand": mark(
+        "The print takes {count} plates, which are joined by hand at {caps} pins, with caps glued on. Make the sheet "
+        "narrower, or choose a larger printer, to print it at once."
     ),
     "printed.falls_apart": mark(
         "The sheet is in {pieces} pieces after cutting, and cannot be printed as one. Widen the connectors."
@@ -485,6 +489,29 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
         "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
     ),
+    "hold.only_on_pins": mark(
+        "Magnets, eyelets, stitches and tabs are placed in two layers on pins only: this sheet has none."
+    ),
+    "drive.only_on_pins": mark("A board with arms moves two layers on pins only: this sheet has none."),
+    "drive.needs_screws": mark(
+        "A board needs screws as pins, through spacers: holes of {hole_mm:g} mm have none. Choose M2 or M3 screws."
+    ),
+    "drive.no_room": mark(
+        "There is no place for a board: no piece has two pins beside which an arm of {shortest_mm:g} to "
+        "{longest_mm:g} mm turns freely. Choose another size or another design."
+    ),
+    "hold.no_room_open": mark(
+        "Nothing keeps the sheet open: where parts meet only then, there is no room for holes or tabs beside pins, "
+        "cuts and walls. Take smaller magnets, another kind, or a larger sheet."
+    ),
+    "hold.no_room_flat": mark(
+        "Nothing keeps the sheet flat: where parts meet only then, there is no room for holes or tabs beside pins, "
+        "cuts and walls. Take smaller magnets, another kind, or a larger sheet."
+    ),
+    "hold.nothing_meets_open": mark(
+        "Nothing keeps the sheet open: at the angle of its target no voids are closed, so that no edges meet."
+    ),
+    "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QTransform
 
 from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, rings_of, shaded
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.theme import Palette
@@ -29,6 +33,8 @@ STEPS, DARKNESS = 3, 34
 SHORTEST, LONGEST = 0.6, 12.0
 #: Heads smaller than this (pixels) are dots; from the second on they have a rim and a spot of light.
 DOT, ROUND = 1.2, 2.4
+#: Within so many radians of an end state, places that hold the sheet there are numbered.
+SAME_ANGLE = 1e-3
 
 
 @lru_cache(maxsize=KEPT_PATHS)
@@ -70,6 +76,35 @@ def paint_pieces(
     if len(heads):
         places = [QPointF(x, y) for x, y in heads.tolist()]
         _paint_heads(painter, places, 0.5 * pieces.head_mm * per_mm, fall, pieces.look.head, palette)
+    _paint_holds(painter, pieces, phi, transform, palette)
+
+
+def _paint_holds(
+    painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
+) -> None:
+    """Draw places that hold the sheet, those of a state with their numbers there."""
+    place_of = {piece.id: number for number, piece in enumerate(pieces.assembly.pieces)}
+    factors, shifts = pieces.places(phi)
+    for hold in pieces.holds:
+        here = abs(phi - (pieces.design.phi_target if hold.state is HeldState.OPEN else math.pi)) < SAME_ANGLE
+        painter.setPen(QPen(QColor(palette.accent), 1.5 if here else 0.75))
+        painter.setBrush(QColor(palette.accent) if here else Qt.BrushStyle.NoBrush)
+        numbers = [place_of[name] for name in hold.parts]
+        rings = [
+            transform.to_pixels(as_points(factors[number] * as_plane(points) + shifts[number]))
+            for number, points in zip(numbers, hold.at, strict=True)
+        ]
+        radius = max(0.5 * hold.hole_mm * transform.scale / pieces.mm_per_world, DOT)
+        for ring in rings:
+            if hold.hole_mm:
+                for x, y in ring.tolist():
+                    painter.drawEllipse(QPointF(x, y), radius, radius)
+            else:
+                painter.drawPath(line_path(ring, closed=True))
+        if here:
+            x, y = np.concatenate(rings).max(axis=0).tolist()
+            painter.setPen(QColor(palette.text))
+            painter.drawText(QPointF(x + radius, y), f"{hold.number}")
 
 
 def _shown(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QPainterPath]:

@@ -17,6 +17,7 @@ from kirigami_studio.evaluate.pins import (
     kept_apart,
     least_pin_distance,
     log_ratio_for,
+    notch_necks,
     pin_distances,
     void_gaps,
 )
@@ -57,6 +58,40 @@ def test_that_every_distance_is_one_of_two_pins_in_a_closed_state() -> None:
     # Opposite corners of every void are among them.
     wanted = np.abs(void_gaps(deployment)).ravel()
     assert np.abs(wanted[:, None] - found).min(axis=1).max() < 1e-12
+
+
+def places_on_sides(deployment: Deployment, margin: float) -> list[complex]:
+    """Pins of other panels that lie on a side of a panel of their colour in a closed state, seen from it: slowly."""
+    tables = deployment.topology
+    panels, pins = tables.panel_nodes.reshape(-1, 4), np.unique(tables.void_nodes)
+    row, column = np.indices(tables.panel_nodes.shape[:2])
+    colour = ((row + column) % 2).ravel()
+    flat, found = deployment.compact @ (1.0, 1j), []
+    for phi in (math.pi, 0.0):
+        nodes = deployment.nodes(phi) @ (1.0, 1j)
+        for number, corners in enumerate(panels):
+            others = [one for one in panels[colour == colour[number]] if not np.array_equal(one, corners)]
+            turned = (flat[corners[1]] - flat[corners[0]]) / (nodes[corners[1]] - nodes[corners[0]])
+            seen = flat[corners[0]] + (nodes[np.intersect1d(others, pins)] - nodes[corners[0]]) * turned
+            for place in range(4):
+                start, end = flat[corners[place]], flat[corners[(place + 1) % 4]]
+                along = (seen - start) / (end - start)
+                on = (np.abs(along.imag * (end - start)) < 1e-9) & (along.real > margin) & (along.real < 1.0 - margin)
+                found += [*seen[on]]
+    return found
+
+
+@pytest.mark.parametrize(("grid", "seed"), [((3, 4), 2), ((4, 4), 9)])
+def test_that_notches_are_where_pins_of_other_panels_lie_on_sides_in_a_closed_state(
+    grid: tuple[int, int], seed: int
+) -> None:
+    deployment = random_deployment(*grid, seed)
+    necks = notch_necks(deployment.compact, *grid)
+    middles = (necks.places @ deployment.compact) @ (1.0, 1j)
+    listed = middles[np.unique(necks.sizes.corner) - len(deployment.compact)]
+    real = np.array(places_on_sides(deployment, 1e-6))
+    assert len(listed) > 20 and np.abs(listed[:, None] - real).min(axis=1).max() < 1e-9
+    assert np.abs(real[:, None] - listed).min(axis=1).max() < 1e-9
 
 
 def test_that_gaps_of_voids_are_the_differences_of_their_sides_at_any_angle() -> None:
