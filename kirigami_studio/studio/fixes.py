@@ -375,7 +375,7 @@ def find_piece_fixes(
                 made = assembled(change.candidate, change.settings, target)
             except KirigamiError:
                 continue
-            after = judge_assembled(change.candidate, made)
+            after = judge_assembled(change.candidate, made, change.settings)
             if not after.better_than(verdict):
                 continue
             if after.ok:

@@ -39,7 +39,7 @@ def advice(document: Document, others: bool = False) -> Advice:
     *_, found = fixing(request, verdict, document.named_candidates if others else {}, None, never)
     assert isinstance(found, Advice)
     for fix in found.fixes:
-        again = judge_assembled(fix.candidate, assembled(fix.candidate, fix.settings, request.target))  # type: ignore[arg-type]
+        again = judge_assembled(fix.candidate, assembled(fix.candidate, fix.settings, request.target), fix.settings)  # type: ignore[arg-type]
         assert again == fix.verdict and again.better_than(verdict)
     return found
 
