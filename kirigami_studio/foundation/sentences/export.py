@@ -158,7 +158,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Nothing was written. Please report it."
     ),
     "mesh.as_planned": mark(
-        "read back: {bodies} closed bodies in their places, {volume_cm3:.1f} cm3 as planned, {height_mm:g} mm high"
+        "Read back: {bodies} closed bodies in their places, {volume_cm3:.1f} cm3 as planned, {height_mm:g} mm high."
     ),
     "mesh.other_bodies": mark(
         "The file of solids did not read back as planned: {found} bodies instead of {planned}, or other names. Nothing "
