@@ -10,6 +10,7 @@ import shapely
 from shapely import affinity
 from shapely.geometry import Polygon
 
+from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
 from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
@@ -18,7 +19,7 @@ from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import UsageError
+from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
@@ -60,7 +61,13 @@ class PinnedPlan:
     tight: int
 
 
-def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOptions | None = None) -> PinnedPlan:
+def pinned(
+    design: PosedDesign,
+    target: Outline,
+    width_mm: float,
+    options: PinOptions | None = None,
+    only_whole: bool = False,
+) -> PinnedPlan:
     """Make the pieces of a design.
 
     Parameters
@@ -71,11 +78,15 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     width_mm : float
         Of the flat assembly, with its margin.
     options : PinOptions, optional
+    only_whole : bool
+        Stop where a piece falls apart, which nothing that follows the notches puts right.
 
     Raises
     ------
     UsageError
         The sheet is not wider than its margins.
+    FabricationError
+        A piece falls apart, where only whole ones are wanted.
     """
     options = options or PinOptions()
     deployment, phi, margin = design.deployment, design.phi_target, options.rim_mm
@@ -91,6 +102,9 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
         shaping = Shaping.of(deployment, cell_mm, phi, options)
+        if only_whole and shaping.broken:
+            first = piece_names(shaping.motion)[min(shaping.broken)]
+            raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
         opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
         spare = (1.0 - options.least_flat) * flat.area
@@ -126,18 +140,22 @@ def _start_outline(deployment: Deployment) -> FloatArray:
     return np.asarray(outline[::-1] - deployment.compact[0])
 
 
+def piece_names(motion: LayerMotion) -> list[str]:
+    """Ids of the pieces, row by row: the letter of the layer, and a number in it."""
+    number = {layer: np.cumsum(motion.layer == layer) for layer in (1, 2)}
+    return [f"{'-AB'[layer]}{number[layer][index]}" for index, layer in enumerate(motion.layer.tolist())]
+
+
 def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: float) -> Assembly:
     """Drill the holes, and give the pieces their names and frames."""
     motion, options = shaping.motion, shaping.options
     columns = deployment.sheet.columns + 1
-    number = [0, 0, 0]
+    names = piece_names(motion)
     pieces: list[Piece] = []
     owners: dict[int, list[tuple[int, str, FloatArray]]] = {}
     origins = as_points(motion.corners.mean(axis=1))
     for index, body in enumerate(shaping.bodies):
-        layer = int(motion.layer[index])
-        number[layer] += 1
-        name = f"{'-AB'[layer]}{number[layer]}"
+        layer, name = int(motion.layer[index]), names[index]
         shape: Polygon = shapely.orient_polygons(affinity.translate(body, *-origins[index]))
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]

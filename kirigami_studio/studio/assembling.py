@@ -96,7 +96,9 @@ def print_problems(plan: PinnedPlan, material: Material, machine: Machine) -> tu
 _KEPT: OrderedDict[tuple[object, ...], Assembled] = OrderedDict()
 
 
-def assembled(candidate: Candidate, settings: FabricationSettings, target: Outline) -> Assembled:
+def assembled(
+    candidate: Candidate, settings: FabricationSettings, target: Outline, only_whole: bool = False
+) -> Assembled:
     """Make and check the pieces of a design; what was made lately is not made again.
 
     Parameters
@@ -105,11 +107,13 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
         What trimming took of it is not looked at: pieces are trimmed by rules of their own.
     settings : FabricationSettings
     target : Outline
+    only_whole : bool
+        Stop where a piece falls apart, before rims are shaped.
 
     Raises
     ------
     FabricationError
-        No such material, or pieces that cannot be made.
+        No such material, or pieces that cannot be made, or fall apart where only whole ones are wanted.
     UsageError
         An ear that is no wider than its hole.
     """
@@ -120,7 +124,7 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     if made is None:
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
         try:
-            plan = pinned(design, target, settings.width_mm, options)
+            plan = pinned(design, target, settings.width_mm, options, only_whole)
             report = check_pinned(plan)
             if machine is not None:
                 more = print_problems(plan, material_for(settings), machine)

@@ -429,7 +429,7 @@ def looking(
 
 def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target: Outline) -> CloseLook:
     try:
-        made = assembled(candidate, settings, target)
+        made = assembled(candidate, settings, target, only_whole=True)
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -33,6 +34,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
+from kirigami_studio.studio import assembling
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked, checked_together
 from kirigami_studio.studio.making import (
@@ -330,3 +332,13 @@ def test_that_beds_of_other_designs_and_beds_given_twice_are_refused(pinwheel: D
     twice = checked_together([folder / "layer-1.dxf", folder / "layer-1.svg"], pinwheel)
     assert not any(one.ok for one in twice) and twice[0].verdict is not None
     assert [problem.code for problem in twice[0].verdict.problems] == ["check.bed_twice"]
+
+
+def test_that_a_close_look_ends_where_a_piece_falls_apart(pinwheel: Document, monkeypatch: pytest.MonkeyPatch) -> None:
+    large = replace(pinwheel.fabrication, ear_mm=24.0, pin_mm=8.0)
+    (problem, *_) = pieces_of(CutRequest.of(pinwheel, large)).verdict.problems
+    assert problem.code == "pinned.falls_apart"
+    monkeypatch.setattr(assembling, "_KEPT", OrderedDict())
+    monkeypatch.setattr("kirigami_studio.assembly.pinned.extend_to", None)  # rims are not shaped any more
+    refusal = look_at(pinwheel.candidates[0], large, pinwheel.target).refusal
+    assert refusal is not None and refusal.text == problem.text
