@@ -87,7 +87,8 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
     boxes = np.array([part.bounds for part in parts])
     size = float(np.max(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)))
     notes = [*source.left_out, *_rest(source, parts)]
-    regions = [region for part in parts if not (region := _region(part, merging, size, source.size)).is_empty]
+    whole = source.size
+    regions = [region for part in parts if not (region := _region(part, merging, size, whole)).is_empty]
     if not regions and merging.join not in (Join.HULL, Join.TIGHT):
         raise TargetError("parts.no_area")
     bridges: tuple[Polygon, ...] = ()
@@ -170,9 +171,7 @@ def usual_outline(source: SourceParts) -> Outline:
     if ring is not None and not any(part.lines for part in parts) and max(areas) > CLEARLY_MEANT * sum(areas):
         # Left as it is, so that crossings are judged and named.
         return _outline(source, ring, notes, source.name)[0]
-    merging = Merging(as_painted=choice.as_painted)
-    region = united([part.seen(source.size, merging.as_painted) for part in parts], source.size)
-    return _outline(source, region, notes, source.name)[0]
+    return _outline(source, choice.region, notes, source.name)[0]
 
 
 def _outline(

@@ -191,6 +191,7 @@ class UsualChoice:
     inner: int = 0
     unfilled: int = 0
     has_letters_apart: bool = False  #: whether texts stand beside what was taken
+    region: BaseGeometry = field(default_factory=Polygon)  #: source units; of the parts ``considered`` together
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,32 +297,33 @@ def shell(region: BaseGeometry) -> FloatArray:
 
 def stroked(lines: Sequence[FloatArray], pen: StrokeStyle, width: float) -> BaseGeometry:
     """The region of lines (P, 2) that are painted with a pen of some width."""
-    join = "bevel" if pen.join == "mitre" else pen.join
-    painted = MultiLineString([LineString(line) for line in lines]).buffer(
-        0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join
-    )
-    tips = [tip for line in lines for tip in _mitres(line, 0.5 * width, pen.mitre_limit)] if pen.join == "mitre" else []
+    shapes, join = MultiLineString([LineString(line) for line in lines]), pen.join
+    tips: list[BaseGeometry] = []
+    if join == "mitre":
+        found = [_mitres(line, 0.5 * width, pen.mitre_limit) for line in lines]
+        if any(is_cut for _, is_cut in found):  # GEOS would cut those off at the limit, SVG and DXF at the corner
+            join, tips = "bevel", list(shapely.polygons(np.concatenate([tip for tip, _ in found])))
+    limit = max(pen.mitre_limit, 1.0)
+    painted = shapes.buffer(0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join, mitre_limit=limit)
     return shapely.union_all([painted, *tips]) if tips else painted
 
 
-def _mitres(line: FloatArray, half: float, limit: float) -> list[Polygon]:
-    """The tips of a line's corners; one that is longer than ``limit`` widths stays cut off."""
+def _mitres(line: FloatArray, half: float, limit: float) -> tuple[FloatArray, bool]:
+    """The tips (T, 4, 2) of a line's corners, and whether one is longer than ``limit`` widths."""
     if np.array_equal(line[0], line[-1]):
         line = np.concatenate([line, line[1:2]])
     along = np.diff(line, axis=0)
     length = np.linalg.norm(along, axis=1)
-    line, along = line[np.append(True, length > 0.0)], along[length > 0.0] / length[length > 0.0, None]
+    corner, along = line[:-1][length > 0.0][1:], along[length > 0.0] / length[length > 0.0, None]
     before, after = along[:-1], along[1:]
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     straight = np.clip(np.sum(before * after, axis=1), -1.0, 1.0)
-    half_angle = np.sqrt(0.5 * (1.0 + straight))  # the sine of half the angle between the two lines
-    tips = []
-    for index in np.flatnonzero((straight < STRAIGHT) & (half_angle * limit >= 1.0)).tolist():
-        corner, side = line[index + 1], -np.sign(turn[index]) * half
-        sides = [side * np.array([-way[1], way[0]]) for way in (before[index], after[index])]
-        tip = (sides[0] + sides[1]) / (1.0 + straight[index])
-        tips.append(Polygon([corner, corner + sides[0], corner + tip, corner + sides[1]]))
-    return tips
+    has_tip = np.sqrt(0.5 * (1.0 + straight)) * limit >= 1.0  # by the sine of half the angle between the two lines
+    kept = has_tip & (straight < STRAIGHT)
+    side = -half * np.sign(before[kept, 0] * after[kept, 1] - before[kept, 1] * after[kept, 0])[:, None]
+    one, other = (side * np.column_stack([-way[kept, 1], way[kept, 0]]) for way in (before, after))
+    tip = (one + other) / (1.0 + straight[kept, None])
+    tips = corner[kept][:, None] + np.stack([np.zeros_like(tip), one, tip, other], axis=1)
+    return tips, not bool(np.all(has_tip))
 
 
 def _usual(source: SourceParts) -> UsualChoice:
@@ -334,7 +336,8 @@ def _usual(source: SourceParts) -> UsualChoice:
     letters = [part for part in parts if part.is_letter]
     if not shapes and not lines:
         numbers = tuple(part.number for part in letters)
-        return UsualChoice(numbers, numbers, False, len(_groups(letters, [part.region for part in letters], size)) == 1)
+        is_one = len(_groups(letters, [part.region for part in letters], size)) == 1
+        return UsualChoice(numbers, numbers, False, is_one, region=united([part.region for part in letters], size))
     lines = _without_frame(lines, source.paper) if len(parts) > 1 else lines
     extent = _extent(lines)
     broad = [part for part in lines if part.pen.width >= BROAD * extent]
@@ -360,6 +363,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
     numbers = tuple(part.number for part in _outer(taken, kinds))
     others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
     plain = (
         open_at is None
@@ -371,7 +375,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     )
     return UsualChoice(
         numbers,
-        tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken)),
+        considered,
         any(part.number in solid for part in lines) and not takes_rings,
         plain,
         open_at,
@@ -379,6 +383,7 @@ def _usual(source: SourceParts) -> UsualChoice:
         sum(number in ring for number in ring if number not in numbers) if takes_rings else 0,
         0 if takes_rings else len(ring) + sum(not part.is_closed for part in thin),
         any(part not in taken and _outside(part.region, silhouette) > 0.0 for part in letters),
+        united([kinds[number] for number in considered], size),
     )
 
 
