@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import Distribution, PackageMetadata, PackageNotFoundError, distribution
+from pathlib import Path
 
 from kirigami_studio import __version__
 from kirigami_studio.foundation.resources import resource, resource_root
@@ -69,9 +70,18 @@ class Package:
     @property
     def texts(self) -> list[str]:
         """The licence texts that it brings along, the most important first."""
-        read = self.distribution.read_text
-        found = (read(f"licenses/{name}") or read(name) for name in self.all("License-File") or USUAL_FILES)
+        names = self.all("License-File") or USUAL_FILES
+        found = (self._read(f"licenses/{name}") or self._read(name) for name in names)
         return [text.strip("\n") for text in found if text]
+
+    def _read(self, name: str) -> str | None:
+        """A file of the metadata, in UTF-8 or else in Latin-1, as old licences are."""
+        try:
+            return self.distribution.read_text(name)
+        except UnicodeDecodeError:
+            files = self.distribution.files or ()
+            place = next(file for file in files if ".dist-info/" in str(file) and str(file).endswith(f"/{name}"))
+            return Path(str(place.locate())).read_text(encoding="latin-1")
 
 
 def packages() -> dict[str, Package]:
