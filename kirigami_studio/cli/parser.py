@@ -50,6 +50,11 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
 WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", "machine", over=USUAL)
+CONSTRUCTION = setting_options(
+    FabricationSettings,
+    *("construction", "fastener", "pin_mm", "ear_mm", "clearance_mm", "gap_mm", "second_material", "board_cut"),
+    over=USUAL,
+)
 PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
 SINGLE_CONNECTORS = (
     option(
@@ -135,6 +140,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--least-panel-mm", type=amount, default=0.0, metavar="MM",
                help="least panel edge and neck in the finished sheet, kept by fits (default: what the material needs)"),
         *WIDTHS,
+        *CONSTRUCTION,
         *ENGRAVE,
         SCHEDULER,
         JSON,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -82,6 +82,11 @@ class AssemblySheet:
         The parts list.
     target : (L, 2) float or None, mm
         Target outline behind the opened sheet.
+    steps : sequence of str
+    template : CutBed or None
+        Frame and tiles that are shown at true size in the place of the flat sheet.
+    under : (L, 2) float, mm
+        Outline of the hinge layer there.
     """
 
     assembly: Assembly
@@ -89,6 +94,14 @@ class AssemblySheet:
     about: Mapping[str, str]
     lines: Sequence[str]
     target: FloatArray | None = None
+    steps: Sequence[str] = STEPS
+    template: CutBed | None = None
+    under: FloatArray | None = None
+
+    @property
+    def signs(self) -> Sequence[tuple[int, str]]:
+        """What the fills of layers stand for."""
+        return ((1, "layer 1, in front"), (2, "layer 2, behind")) if self.template is None else ((2, "tiles"),)
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -109,7 +122,8 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     upright = find_paper(paper) or PAPERS[Paper.A4]
     assert upright is not None
     flat = _Drawing.of(sheet.assembly, math.pi)
-    tiling = _one_page(flat.size) if find_paper(paper) is None else tile(flat.size, paper)
+    full = flat if sheet.template is None else _Drawing.of_bed(sheet.template, sheet.under)
+    tiling = _one_page(full.size) if find_paper(paper) is None else tile(full.size, paper)
     stream = BytesIO()
     make_canvas: Any = Canvas
     canvas = make_canvas(stream, pagesize=tuple(side * mm for side in upright), invariant=1, pageCompression=0)
@@ -120,11 +134,11 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     _first_page(canvas, sheet, flat, upright)
     before = 1 + _pages_of_pins(canvas, sheet, flat, upright) + _pages_of_beds(canvas, sheet.beds, upright)
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
-    about = f"{sheet.about['title']}, flat, at true size: {flat.size[0]:.1f} x {flat.size[1]:.1f} mm"
-    draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
+    about = f"{sheet.about['title']}, flat, at true size: {full.size[0]:.1f} x {full.size[1]:.1f} mm"
+    draw_pages(canvas, tiling, full.size, about, lambda part: _draw_part(canvas, full, part))
     canvas.save()
     content = stream.getvalue()
-    write_atomically(path, content, lambda written: _verify(written, flat, tiling, [upright] * before))
+    write_atomically(path, content, lambda written: _verify(written, full, tiling, [upright] * before))
 
 
 def _one_page(size: Size) -> Tiling:
@@ -194,8 +208,8 @@ class _Drawing:
         return cls(tuple(shapes), pins, None if target is None else target - low, (width, height))
 
     @classmethod
-    def of_bed(cls, bed: CutBed) -> _Drawing:
-        """A bed as it is cut."""
+    def of_bed(cls, bed: CutBed, under: FloatArray | None = None) -> _Drawing:
+        """A bed as it is cut, a frame first, in which the outline of a hinge layer lies."""
         shapes = [
             _Shape(
                 bed.layer,
@@ -205,8 +219,10 @@ class _Drawing:
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
             )
-            for cuts, place in bed.placed
+            for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
         ]  # fmt: skip
+        if under is not None:
+            shapes[0] = replace(shapes[0], rings=(*shapes[0].rings, under))
         return cls(tuple(shapes), np.zeros((0, 2)), None, bed.size_mm)
 
 
@@ -343,33 +359,34 @@ def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, y, scale)
+    _legend(canvas, sheet, y, scale)
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
     column.head("Parts")
     for line in sheet.lines:
         column.text(line)
     column.head("Assembly")
-    for number, line in enumerate(STEPS, start=1):
+    for number, line in enumerate(sheet.steps, start=1):
         column.text(line, f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
 
 
-def _legend(canvas: Any, y: float, scale: float) -> None:
+def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
-    for layer, words in ((1, "layer 1, in front"), (2, "layer 2, behind")):
+    for layer, words in sheet.signs:
         ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
         x = _words(canvas, words, x + 6.0, y)
-    stroke_colour(canvas, PIN)
-    draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
-    x = _words(canvas, "pin", x + 5.0, y)
+    if sheet.assembly.hinges:
+        stroke_colour(canvas, PIN)
+        draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
+        x = _words(canvas, "pin", x + 5.0, y)
     _words(canvas, f"pictures at 1 : {1.0 / scale:.1f}", x, y)
 
 

@@ -14,7 +14,7 @@ import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
     Cancelled,
@@ -37,13 +37,14 @@ from kirigami_studio.settings.fabrication import (
     material_for,
     pin_sizes,
 )
+from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed, sheet_material
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.checks import PinnedReport
-    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.export.assembly_files import AssemblyFiles, AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.strokes import Work
@@ -56,10 +57,13 @@ if TYPE_CHECKING:
     from kirigami_studio.project.document import Document
     from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
     from kirigami_studio.studio.assembling import Assembled
+    from kirigami_studio.studio.backing import Backing
     from kirigami_studio.studio.fixes import Advice
     from kirigami_studio.studio.verdict import Verdict
 
 ANIMATION = ".gif"
+#: Kinds of files that hold tiles to print.
+SOLIDS = (".3mf", ".obj", ".stl")
 #: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
 MOST_PLANS = 16
 #: Designs that are estimated between two reports.
@@ -83,6 +87,14 @@ class Planned:
     removed_share: float = 0.0  #: 0..1; share of the sheet that was trimmed away
     #: Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies
     work: Work | None = None
+    layers: AssemblyJob | None = None  #: Both layers of a backed design, whose plan is that of the hinge layer
+
+    @property
+    def seconds(self) -> float:
+        """Estimated time of all cuts."""
+        if self.layers is not None:
+            return sum(work.times.total for work in self.layers.all_works)
+        return (self.plan.times if self.work is None else self.work.times).total
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +189,11 @@ class CutRequest:
     def is_pinned(self) -> bool:
         """Whether it is made of pieces on pins."""
         return is_pinned(self.settings)
+
+    @property
+    def has_layers(self) -> bool:
+        """Whether its files are those of several layers, in a folder."""
+        return self.is_pinned or is_backed(self.settings)
 
     @property
     def facts(self) -> Mapping[str, str]:
@@ -311,10 +328,14 @@ def pieces_of(request: CutRequest) -> MadePieces:
     return MadePieces(made, job, judge_assembled(request.candidate, made))
 
 
-def writes_pieces(output: Output) -> bool:
-    """Whether an output of a pinned design is the folder of its pieces: for cut files, no pictures."""
+def writes_layers(request: CutRequest, output: Output) -> bool:
+    """Whether an output is the folder of the layers of a design: for cut files, no pictures and no tiles to print."""
     kind = output.path.suffix.lower()
-    return output.name is not None or not kind or any(one.extension == kind and one.cuts for one in FILE_KINDS)
+    if not request.has_layers:
+        return False
+    if output.name is not None or not kind:
+        return True
+    return any(one.extension == kind and one.cuts for one in FILE_KINDS) and (request.is_pinned or kind not in SOLIDS)
 
 
 def judged_pieces(request: CutRequest) -> Verdict:
@@ -338,7 +359,6 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     ExportError
         An unwritable place, a kind of file that pieces have none of, or one that did not pass its own re-reading.
     """
-    from kirigami_studio.export.assembly_files import KINDS, write_assembly
     from kirigami_studio.studio.verdict import judge_assembled
 
     kind = output.path.suffix.lower()
@@ -348,24 +368,37 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         place = export(replace(export_job(request, None), picture_phi=picture_phi), output.path)
         made = pieces_of(request)
         return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
+    pieces = pieces_of(request)
+
+    def judge(verifications: Sequence[Verification]) -> Verdict:
+        return judge_assembled(request.candidate, pieces.made, verifications)
+
+    folder, found = _layers_written(pieces.job, output, judge, pieces.report.problems)
+    verified, verdict = found.verifications, judge(found.verifications)
+    return ExportedFiles(folder, None, verified, verdict=verdict, files=found.files, pieces=pieces)
+
+
+def _layers_written(
+    job: AssemblyJob,
+    output: Output,
+    judge: Callable[[Sequence[Verification]], Verdict],
+    problems: Sequence[Problem],
+) -> tuple[Path, AssemblyFiles]:
+    """Write the folder of a design in layers, and return it; its ``problems`` explain files that cannot be right."""
+    from kirigami_studio.export.assembly_files import KINDS, write_assembly
+
+    kind = output.path.suffix.lower()
     if output.name is None and kind not in ("", ".pdf", *KINDS):
         raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *KINDS)))
-    pieces = pieces_of(request)
     one = output.name is None and kind in KINDS
     folder = output.path.with_suffix("") if output.name is None else output.path
-
-    def level(verifications: Sequence[Verification]) -> str:
-        return judge_assembled(request.candidate, pieces.made, verifications).level.value
-
     try:
-        found = write_assembly(pieces.job, folder, (kind,) if one else KINDS, level)
+        return folder, write_assembly(job, folder, (kind,) if one else KINDS, lambda read: judge(read).level.value)
     except ExportError as error:
-        broken = next((one for one in pieces.report.problems if one.severity is Severity.ERROR), None)
+        broken = next((one for one in problems if one.severity is Severity.ERROR), None)
         if broken is None:
             raise
         raise ExportError("export.cannot_be_cut", reason=broken.text) from error
-    verdict = judge_assembled(request.candidate, pieces.made, found.verifications)
-    return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 
 _PLANS: OrderedDict[tuple[object, ...], Planned] = OrderedDict()
@@ -384,7 +417,9 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
-    key = (request.candidate, request.target, settings, material_for(settings), machine_for(settings), name)
+    layers = [hinge_layer(settings), *([board_layer(settings)] if is_backed(settings) else [])]
+    figures = [(material_for(cut), machine_for(cut)) for cut in layers]
+    key = (request.candidate, request.target, settings, *figures, name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -393,16 +428,49 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
 
 
 def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
-    from kirigami_studio.fabricate.checks import check_plan
+    from kirigami_studio.studio.backing import checked_plan
     from kirigami_studio.studio.cutting import plan_of
     from kirigami_studio.studio.verdict import judge
 
     candidate, trim = request.candidate, request.candidate.trim
     plan = plan_of(candidate, request.settings, request.deployment, cancel, request.name)
-    report = check_plan(plan, phi=candidate.final_phi)
+    report, backing = checked_plan(candidate, plan, request.deployment, request.settings)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, judge(candidate, plan, report, None), removed, _work(plan, request.settings.profile))
+    layers = None if backing is None else _layers_job(request, backing)
+    verdict = judge(candidate, plan, report, None)
+    return Planned(plan, report, verdict, removed, _work(plan, request.settings.profile), layers)
+
+
+def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
+    """The files of a backed design."""
+    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.export.backed_files import Glued
+    from kirigami_studio.project.store import packed_design
+
+    settings, sheet, target = request.settings, backing.sheet, None
+    if request.target is not None:
+        target = request.candidate.final_pose.inverse().apply(request.target.points) * sheet.cell_mm
+    return AssemblyJob(
+        sheet.assembly,
+        backing.material,
+        backing.machine,
+        settings.fastener,
+        backing.kerf_mm,
+        backing.jig.pin_mm,
+        0.0,
+        0.0,
+        Construction.BACKED,
+        name=request.name,
+        profile=settings.profile,
+        dxf_version=settings.dxf_version,
+        paper=settings.paper,
+        order=settings.options.order,
+        target=target,
+        provenance=request.facts,
+        record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut),
+    )
 
 
 def _work(plan: CutPlan, profile: str) -> Work | None:
@@ -448,7 +516,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
 
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
-    if made is not None and (request.settings.construction is Construction.BACKED or made.plan.material.backing):
+    if made is not None and (made.layers is not None or made.plan.material.backing):
         job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=TileSizes(request.settings.gap_mm)))
     return replace(
         job,
@@ -492,6 +560,14 @@ def written(
     ExportError
         An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
     """
+    if made.layers is not None and writes_layers(request, output):
+
+        def judge(verifications: Sequence[Verification]) -> Verdict:
+            return judged(request, made, as_cut, verifications)
+
+        folder, layers = _layers_written(made.layers, output, judge, made.report.problems)
+        read = layers.verifications
+        return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
     from kirigami_studio.export.provenance import sidecar_path, write_sidecar
     from kirigami_studio.export.registry import export_files
@@ -535,10 +611,10 @@ def exporting(
     from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
-    if request.is_pinned and writes_pieces(output):
+    if request.is_pinned and writes_layers(request, output):
         yield written_pieces(request, output)
         return
-    if output.name is None:
+    if output.name is None and not writes_layers(request, output):
         find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(export_job(request, None), path), None)
@@ -733,11 +809,7 @@ def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDe
     importing.import_as_cut()
     for request in requests:
         try:
-            if request.is_pinned:
-                seconds = pieces_of(request).seconds
-            else:
-                made = planned(request, cancel)
-                seconds = (made.plan.times if made.work is None else made.work.times).total
+            seconds = (pieces_of(request) if request.is_pinned else planned(request, cancel)).seconds
         except (FabricationError, UsageError):
             continue  # which planning explains once it is chosen
         yield TimedDesign(request.candidate, request.settings, seconds)
@@ -749,7 +821,7 @@ def estimating(
     """Estimate whether designs close, each as it would be cut, a few at a time; all are of one material."""
     from kirigami_studio.studio.as_cut import estimate
 
-    material = material_for(designs[0][2])
+    material = sheet_material(designs[0][2])
     for start in range(0, len(designs), AT_ONCE):
         found = []
         for candidate, deployment, settings in designs[start : start + AT_ONCE]:
