@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,6 @@ from kirigami_studio.export.strokes import Work, strokes_of, work_of
 from kirigami_studio.export.verification import FORMATS, Verification
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.fabricate.timing import CutTimes
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
@@ -109,7 +108,7 @@ def export(arguments: argparse.Namespace) -> int:
     verdict = found.verdict
     assert verdict is not None  # planned sheets are judged
     advice = _advice(request, verdict) if arguments.fixes and not verdict.ok else None
-    work = _work(plan, settings.profile, output) if made.layers is None else _work_of_layers(made.layers)
+    work = _work(plan, settings.profile, output) if made.layers is None or made.work is None else made.work
     notes = [*plan.notes, *report.problems, *(note for one in found.verifications for note in one.warnings)]
     if output.has_pdf:
         notes += page_notes(plan.copies.spread_mm, settings.paper)
@@ -280,14 +279,6 @@ def _work(plan: CutPlan, profile: str, output: Output) -> Work:
     if output.name is not None or suffix in FORMATS:
         return work_of(strokes_of(plan, find_profile(profile)), plan)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
-
-
-def _work_of_layers(layers: AssemblyJob) -> Work:
-    """Length and time of both layers together."""
-    works = layers.all_works
-    length, travel = (sum(getattr(work, name) for work in works) for name in ("cut_length_mm", "travel_mm"))
-    times = CutTimes(*(sum(getattr(work.times, entry.name) for work in works) for entry in fields(CutTimes)))
-    return Work(length, travel, times)
 
 
 def tiles_json(layers: AssemblyJob) -> dict[str, object]:

@@ -138,6 +138,9 @@ def note_on(material: Material, settings: FabricationSettings) -> Note | None:
         fastener = tr(SIZES[settings.fastener].name)
         return Note.of("construction.pinned", material=tr(material.name), fastener=fastener)
     if construction is Construction.BACKED:
-        hinge, board = layers_with(material, settings)
+        try:
+            hinge, board = layers_with(material, settings)
+        except FabricationError:  # the other material is gone, which planning tells
+            return None
         return Note.of("construction.backed", hinge=tr(hinge.name), board=tr(board.name))
     return material.limits_note

@@ -10,10 +10,11 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.dxf_check import FileReport, check_file
 from kirigami_studio.export.file_record import FileRecord
 from kirigami_studio.export.layer_files import layer_paths
+from kirigami_studio.export.provenance import ONE_SHEET
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.findings import Problem
-from kirigami_studio.fabricate.material import library
+from kirigami_studio.fabricate.material import Construction, library
 from kirigami_studio.foundation.errors import ExportError, FabricationError, KirigamiError, ProjectError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
@@ -85,7 +86,19 @@ class Checked:
                     version=record.version,
                 )
             )
-        if (pieces := report.of_pieces) is not None:
+        if (pieces := report.of_pieces) is not None and pieces.construction == Construction.BACKED:
+            found.append(
+                tr(
+                    "made with: {material}, tiles for a hinge layer, registration holes {pin:g} mm, kerf {kerf:g} mm, "
+                    "profile {profile}, version {version}",
+                    material=pieces.material,
+                    pin=pieces.pin_mm,
+                    kerf=pieces.kerf_mm,
+                    profile=pieces.profile.key,
+                    version=pieces.version,
+                )
+            )
+        elif pieces is not None:
             found.append(
                 tr(
                     "made with: {material}, {construction}, layer {layer}, bed {bed}, pins {pin:g} mm, ears {ear:g} "
@@ -104,7 +117,7 @@ class Checked:
             )
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
-        if self.verdict is None and record is not None:
+        if self.verdict is None and record is not None and record.construction == ONE_SHEET:
             found.append(
                 tr("not checked: whether the sheet closes and its material holds; name its project by --design")
             )
@@ -130,8 +143,9 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         The project has no chosen design.
     """
     report = check_file(path)
-    # The pieces of one bed say nothing about how all of them move.
-    if document is None or report.of_pieces is not None or not _is_cut_file(report):
+    # The pieces of one bed, or one layer of two, say nothing about how all of it moves.
+    one_layer = report.of_pieces is not None or (report.record is not None and report.record.construction != ONE_SHEET)
+    if document is None or one_layer or not _is_cut_file(report):
         return Checked(report)
     request, unlike = _request(report.record, path, document)
     try:

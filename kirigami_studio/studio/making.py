@@ -85,15 +85,13 @@ class Planned:
     report: PlanReport
     verdict: Verdict  #: What is to be expected as long as nobody has closed the sheet on its connectors
     removed_share: float = 0.0  #: 0..1; share of the sheet that was trimmed away
-    #: Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies
+    #: Length and time where files hold other cuts than the plan: closed slots for slits, several copies, two layers
     work: Work | None = None
     layers: AssemblyJob | None = None  #: Both layers of a backed design, whose plan is that of the hinge layer
 
     @property
     def seconds(self) -> float:
         """Estimated time of all cuts."""
-        if self.layers is not None:
-            return sum(work.times.total for work in self.layers.all_works)
         return (self.plan.times if self.work is None else self.work.times).total
 
 
@@ -428,6 +426,7 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
 
 
 def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
+    from kirigami_studio.export.strokes import total_work
     from kirigami_studio.studio.backing import checked_plan
     from kirigami_studio.studio.cutting import plan_of
     from kirigami_studio.studio.verdict import judge
@@ -439,7 +438,8 @@ def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
     removed = 0.0 if trim is None else trim.removed_share
     layers = None if backing is None else _layers_job(request, backing)
     verdict = judge(candidate, plan, report, None)
-    return Planned(plan, report, verdict, removed, _work(plan, request.settings.profile), layers)
+    work = _work(plan, request.settings.profile) if layers is None else total_work(layers.all_works)
+    return Planned(plan, report, verdict, removed, work, layers)
 
 
 def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:

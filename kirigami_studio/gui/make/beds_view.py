@@ -1,4 +1,4 @@
-"""Beds of a pinned design side by side, with pieces, holes and numbers."""
+"""Beds of a pinned design, or of tiles, side by side, with pieces, holes and numbers."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.export.cut_bed import CutBed
-    from kirigami_studio.studio.making import MadePieces
 
 #: Between two beds, in widths of a bed; height of a caption (pixels).
 BETWEEN, CAPTION = 0.06, 16.0
@@ -37,11 +37,11 @@ class BedsView(Canvas):
         self._room = (0.0, 0.0)
         self._places: list[FloatArray] = []
 
-    def show_pieces(self, made: MadePieces | None) -> None:
+    def show_job(self, job: AssemblyJob | None) -> None:
         """Show other beds; None shows nothing."""
-        self._beds = () if made is None else made.job.beds
-        if made is not None:
-            self._room = made.job.machine.reach_mm
+        self._beds = () if job is None else job.beds
+        if job is not None:
+            self._room = job.machine.reach_mm
             if min(self._room) <= 0.0:  # a hand has no bed
                 self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
         columns = max(1, round(len(self._beds) ** 0.5))

@@ -28,6 +28,7 @@ from kirigami_studio.gui.widgets.readable import readable_length, readable_size,
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.studio.making import MadePieces, Planned
 
@@ -120,16 +121,23 @@ class CutsPage(QWidget):
     def show_pieces(self, made: MadePieces | None) -> None:
         """Show the beds of a pinned design in the place of a plan; None shows the plan again."""
         self._pieces = made
-        self.beds.show_pieces(made)
-        self.beds.setVisible(made is not None)
+        self._show_beds(None if made is None else made.job)
         for part in (self.view, self.hinges, self.bar):
             part.setVisible(made is None)
         if made is not None:
             self.problems.show_problems(made.report.problems)
 
+    def _show_beds(self, job: AssemblyJob | None) -> None:
+        self.beds.show_job(job)
+        self.beds.setVisible(job is not None)
+
     def show_plan(self, planned: Planned | None) -> None:
-        """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
+        """Show another plan, or the empty state; a new picture of one sheet keeps its place.
+
+        The board of a backed design lies below its hinge layer.
+        """
         self.show_pieces(None)
+        self._show_beds(None if planned is None else planned.layers)
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm

@@ -69,12 +69,12 @@ from kirigami_studio.gui.widgets.mismatch_items import (
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.making import MadePieces, Planned
 
 if TYPE_CHECKING:
     from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
-    from kirigami_studio.studio.making import MadePieces
 
 #: Radians around the target angle within which sheet and target are compared; elsewhere a difference means nothing.
 COMPARED_WITHIN = math.radians(12.0)
@@ -219,9 +219,13 @@ class LayoutView(Canvas):
             self._cut = sheet
             self.update()
 
-    def show_pieces(self, made: MadePieces | None) -> None:
-        """Draw the pieces of a pinned design in the place of its panels, or panels again."""
-        self._pieces = None if made is None or self.design is None else ShownPieces.of(made, self.design)
+    def show_pieces(self, made: MadePieces | Planned | None) -> None:
+        """Draw the pieces of a pinned design in the place of its panels, tiles on them, or panels alone again."""
+        self._pieces = None
+        if isinstance(made, MadePieces) and self.design is not None:
+            self._pieces = ShownPieces.of(made, self.design)
+        elif isinstance(made, Planned) and made.layers is not None and self.design is not None:
+            self._pieces = ShownPieces.of_tiles(made.layers, self.design)
         if self._pieces is not None and self._bounds is not None:
             self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))
         self.update()
@@ -282,7 +286,7 @@ class LayoutView(Canvas):
     @property
     def mm_per_unit(self) -> float:
         """Millimetres of one world unit; 0 while there is no design."""
-        if self._pieces is not None:
+        if self._pieces is not None and not self._pieces.tiles:
             return self._pieces.mm_per_world
         return 0.0 if self.design is None else self.design.mm_per_world(self._width_mm)
 
@@ -385,7 +389,7 @@ class LayoutView(Canvas):
             if self._target is not None:
                 paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
-        if self._pieces is not None:
+        if self._pieces is not None and not self._pieces.tiles:
             self._paint_pieces(painter, transform, self._pieces)
             return
         pose = self.shown_as_cut
@@ -404,6 +408,8 @@ class LayoutView(Canvas):
             paint_panels(painter, panels, turning, palette, trimmed)
         else:
             paint_cut_panels(painter, pose, transform, panels, turning, palette)
+        if self._pieces is not None:
+            self._pieces.paint(painter, self.phi if pose is None else pose.phi, transform, self.palette_)
         if artwork is not None:
             paint_artwork(painter, artwork, self.phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)

@@ -1,4 +1,4 @@
-"""Paint the pieces of a pinned design: two layers, the upper one translucent, and pins."""
+"""Paint the pieces of a pinned design, two layers and pins, or the tiles on a hinge layer."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class ShownPieces:
                     paint_piece(painter, piece, ring, places, per_mm, palette)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(palette.panel_line))
-        head = max(0.5 * per_mm * self.made.made.plan.options.head_mm, DOT)
+        head = max(0.5 * per_mm * self.head_mm, DOT)
         for piece, places in zip(pieces, centres, strict=True):
             if piece.layer == LAYERS[-1]:
                 for x, y in places.tolist():

@@ -395,8 +395,8 @@ class StagePanel(Card):
         self._tell_as_cut()
 
     def show_made(self, made: Planned | MadePieces | None) -> None:
-        """The cuts or the pieces of the design are planned: draw pieces, and say so in the header."""
-        self.view.show_pieces(made if isinstance(made, MadePieces) else None)
+        """The cuts or the pieces of the design are planned: draw pieces and tiles, and say so in the header."""
+        self.view.show_pieces(made)
         self.show_title()
 
     def show_title(self) -> None:
