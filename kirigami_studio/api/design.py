@@ -81,7 +81,7 @@ from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
 #: Files that hold a project, whose chosen design is meant.
 PROJECTS = (SUFFIX, *CUT_FILES)
 #: Files that need no planned cuts.
-PICTURES = (".png", ".gif")
+PICTURES = (".png", ".gif", ".html")
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
@@ -466,7 +466,8 @@ class Design:
         ----------
         path : path
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name;
-            ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion.
+            ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion;
+            ``.html``: a page to share.
 
         Returns
         -------
@@ -689,7 +690,7 @@ class Cuts:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.stl``, ``.3mf``, ``.obj``, ``.png`` or ``.gif``.
+            ``.dxf``, ``.svg``, ``.pdf``, ``.lbrn2``, ``.stl``, ``.3mf``, ``.obj``, ``.png``, ``.gif`` or ``.html``.
         record : bool
             Whether all settings are written as .json beside it.
         phi : float, radians, optional

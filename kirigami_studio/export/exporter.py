@@ -40,6 +40,7 @@ class ExportJob:
     markers: bool = False  #: A LightBurn project also marks the connectors, on a layer that LightBurn does not cut
     motion: CutMotion | None = None  #: What pictures and animations show: the sheet as cut; None for its ideal motion
     picture_phi: float | None = None  #: radians; angle that pictures show; the target angle unless given
+    width_mm: float = 100.0  #: Of the flat sheet, before trimming
     artwork: Artwork | None = None  #: What is printed on the sheet; only a whole set of files has it
     record: bytes = b""  #: The design as a packed project, which DXF and SVG cut files carry; empty for none
     #: radians; where the planned sheet jams by its simulation, 0 if it closes; None where nobody has looked

@@ -14,6 +14,7 @@ from kirigami_studio.export.lightburn import write_lightburn
 from kirigami_studio.export.pdf import write_pdf
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.profile import find_profile
+from kirigami_studio.export.share_page import write_page
 from kirigami_studio.export.svg import write_cut_svg
 from kirigami_studio.foundation.errors import ExportError
 
@@ -52,6 +53,7 @@ WRITERS: Mapping[str, Writer] = MappingProxyType(
         ".pdf": lambda job, path: write_pdf(job.required_plan, path, job.paper),
         ".png": write_png,
         ".gif": write_animation,
+        ".html": write_page,
         ".lbrn2": _lightburn,
         ".stl": _meshes,
         ".3mf": _meshes,

@@ -32,6 +32,9 @@ FILE_KINDS = (
     FileKind(".png", mark("PNG picture"), mark("Picture of the opened sheet over its target"), False),
     FileKind(".gif", mark("GIF animation, as cut"), mark("The sheet opening as cut; it stops where it jams"), False),
     FileKind(
+        ".html", mark("Page to share"), mark("One file that moves in every browser, with the project inside"), False
+    ),
+    FileKind(
         ".lbrn2", mark("LightBurn project"), mark("Named layers in cutting order; connectors on the tool layer"), True
     ),
     FileKind(".stl", mark("STL solid, mm"), mark("The sheet as one closed body, to print or to mill"), True),

@@ -525,6 +525,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         paper=request.settings.paper,
         markers=request.settings.markers,
         provenance=request.facts,
+        width_mm=request.settings.width_mm,
         artwork=request.artwork,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )

@@ -24,7 +24,7 @@ OFFENDERS = {
     "fabricate": 120,
     "generator": 45,
     "gui": 366,
-    "lab": 208,
+    "lab": 206,
     "mechanics": 44,
     "outlines": 108,
     "pipeline": 70,

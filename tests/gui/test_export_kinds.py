@@ -25,6 +25,7 @@ FIRST_BYTES = {
     ".pdf": b"%PDF",
     ".png": b"\x89PNG",
     ".gif": b"GIF8",
+    ".html": b"<!doctype html>",
     ".lbrn2": b"<?xml",
     ".stl": b"Kirigami Studio",
     ".3mf": b"PK",
@@ -53,7 +54,7 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     allowed = {extension: action.isEnabled() for extension, action in designed.fabrication.kinds.items()}
-    assert {extension for extension, enabled in allowed.items() if enabled} == {".png", ".gif"}
+    assert {extension for extension, enabled in allowed.items() if enabled} == {".png", ".gif", ".html"}
     assert designed.fabrication.more.isEnabled()
 
 

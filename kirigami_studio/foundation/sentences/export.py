@@ -177,6 +177,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The GIF did not read back as planned: {found} frames instead of {planned}, or another size. Nothing was "
         "written. Please report it."
     ),
+    "page.not_as_written": mark(
+        "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
+    ),
     "sidecar.not_as_written": mark(
         "The record {path} did not read back as planned. Nothing was written. Please report it."
     ),

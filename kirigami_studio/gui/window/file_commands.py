@@ -200,6 +200,12 @@ def commands(
         sheet("export", tr("Export &cut file …"), cut, files.export, "Ctrl+E", "export", gap=True),
         sheet("export_all", tr("Export &everything …"), every, files.export_all, "Ctrl+Shift+E"),
         sheet("export_artwork", tr("Export art&work …"), artwork, export_artwork),
+        command(
+            "share",
+            tr("S&hare as a page …"),
+            tr("One file that moves in every browser, with the project inside"),
+            partial(files.export, ".html"),
+        ),
         command("animation", tr("Export an&imation …"), moving, files.animate),
         command("animation_ideal", tr("Expor&t ideal animation …"), ideal, partial(files.animate, Motion.IDEAL)),
         command("quit", tr("&Quit"), tr("Close Kirigami Studio"), close, "Ctrl+Q", gap=True),

@@ -1,4 +1,4 @@
-"""What the whole program makes of a set of targets: best of K, polished, searched for and trimmed, shape by shape."""
+"""Best designs of a set of targets: polished, searched for and trimmed, shape by shape."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_
 from kirigami_studio.lab.benchmark.contact_sheet import Tile, write_tiles
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.auto_grid import known_for
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
@@ -103,7 +104,9 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         layout with its interval, ``below_uniform`` and ``below_uniform_exact`` (names of targets that the uniform
         layout of the same grid shows better, by sIoU and by exact IoU), ``worst`` (names by sIoU, lowest first),
         ``success`` (sIoU >= 0.85 and feasible), ``tv``, ``seconds`` a target, ``panel_area_cv`` with its interval, the
-        worst and its name, ``at_limit`` (share of ratios), ``symmetric`` and ``cuttable`` (shares of targets),
+        worst and its name, ``expected_off`` and ``expected_within_5_points`` (mean difference, and share of targets,
+        between the match that was expected before the run and that of the first design, where grids were chosen),
+        ``at_limit`` (share of ratios), ``symmetric`` and ``cuttable`` (shares of targets),
         ``best_match``: the same of the candidate of the highest exact IoU in the place of the first, and ``shapes``:
         the figures of each target by name.
     """
@@ -135,6 +138,9 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
     trimmed = [one.best.trim.iou for one in made if one.best.trim is not None]
     if len(trimmed) == len(made):
         figures |= _summary("trimmed_iou", trimmed, made)
+    off = [abs(score.iou_exact - told) for one, score in zip(made, scores, strict=True) if (told := _expected(one))]
+    if off:
+        figures |= {"expected_off": float(np.mean(off)), "expected_within_5_points": float(np.mean(np.less(off, 0.05)))}
     figures["shapes"] = {one.target.name: shape_figures(one) for one in made}
     return figures
 
@@ -164,13 +170,20 @@ def shape_figures(one: Made) -> dict[str, object]:
         "best_match": {"iou_exact": most.iou_exact, "panel_area_cv": most.evenness.area_cv},
         "seconds": one.seconds,
     }
+    if expected := _expected(one):
+        line["expected_iou"] = expected
     if one.best.trim is not None:
         line |= {"trimmed_iou": one.best.trim.iou, "removed_share": one.best.trim.removed_share}
     return line
 
 
+def _expected(one: Made) -> float | None:
+    """The match expected of the grid before the run; None where the grid was given."""
+    return known_for(one.request).predicted_match if one.request.grid_chosen else None
+
+
 def _sheet_figures(designs: Sequence[Candidate], made: Sequence[Made]) -> dict[str, object]:
-    """What the sheets look like, whatever they open into."""
+    """Figures of the flat sheets, whatever they open into."""
     figures = [design.score.evenness for design in designs]
     rankings = [Ranking.of(one.request) for one in made]
     return {

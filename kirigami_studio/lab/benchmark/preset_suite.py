@@ -149,7 +149,7 @@ def measure_presets(
 
 
 def judged_preset(material: Material, shape: str, k: int, seed: int = 0) -> PresetSheet:
-    """Design a shape as ``design --material`` does, in the construction that suits the material; judge the best."""
+    """Judge the best design of a shape in the construction that suits a material."""
     target, settings = load(shape), new_settings({"material": material.key})
     wanted = DesignSettings(k=k, seed=seed)
     best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best

@@ -17,6 +17,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.auto_grid import predicted_for
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.preferences import PREFERENCES
@@ -35,7 +36,7 @@ def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path
     assert figures["iou_exact"] == pytest.approx(np.mean([line["iou_exact"] for line in shapes.values()]))
     assert figures["iou_exact_worst"] == min(line["iou_exact"] for line in shapes.values())
     assert all(line["iou_exact"] > line["uniform_iou"] for line in shapes.values())
-    assert "trimmed_iou" not in figures
+    assert "trimmed_iou" not in figures and "expected_off" not in figures
     assert figures["siou_gain"] == pytest.approx(figures["siou"] - figures["uniform_siou"])  # type: ignore[operator]
     path = tmp_path / "all.png"
     write_contact_sheet(made, path)
@@ -46,6 +47,15 @@ def test_that_every_target_gets_its_best_grid_its_line_and_its_pictures(tmp_path
     with Image.open(path) as picture:
         assert picture.width > 1500
         assert len(picture.convert("RGB").getcolors(1 << 24) or []) > 50
+
+
+def test_that_the_expected_match_is_held_against_the_one_that_was_reached() -> None:
+    made = make_designs([[Request(load("hexagon"), None, k=1, polish=5)]])
+    figures = design_figures(made)
+    expected = predicted_for(replace(made[0].request, grid=None)).predicted_match
+    assert figures["expected_off"] == pytest.approx(abs(made[0].best.score.iou_exact - expected))
+    assert figures["expected_within_5_points"] == float(figures["expected_off"] < 0.05)  # type: ignore[operator]
+    assert figures["shapes"]["hexagon"]["expected_iou"] == expected  # type: ignore[index]
 
 
 def test_that_the_best_match_stands_beside_the_first_design() -> None:
