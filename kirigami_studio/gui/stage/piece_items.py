@@ -19,6 +19,7 @@ from kirigami_studio.lattice.deployment import rotate
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.pieces import Assembly, Piece
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.studio.making import MadePieces
 
 #: Of the upper layer: the lower one shows through.
@@ -32,18 +33,23 @@ LAYERS = (1, 2)
 class ShownPieces:
     """The pieces of a design, as the stage shows them over its target."""
 
-    made: MadePieces
-    design: PosedDesign  #: The lattice of the pieces: smaller than that of the design by their margin
+    assembly: Assembly
+    design: PosedDesign  #: The lattice of the pieces: smaller than that of the design by the margin of pins
+    head_mm: float = 0.0  #: Diameter of the heads of pins
+    tiles: bool = False  #: Whether they lie on the panels of a hinge layer, which is drawn below them
 
     @classmethod
     def of(cls, made: MadePieces, design: PosedDesign) -> ShownPieces:
         """The pieces of the design on the stage."""
         plan = made.made.plan
-        return cls(made, PosedDesign(plan.assembly.deployment, plan.pose, design.phi_target))
+        shown = PosedDesign(plan.assembly.deployment, plan.pose, design.phi_target)
+        return cls(plan.assembly, shown, plan.options.head_mm)
 
-    @property
-    def assembly(self) -> Assembly:
-        return self.made.made.assembly
+    @classmethod
+    def of_tiles(cls, layers: AssemblyJob, design: PosedDesign) -> ShownPieces:
+        """The tiles of the design on the stage."""
+        made = layers.assembly.deployment
+        return cls(layers.assembly, design if made is design.deployment else design.laid_over(made), tiles=True)
 
     @property
     def mm_per_world(self) -> float:
