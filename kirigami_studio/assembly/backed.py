@@ -126,7 +126,9 @@ class BackedSheet:
         inset_mm = self.tile_sizes.inset_mm(self.plan.kerf_mm)
         found = {}
         for number, ring in zip(panels.panel.tolist(), panels.split(panels.points), strict=True):
-            inset = shapely.buffer(Polygon(ring), -inset_mm, join_style="mitre")
+            # Bows reach beyond the lattice's own panel, which passes all others; its tile does not.
+            both = [shapely.make_valid(Polygon(points)) for points in (ring, self.plan.panels[number])]
+            inset = shapely.intersection(*shapely.buffer(both, -inset_mm, join_style="mitre"))
             largest = max(shapely.get_parts(shapely.difference(inset, free)), key=shapely.area, default=Polygon())
             largest = without_necks(largest, self.tile_sizes.least_mm)
             if not largest.is_empty and _room(largest)[1] >= 0.5 * LEAST_TILE_MM:

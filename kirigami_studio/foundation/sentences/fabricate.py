@@ -413,9 +413,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "backed.pin_too_wide": mark(
         "Registration holes of {pin_mm:g} mm are too wide for a frame of {frame_mm:g} mm. Make the frame wider."
     ),
-    "backed.tiles_collide": mark(
-        "Tiles {one} and {other} run into each other as the sheet opens. Make the gap larger."
-    ),
     "backed.cuts_merge": mark(
         "A gap of {gap_mm:g} mm leaves nothing between the cuts of two tiles, whose kerf is {kerf_mm:g} mm. Make the "
         "gap larger."
