@@ -62,6 +62,8 @@ if TYPE_CHECKING:
     from kirigami_studio.studio.verdict import Verdict
 
 ANIMATION = ".gif"
+#: Problems of tiles that leave no board to cut.
+NO_BOARD = ("backed.cuts_merge", "printed.no_tiles")
 #: Kinds of files that hold tiles to print.
 SOLIDS = (".3mf", ".obj", ".stl")
 #: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
@@ -562,6 +564,8 @@ def written(
         An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
     """
     if made.layers is not None and writes_layers(request, output):
+        if broken := next((one for one in made.report.problems if one.code in NO_BOARD), None):
+            raise ExportError("export.cannot_be_cut", reason=broken.text)
 
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
