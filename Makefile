@@ -120,6 +120,11 @@ DESIGNS ?= 200
 pinned: setup
 	OMP_NUM_THREADS=1 $(BIN)/python tests/random_assemblies.py $(DESIGNS)
 
+#: Random designs on printed pins, written and read back by lib3mf and numpy-stl.
+PRINTS ?= 40
+prints: setup
+	OMP_NUM_THREADS=1 $(BIN)/python tests/random_prints.py $(PRINTS)
+
 #: One window for an hour: GENERATIONS runs called off, EDITS undone; what it holds meanwhile, a line of JSON each.
 GENERATIONS ?= 500
 EDITS ?= 500

@@ -63,6 +63,13 @@ def read_3mf(path: Path) -> dict[str, ReadBody]:
     placed = set()
     while items.MoveNext():
         placed.add(items.GetCurrent().GetObjectResourceID())
+    groups = model.GetComponentsObjects()
+    while groups.MoveNext():  # several bodies are parts of one object, as they are
+        group = groups.GetCurrentComponentsObject()
+        assert group.GetResourceID() in placed and len(placed) == 1
+        parts = [group.GetComponent(number) for number in range(group.GetComponentCount())]
+        assert not any(part.HasTransform() for part in parts)
+        placed |= {part.GetObjectResourceID() for part in parts}
     while objects.MoveNext():
         body = objects.GetCurrentMeshObject()
         assert body.GetResourceID() in placed and body.IsManifoldAndOriented() and body.IsValid()

@@ -435,7 +435,7 @@ class Design:
     plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
     def make_pieces(self, **choices: Any) -> Pieces:
-        """Make the pieces of two layers on pins; takes what :meth:`plan_cuts` takes.
+        """Make the pieces of two layers on pins, or those to be printed on theirs; takes what :meth:`plan_cuts` takes.
 
         Raises
         ------
@@ -452,9 +452,11 @@ class Design:
         >>> pieces.count, pieces.pins
         (25, 40)
         """
-        wanted = {"construction": Construction.PINNED} | _given(choices, "make_pieces")
-        document = self.document
-        request = CutRequest.of(document, with_choices(document.fabrication, wanted))
+        document, wanted = self.document, _given(choices, "make_pieces")
+        settings = with_choices(document.fabrication, wanted)
+        if "construction" not in wanted and not is_pinned(settings):
+            settings = replace(settings, construction=Construction.PINNED)
+        request = CutRequest.of(document, settings)
         if not request.is_pinned:
             raise UsageError("api.no_pieces_on_pins", construction=wanted["construction"])
         return Pieces(self, request, pieces_of(request))
@@ -470,8 +472,8 @@ class Design:
         ----------
         path : path
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
-            ``.stl``, ``.3mf`` or ``.obj``: solids; ``.png``: the closed sheet; ``.gif``: its motion;
-            ``.html``: a page to share.
+            ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
+            sheet; ``.gif``: its motion; ``.html``: a page to share.
 
         Returns
         -------
@@ -763,7 +765,7 @@ class Cuts:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pieces:
-    """Pieces of a design in two layers on pins, and what is to be expected of them.
+    """Pieces of a design on pins, in two layers or printed, and what is to be expected of them.
 
     Attributes
     ----------
@@ -801,7 +803,7 @@ class Pieces:
 
     @property
     def seconds(self) -> float:
-        """Estimated time of cutting all beds."""
+        """Estimated time of cutting all beds; 0 for what is printed, which the slicer tells."""
         return self._made.seconds
 
     @property
@@ -810,7 +812,7 @@ class Pieces:
         return self._made.verdict
 
     def export(self, folder: str | os.PathLike[str]) -> Exported:
-        """Write cut files of both layers, assembly sheet, parts list and motion to a folder.
+        """Write cut files of both layers or plates to print, assembly sheet, parts list and motion to a folder.
 
         Raises
         ------

@@ -12,6 +12,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray
+from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.evaluate.boundary import as_plane, as_points
@@ -26,6 +27,8 @@ OVERLAP_MM2 = 0.01
 ROUNDNESS_MM = 0.02
 #: Below this IoU with the target a plan is warned of.
 LEAST_MATCH = 0.95
+#: Codes of pieces that meet: in layers, and in one plane.
+COLLISIONS = ("pinned.pieces_collide", "printed.pieces_too_near")
 #: Halvings when the narrowest neck is looked for.
 HALVINGS = 6
 
@@ -52,7 +55,8 @@ class PinnedFigures:
     neck_mm : float
         Least width of a connection between ears; at most as wide as ears allow to measure.
     overlap_mm2 : float
-        Largest overlap within a layer at any angle looked at.
+        Largest overlap within a plane at any angle looked at; in one plane of pieces that are larger by half of their
+        clearance all round.
     kept, least_kept : float
         Area of pieces relative to their panels: mean and least.
     """
@@ -92,7 +96,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     assembly, options = plan.assembly, plan.options
     phi = assembly.phi_target
     bodies = [body_of(piece) for piece in assembly.pieces]
-    overlap, worst_phi = largest_overlap(assembly, np.linspace(math.pi, phi, angles).tolist())
+    overlap, worst_phi = largest_overlap(plan, bodies, np.linspace(math.pi, phi, angles).tolist())
     opened, flat = (shapely.union_all(placed_bodies(assembly, bodies, angle)) for angle in (phi, math.pi))
     walls = [wall_mm(piece, body) for piece, body in zip(assembly.pieces, bodies, strict=True)]
     necks = [
@@ -129,7 +133,8 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             Problem.warning("pinned.ears_meet", plan.gap_at, count=plan.tight, gap_mm=plan.gap_mm, needed_mm=needed)
         )
     if overlap > OVERLAP_MM2:
-        problems.append(Problem.error("pinned.pieces_collide", overlap_mm2=overlap, angle_deg=math.degrees(worst_phi)))
+        values = {"overlap_mm2": overlap, "angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
+        problems.append(Problem.error(COLLISIONS[options.in_one_plane], **values))
     least_wall = options.asked_wall_mm
     thin = sorted((wall, piece.id) for piece, wall in zip(assembly.pieces, walls, strict=True))
     thin = [one for one in thin if one[0] < least_wall - ROUNDNESS_MM]
@@ -187,20 +192,22 @@ def placed_bodies(assembly: Assembly, bodies: Sequence[BaseGeometry], phi: float
     return placed
 
 
-def largest_overlap(assembly: Assembly, angles: Sequence[float]) -> tuple[float, float]:
-    """Largest overlap within a layer, mm2, over some angles (radians), and where it is."""
-    bodies = [body_of(piece) for piece in assembly.pieces]
-    layer = np.array([piece.layer for piece in assembly.pieces])
-    worst, at = 0.0, math.pi
-    for phi in angles:
-        placed = placed_bodies(assembly, bodies, phi)
-        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
-        close = (one < other) & (layer[one] == layer[other])
-        shared = shapely.area(shapely.intersection(placed[one[close]], placed[other[close]]))
-        total = max(float(shared[layer[one[close]] == number].sum()) for number in (1, 2))
-        if total > worst:
-            worst, at = total, phi
-    return worst, at
+def largest_overlap(plan: PinnedPlan, bodies: Sequence[Polygon], angles: Sequence[float]) -> tuple[float, float]:
+    """Largest overlap within a plane, mm2, over some angles (radians), and where it is.
+
+    Pieces in one plane are looked at outside of their joints, and have to keep their clearance.
+    """
+    assembly, options = plan.assembly, plan.options
+    poses = np.array([assembly.poses(phi) for phi in angles])
+    plane, shapes = np.array([piece.layer for piece in assembly.pieces]), np.array(bodies, dtype=object)
+    if options.in_one_plane:
+        plane = np.ones_like(plane)
+        joint = 0.5 * options.ear_mm + options.clearance_mm
+        pins = [shapely.multipoints([hole.centre for hole in piece.holes]).buffer(joint) for piece in assembly.pieces]
+        shapes = shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM)
+    found = [one for number in (1, 2) for one in passing(shapes[plane == number], poses[:, plane == number]).overlaps]
+    worst = max(found, key=lambda one: one.area_mm2, default=None)
+    return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])
 
 
 def wall_mm(piece: Piece, body: Polygon) -> float:

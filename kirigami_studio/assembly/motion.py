@@ -4,6 +4,9 @@ In the frame that turns with layer 1, a node of a panel with I + J even is U + R
 for all nodes of that panel, its *drift*.  Seen from a piece with drift V', the panel is therefore shifted by
 (R(t) - 1) (V - V') from its place in the flat sheet: along an exact arc of radius |V - V'|.  Layer 2 is the same with U
 and the other sense of rotation.
+
+Panels of the other layer share U, their drift, instead of V: seen from that piece, they turn about U + V' by t.  So
+where both layers lie in one plane, every point moves along an exact arc, too.
 """
 
 from __future__ import annotations
@@ -25,6 +28,8 @@ GeometryArray = npt.NDArray[np.object_]
 
 #: Vertices of a polygon that stands for a disc.
 DISC = 64
+#: A pin is needed if its conditions are implied by others to less than this share.
+NEEDED = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +46,9 @@ class LayerMotion:
         Corners with a pin.
     layer : (P,) int
         1 for panels with I + J even, 2 for the others.
+    plane : (P,) int
+        Pieces of one plane pass each other, those of different planes may lie on each other: 1 and 2 as the layers, or
+        1 for all.
     drift : (P,) complex, mm
     sense : (P,) float
         Of the rotation that carries a layer's pieces past each other: 1 in layer 1, -1 in layer 2.
@@ -52,21 +60,24 @@ class LayerMotion:
     nodes: IntArray
     hinged: BoolArray
     layer: IntArray
+    plane: IntArray
     drift: ComplexArray
     sense: FloatArray
     opening: float
 
     @classmethod
-    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float) -> LayerMotion:
+    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, in_one_plane: bool = False) -> LayerMotion:
         """The motion of a design from flat to its target angle."""
         panels = all_panels(*deployment.sheet.grid)
         even, odd = as_plane(deployment.even_part) * cell_mm, as_plane(deployment.odd_part) * cell_mm
         first = panels.corners[:, 0]
+        layer = np.where(panels.even, 1, 2)
         return cls(
             corners=(even + odd)[panels.corners],
             nodes=panels.corners,
             hinged=panels.hinged,
-            layer=np.where(panels.even, 1, 2),
+            layer=layer,
+            plane=np.ones_like(layer) if in_one_plane else layer,
             drift=np.where(panels.even, odd[first], even[first]),
             sense=np.where(panels.even, 1.0, -1.0),
             opening=math.pi - check_phi(phi_target),
@@ -78,12 +89,24 @@ class LayerMotion:
         They are left out one by one: a pin without which pieces would move in other ways stays.  Where all stay it is
         this motion itself.
         """
-        found = self
-        for node in sorted(nodes):
-            fewer = replace(found, hinged=found.hinged & (found.nodes != node))
-            if freedom(fewer) == 1:
-                found = fewer
-        return found
+        if not nodes:
+            return self
+        pins, conditions = _conditions(self)
+        parts, sizes, _ = np.linalg.svd(conditions, full_matrices=False)
+        parts = parts[:, sizes > sizes.max(initial=0.0) * max(conditions.shape) * np.finfo(np.float64).eps]
+        if 3 * len(self.layer) - 3 - parts.shape[1] != 1:
+            return self
+        # Conditions can go if others imply them: if their part of this projection, onto what holds the sheet no more
+        # than others do, is not singular.
+        spare = np.eye(len(conditions)) - parts @ parts.T
+        left_out = []
+        for node in sorted(set(nodes) & set(pins.tolist())):
+            at = 2 * int(np.searchsorted(pins, node)) + np.arange(2)
+            own = spare[np.ix_(at, at)]
+            if float(np.linalg.eigvalsh(own)[0]) > NEEDED:
+                spare -= spare[:, at] @ np.linalg.solve(own, spare[at])
+                left_out.append(node)
+        return replace(self, hinged=self.hinged & ~np.isin(self.nodes, left_out)) if left_out else self
 
     def placed(self, shapes: GeometryArray, index: IntArray, turn: float) -> GeometryArray:
         """Carry shapes of the flat sheet with their panels to t = ``turn``; deployment's frame, mm.
@@ -103,40 +126,56 @@ class LayerMotion:
         return _moved(shapes, forth, (1.0 - np.exp(1j * self.sense[index] * turn)) * self.drift[index])
 
     def close_pairs(self, reach: float) -> IntArray:
-        """Pairs (K, 2) of panels of one layer that come within ``reach`` mm of each other.
+        """Pairs (K, 2) of panels of one plane that come within ``reach`` mm of each other.
 
         Both ways round, over the whole motion, judged by the circles around them: never too few.
         """
         middle = self.corners.mean(axis=1)
         radius = np.abs(self.corners - middle[:, None]).max(axis=1)
         found = []
-        for layer in (1, 2):
-            members = np.flatnonzero(self.layer == layer)
+        for plane in np.unique(self.plane):
+            members = np.flatnonzero(self.plane == plane)
             one, other = (axis.ravel() for axis in np.meshgrid(members, members, indexing="ij"))
             one, other = one[one != other], other[one != other]
             apart = self.distance_on_arc(middle[other], middle[one], one, other)
             found.append(np.stack([one, other], axis=1)[apart <= radius[one] + radius[other] + reach])
         return np.concatenate(found)
 
+    def seen_drift(self, one: IntArray, other: IntArray, moving: ComplexArray) -> ComplexArray:
+        """Drifts (K, ...) of points (K, ...), mm, of panels ``one`` in the flat sheet, seen from panels ``other``.
+
+        A point is at its place in the flat sheet plus (R(t) - 1) times its drift, in the sense of ``other``.
+        """
+        shape = (-1, *[1] * (moving.ndim - 1))
+        mine, theirs = self.drift[one].reshape(shape), self.drift[other].reshape(shape)
+        alike = (self.layer[one] == self.layer[other]).reshape(shape)
+        return np.asarray(np.where(alike, mine, moving - mine) - theirs)
+
     def distance_on_arc(self, points: ComplexArray, moving: ComplexArray, one: IntArray, other: IntArray) -> FloatArray:
         """Least distance (K,) between points of panels ``other`` and points moving with ``one``."""
-        drift = self.drift[one] - self.drift[other]
+        drift = self.seen_drift(one, other, moving)
         seen = points - (moving - drift)
         radius = np.abs(drift)
         # How far round the arc the point lies, measured from the arc's beginning in its own sense.
-        ahead = np.mod(self.sense[one] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
-        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[one] * self.opening)))
+        ahead = np.mod(self.sense[other] * (np.angle(seen) - np.angle(drift)), 2.0 * math.pi)
+        ends = np.minimum(np.abs(seen - drift), np.abs(seen - drift * np.exp(1j * self.sense[other] * self.opening)))
         return np.asarray(np.where(ahead <= self.opening, np.abs(np.abs(seen) - radius), ends))
 
 
 def freedom(motion: LayerMotion) -> int:
     """Count the small motions of a half open sheet on its pins, beside those of the whole."""
+    return 3 * len(motion.layer) - 3 - int(np.linalg.matrix_rank(_conditions(motion)[1]))
+
+
+def _conditions(motion: LayerMotion) -> tuple[IntArray, FloatArray]:
+    """Nodes (N,) with pins in ascending order, and the conditions (2 N, 3 P) that they put to shifts and turns."""
     turn = 0.5 * motion.opening
     drift, spin = motion.drift[:, None], np.exp(1j * motion.sense * turn)[:, None]
     points = np.exp(-0.5j * motion.sense * turn)[:, None] * (motion.corners + (spin - 1.0) * drift)
     piece, corner = np.nonzero(motion.hinged)
     order = np.argsort(motion.nodes[piece, corner], kind="stable")
-    piece, place = piece[order], points[piece, corner][order]
+    piece, corner = piece[order], corner[order]
+    place = points[piece, corner]
     # The two pieces of a pin follow each other: shifts and turns of both are the same at the pin.
     row, count = np.arange(len(piece) // 2), len(motion.layer)
     conditions = np.zeros((len(piece), 3 * count))
@@ -144,7 +183,7 @@ def freedom(motion: LayerMotion) -> int:
         conditions[2 * row, 3 * one] = conditions[2 * row + 1, 3 * one + 1] = sign
         conditions[2 * row, 3 * one + 2] = -sign * at.imag
         conditions[2 * row + 1, 3 * one + 2] = sign * at.real
-    return 3 * count - 3 - int(np.linalg.matrix_rank(conditions))
+    return motion.nodes[piece[::2], corner[::2]], conditions
 
 
 def _moved(shapes: GeometryArray, factor: ComplexArray, shift: ComplexArray) -> GeometryArray:
@@ -219,7 +258,8 @@ def swept_hulls(
     Parameters
     ----------
     corners : (C, K) complex, mm
-    drifts : (C,) complex, mm
+    drifts : (C, K) or (C, 1) complex, mm
+        Of every corner.
     turn : float, radians
         As for :func:`swept_discs`.
     tolerance : float, mm
@@ -228,13 +268,19 @@ def swept_hulls(
     """
     farthest = float(np.abs(drifts).max(initial=0.0))
     steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
-    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0) * drifts[:, None]
-    points = corners[:, None, :] + shifts[:, :, None]
-    both = np.concatenate([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2 * corners.shape[1])
+    turned = np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0
+    shifts = turned[:, None] * drifts[:, None, :]
+    begin, end = shifts[:, :-1], shifts[:, 1:]
+    low, high = np.minimum(begin.real, end.real).min(axis=2), np.maximum(begin.real, end.real).max(axis=2)
+    under, over = np.minimum(begin.imag, end.imag).min(axis=2), np.maximum(begin.imag, end.imag).max(axis=2)
     near = (
-        (both.real.max(axis=1) >= window[0])
-        & (both.imag.max(axis=1) >= window[1])
-        & (both.real.min(axis=1) <= window[2])
-        & (both.imag.min(axis=1) <= window[3])
+        (corners.real.max(axis=1)[:, None] + high >= window[0])
+        & (corners.imag.max(axis=1)[:, None] + over >= window[1])
+        & (corners.real.min(axis=1)[:, None] + low <= window[2])
+        & (corners.imag.min(axis=1)[:, None] + under <= window[3])
     )
-    return np.asarray(shapely.convex_hull(shapely.multipoints(as_points(both[near]))), dtype=object)
+    polygon, step = np.nonzero(near)
+    both = corners[polygon][:, None, :] + shifts[polygon[:, None], step[:, None] + np.arange(2)]
+    # Hulls of lines, which are quicker to make than multipoints.
+    lines = shapely.linestrings(as_points(both.reshape(len(both), 2 * corners.shape[1])))
+    return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)

@@ -42,6 +42,9 @@ class PinOptions:
         out of the flat outline for it; below, they may stick out of the target to fill the flat outline.
     least_flat : float, 0..1
         IoU with the start outline that trimming leaves, where that is possible.
+    in_one_plane : bool
+        Whether all pieces pass each other, at the clearance, and turn on joints that are part of them, as printed ones;
+        else layers lie on each other.
 
     Raises
     ------
@@ -60,6 +63,7 @@ class PinOptions:
     reach_mm: float = 12.0
     weight: float = 0.5
     least_flat: float = 0.97
+    in_one_plane: bool = False
 
     def __post_init__(self) -> None:
         given = {name: getattr(self, name) for name in self.__slots__}

@@ -42,7 +42,7 @@ class PinnedPlan:
     broken : tuple of str
         Pieces whose ears do not hang together.
     gap_mm : float
-        Least distance over the motion of two pins in one layer, in different pieces.
+        Least distance over the motion of two pins in one plane, in different pieces.
     gap_at : (x, y), mm
         Where the first of them is in the flat sheet.
     tight : int
@@ -103,6 +103,7 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances
     tight = distance < options.ear_mm + options.clearance_mm
+    alike = 8 if options.in_one_plane else 2  # entries of two pins that meet: those of a layer, both ways round
     nearest = int(np.argmin(distance))
     at = shaping.motion.corners.ravel()[ears[nearest]]
     return PinnedPlan(
@@ -114,7 +115,7 @@ def pinned(design: PosedDesign, target: Outline, width_mm: float, options: PinOp
         tuple(names[index] for index in sorted(shaping.broken)),
         float(distance[nearest]),
         (float(at.real), float(at.imag)),
-        int(np.count_nonzero(tight)) // 2,
+        -(-int(np.count_nonzero(tight)) // alike),
     )
 
 

@@ -6,7 +6,7 @@ Outlines are on a grid of a tenth of a micrometre: no two vertices fall together
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,23 +16,21 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import BackedSheet
+from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.solids import (
     LAYER_MM,
     ROUNDING_MM,
     TILE_MM,
     Plate,
-    PrintedPins,
     PrintForm,
     Printing,
     Solid,
-    on_one_plate,
     on_plates,
 )
-from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.evaluate.kept_panels import all_panels
 from kirigami_studio.fabricate.checks import finished_pieces
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
+from kirigami_studio.fabricate.fastener import PRINTED_WALL_MM, PrintedPins
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
@@ -42,27 +40,18 @@ GRID_MM, COARSE_GRID_MM, LARGE_MM = 1e-4, 1e-3, 1000.0
 SHORTEST_EDGE_MM = 1e-3
 #: Width (mm) of slits that take no material away, as blades cut them: something has to be between both sides.
 LEAST_SLIT_MM = 0.01
-#: Walls round printed pins and necks of panels (mm) are two lines of a nozzle of 0.4 mm at least; so much is held at a
-#: pin's neck beyond the clearance; the disc on a pin is as thick as this.
-LEAST_WALL_MM, HELD_MM, LEAST_WEB_MM = 0.8, 0.1, 0.8
+#: Least thickness (mm) of the disc on a pin.
+LEAST_WEB_MM = 0.8
 #: The disc on a pin and its panel lap over by this much (mm), so that they are one body.
 LAPPED_MM = 0.02
-#: Segments of a full turn, and of a full motion; how far (mm) its chords are from the true way, for radii up to 500 mm.
-ROUND_SEGMENTS, MOTION_STEPS, SAGITTA_MM = 64, 361, 0.005
+#: Segments of a full turn.
+ROUND_SEGMENTS = 64
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
-#: A trimmed panel still has its ear where it comes so near (mm) to its node.
-REACHED_MM = 1.0
 
 
-def print_plates(
-    plan: CutPlan,
-    design: Deployment,
-    phi: float,
-    printing: Printing,
-    kept: Sequence[FloatArray | None] | None = None,
-) -> tuple[Plate, ...]:
-    """Make the solids of a design, as many plates of them as the bed asks for.
+def print_plates(plan: CutPlan, design: Deployment, phi: float, printing: Printing) -> tuple[Plate, ...]:
+    """Make the solids of a sheet or of its tiles, as many plates of them as the bed asks for.
 
     A sheet is as thick as its material unless asked for.
 
@@ -74,8 +63,6 @@ def print_plates(
     phi : float, radians
         Target angle.
     printing : Printing
-    kept : sequence of (P, 2) float or None, unit cells, optional
-        What stays of trimmed panels, row by row.
 
     Raises
     ------
@@ -85,10 +72,6 @@ def print_plates(
     wanted = printing.thickness_mm
     if printing.form is PrintForm.TILES:
         solids = tile_solids(BackedSheet.of(plan, design, phi, printing.tile_sizes), wanted or TILE_MM)
-    elif printing.form is PrintForm.PINNED:
-        thickness = wanted or LAYER_MM * math.ceil(PinJoint.least_mm(printing.pins) / LAYER_MM)
-        solids = pinned_solids(design, kept, plan.size_mm[0], phi, thickness, printing.pins)
-        return on_one_plate(solids, printing.bed_mm)
     else:
         solids = sheet_solids(plan, wanted or plan.material.thickness_mm)
     return on_plates(solids, printing.bed_mm)
@@ -207,7 +190,8 @@ class PinJoint:
         height = slope * (foot - neck) + 0.5 * (thickness_mm - least)
         above, top = 2.0 * thickness_mm, thickness_mm
         rim = height + slope * (ear - neck)
-        pin = [(0.0, 0.0), (foot, 0.0), (neck, height), (ear, rim), (ear, top), (0.0, top)]
+        disc = ear / math.cos(math.pi / ROUND_SEGMENTS)  # holds all of the ear of its piece
+        pin = [(0.0, 0.0), (foot, 0.0), (neck, height), (disc, rim + slope * (disc - ear)), (disc, top), (0.0, top)]
         high = [(0.0, -above), (foot, -above), (foot, 0.0), (neck, height), (ear, rim), (ear, above), (0.0, above)]
         both = high + [(-x, z) for x, z in reversed(high[1:-1])]
         room = shapely.buffer(Polygon(both), gap, join_style="mitre", mitre_limit=MITRE)
@@ -215,7 +199,7 @@ class PinJoint:
         ring = [(0.0, -above), (reach, -above), (reach, low + slope * (reach - neck)), (neck, low), (0.0, low)]
         return cls(
             Polygon(pin),
-            _largest(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
+            Polygon(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
             Polygon(ring),
         )
 
@@ -225,188 +209,54 @@ class PinJoint:
         widths = cls._foot(pins) + 0.5 * pins.ear_mm + pins.clearance_mm - pins.pin_mm
         return math.tan(math.radians(pins.cone_deg)) * widths + LEAST_WEB_MM
 
+    @classmethod
+    def usual_mm(cls, pins: PrintedPins, material_mm: float) -> float:
+        """Thickness of panels in whole layers: that of their material, and no less than the pins need."""
+        return LAYER_MM * math.ceil(max(cls.least_mm(pins), material_mm) / LAYER_MM - ROUNDING_MM)
+
     @staticmethod
     def _foot(pins: PrintedPins) -> float:
         """Radius of the pin on the plate: all that the wall of the ring round it leaves."""
-        ear, neck = 0.5 * pins.ear_mm, 0.5 * pins.pin_mm
-        beside = pins.clearance_mm / math.sin(math.radians(pins.cone_deg))  # of a gap between cones, along the plate
-        foot = ear - LEAST_WALL_MM - beside
-        if foot < neck + beside + HELD_MM - ROUNDING_MM:
-            least = 2.0 * (neck + 2.0 * beside + HELD_MM + LEAST_WALL_MM)
-            raise FabricationError("printed.ear_too_small", ear_mm=pins.ear_mm, pin_mm=pins.pin_mm, least_mm=least)
-        return foot
+        if pins.ear_mm < pins.least_ear_mm - ROUNDING_MM:
+            values = {"ear_mm": pins.ear_mm, "pin_mm": pins.pin_mm, "least_mm": pins.least_ear_mm}
+            raise FabricationError("printed.ear_too_small", **values)
+        return 0.5 * pins.ear_mm - PRINTED_WALL_MM - pins.beside_mm
 
     def bodies(self) -> tuple[Manifold, Manifold, Manifold]:
-        """The three areas turned about the axis; no corner of the first is at one of the others."""
+        """The three areas turned about the axis; no corner of one is at one of the others, nor of an ear of a piece."""
         pin, round_pin, round_ring = (
             Manifold.revolve(CrossSection(_rings(area, GRID_MM), FillRule.Positive), ROUND_SEGMENTS)
             for area in (self.pin, self.round_pin, self.round_ring)
         )
-        return pin.rotate((0.0, 0.0, 180.0 / ROUND_SEGMENTS)), round_pin, round_ring
+        half = 180.0 / ROUND_SEGMENTS
+        round_pin, round_ring = (one.rotate((0.0, 0.0, 0.5 * half)) for one in (round_pin, round_ring))
+        return pin.rotate((0.0, 0.0, half)), round_pin, round_ring
 
 
-def pinned_solids(
-    deployment: Deployment,
-    kept: Sequence[FloatArray | None] | None,
-    width_mm: float,
-    phi: float,
-    thickness_mm: float,
-    pins: PrintedPins,
-) -> Plate:
-    """Panels in the flat sheet that turn on pins printed with them.
-
-    A body for each, named A1 ... in layer 1 and B1 ... in layer 2.
-
-    Parameters
-    ----------
-    deployment : Deployment
-    kept : sequence of (P, 2) float or None, unit cells
-        What stays of trimmed panels, row by row, as a trim has it; None for an untrimmed sheet.
-    width_mm : float
-        Of the flat sheet, without ears that stick out.
-    phi : float, radians
-        Target angle: to there the panels turn freely.
-    thickness_mm : float
-    pins : PrintedPins
+def pinned_solids(assembly: Assembly, thickness_mm: float, pins: PrintedPins) -> tuple[Solid, ...]:
+    """Pieces in one plane, in the flat sheet, that turn on pins printed with them.
 
     Raises
     ------
     FabricationError
-        Sizes that do not fit together, pins that come too near to each other, or panels that fall apart.
+        Sizes that do not fit together, or a piece that falls apart.
     """
-    joint = PinJoint.of(pins, thickness_mm)
-    motion = _SeenMotion.of(deployment, width_mm, phi)
-    regions = motion.panel_areas(kept, pins)
-    hinges = motion.hinges([not region.is_empty for region in regions], regions)
-    motion.check_distances(hinges, pins.apart_mm)
-    _check_connected(hinges, regions)
-    pin, round_pin, round_ring = joint.bodies()
-    solids, number = [], [0, 0]
-    for index, region in enumerate(regions):
-        if region.is_empty:
-            continue
-        layer = int(motion.layer[index])
-        number[layer - 1] += 1
-        name = f"{'AB'[layer - 1]}{number[layer - 1]}"
-        own = [motion.flat[node] for node, pair in hinges.items() if index in pair]
-        area = motion.printed_area(index, region, hinges, pins)
-        if area is None:
-            raise FabricationError("printed.panel_too_small", name=name)
-        places = [(float(x), float(y), 0.0) for x, y in own]
-        taken = Manifold.batch_boolean(
-            [(round_ring if layer == 1 else round_pin).translate(place) for place in places], OpType.Add
-        )
-        body = prism(area, thickness_mm) - taken
-        if layer == 1:
-            body = Manifold.batch_boolean([body, *(pin.translate(place) for place in places)], OpType.Add)
-        # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
-        body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
-        solids.append(solid_of(name, layer, body, body.volume()))
-    return tuple(solids)
+    bodies = PinJoint.of(pins, thickness_mm).bodies()
+    return tuple(
+        _pinned_solid(piece, place, thickness_mm, bodies)
+        for piece, place in zip(assembly.pieces, assembly.poses(math.pi)[:, :2], strict=True)
+    )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _SeenMotion:
-    """Nodes over the motion, as they are seen from panels."""
-
-    nodes: ComplexArray  #: (S, N) mm, of every node at each of S angles, from flat to the target
-    turns: FloatArray  #: (S,) radians, of panels of layer 1, clockwise; those of layer 2 turn the other way
-    panels: IntArray  #: (P, 4) nodes of every panel, row by row
-    layer: IntArray  #: (P,) 1 for panels with I + J even, 2 for the others
-    flat: FloatArray  #: (N, 2) mm, nodes of the flat sheet
-    cell_mm: float
-
-    @classmethod
-    def of(cls, deployment: Deployment, width_mm: float, phi: float) -> _SeenMotion:
-        cell_mm = width_mm / float(np.ptp(deployment.compact[:, 0]))
-        angles = np.linspace(math.pi, phi, MOTION_STEPS)
-        panels = all_panels(*deployment.sheet.grid)
-        return cls(
-            np.array([as_plane(deployment.nodes(angle)) * cell_mm for angle in angles]),
-            0.5 * (math.pi - angles),
-            panels.corners,
-            np.where(panels.even, 1, 2),
-            deployment.compact * cell_mm,
-            cell_mm,
-        )
-
-    def panel_areas(self, kept: Sequence[FloatArray | None] | None, pins: PrintedPins) -> list[Polygon]:
-        """Panels of the flat sheet, trimmed where they are, smaller by half the clearance all round."""
-        corners = self.flat[self.panels]
-        parts = kept or [None] * len(corners)
-        rings = [whole if part is None else part * self.cell_mm for part, whole in zip(parts, corners, strict=True)]
-        areas = [Polygon(ring) if len(ring) > 2 else Polygon() for ring in rings]
-        return [_largest(area.buffer(-0.5 * pins.clearance_mm, join_style="mitre")) for area in areas]
-
-    def hinges(self, there: Sequence[bool], regions: Sequence[Polygon]) -> dict[int, tuple[int, int]]:
-        """The two panels that hang together at each node, that of layer 1 first.
-
-        Nodes that trimming took from one of them are left out.
-        """
-        found: dict[int, list[int]] = {}
-        for index in np.flatnonzero(there).tolist():
-            for node in self.panels[index].tolist():
-                if regions[index].distance(shapely.Point(self.flat[node])) < REACHED_MM:
-                    found.setdefault(node, []).append(index)
-        pairs = {node: sorted(both, key=lambda one: int(self.layer[one])) for node, both in found.items()}
-        return {node: (both[0], both[1]) for node, both in sorted(pairs.items()) if len(both) == 2}
-
-    def check_distances(self, hinges: Mapping[int, tuple[int, int]], apart_mm: float) -> None:
-        """Refuse pins that come nearer to each other than their ears have room for."""
-        places = self.nodes[:, list(hinges)]
-        nearest = math.inf
-        for moment in places:
-            tree = shapely.STRtree([shapely.Point(place) for place in as_points(moment)])
-            found = tree.query_nearest(tree.geometries, exclusive=True, return_distance=True, all_matches=False)[1]
-            nearest = min(nearest, float(found.min(initial=math.inf)))
-        if nearest < apart_mm - ROUNDING_MM:
-            raise FabricationError("printed.pins_too_near", apart_mm=nearest, needed_mm=apart_mm)
-
-    def printed_area(
-        self, index: int, region: Polygon, hinges: Mapping[int, tuple[int, int]], pins: PrintedPins
-    ) -> BaseGeometry | None:
-        """A panel with its ears, less all that other ears sweep.
-
-        None where it does not hang together with its own.
-        """
-        sense = 1.0 if self.layer[index] == 1 else -1.0
-        others = [node for node, pair in hinges.items() if index not in pair]
-        own = [node for node, pair in hinges.items() if index in pair]
-        corner = int(self.panels[index][0])
-        back = np.exp(1j * sense * self.turns)[:, None]
-        seen = (self.nodes[:, others] - self.nodes[:, [corner]]) * back + complex(*self.flat[corner])
-        ways = np.array([shapely.LineString(as_points(way)) for way in seen.T], dtype=object)
-        radius = 0.5 * pins.ear_mm + pins.clearance_mm + SAGITTA_MM
-        near = ways[shapely.distance(ways, region) < radius]
-        angles = 2.0 * math.pi * (np.arange(ROUND_SEGMENTS) + 0.5) / ROUND_SEGMENTS  # as the pins have them
-        disc = 0.5 * pins.ear_mm * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        ears = [Polygon(place + disc) for place in self.flat[own]]
-        rest = shapely.difference(region, shapely.union_all(shapely.buffer(near, radius)))
-        whole = shapely.union_all([rest, *ears])
-        core = shapely.buffer(whole, -0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)
-        for part in shapely.get_parts(shapely.buffer(core, 0.5 * LEAST_WALL_MM, join_style="mitre", mitre_limit=MITRE)):
-            if np.all(shapely.contains_xy(part, self.flat[own])):
-                # Sides that nearly coincide cross in stray vertices, which no ear may have; pins bring their own ears.
-                shape = shapely.simplify(shapely.intersection(part, rest), SHORTEST_EDGE_MM)
-                return shape if self.layer[index] == 1 else shapely.union_all([shape, *ears])
-        return None
-
-
-def _largest(shape: BaseGeometry) -> Polygon:
-    return max(shapely.get_parts(shape), key=shapely.area, default=Polygon())
-
-
-def _check_connected(hinges: Mapping[int, tuple[int, int]], regions: Sequence[Polygon]) -> None:
-    """Refuse panels that do not all hang together."""
-    there = {index for index, region in enumerate(regions) if not region.is_empty}
-    group = {index: index for index in there}
-
-    def leader(index: int) -> int:
-        while group[index] != index:
-            index = group[index]
-        return index
-
-    for one, other in hinges.values():
-        group[leader(other)] = leader(one)
-    if (parts := len({leader(index) for index in there})) != 1:
-        raise FabricationError("printed.loose_parts", parts=parts)
+def _pinned_solid(piece: Piece, place: FloatArray, thickness_mm: float, joint: Sequence[Manifold]) -> Solid:
+    """A piece at its place in the flat sheet, with its pins or the rings round those of its neighbours."""
+    pin, round_pin, round_ring = joint
+    places = [(*hole.centre.tolist(), 0.0) for hole in piece.holes]
+    taken = round_ring if piece.layer == 1 else round_pin
+    body = prism(Polygon(piece.outline, piece.openings), thickness_mm)
+    body -= Manifold.batch_boolean([taken.translate(at) for at in places], OpType.Add)
+    if piece.layer == 1:
+        body = Manifold.batch_boolean([body, *(pin.translate(at) for at in places)], OpType.Add)
+    # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
+    body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
+    return solid_of(piece.id, piece.layer, body, body.volume()).moved(np.array([*place.tolist(), 0.0]))

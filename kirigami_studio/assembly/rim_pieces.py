@@ -159,7 +159,11 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
     """
     reach, spent = shaping.options.reach_mm, 0.0
     placed = shaping.placed(state.turn)
-    gaps = shapely.get_parts(less(less(state.outline, united(*placed)), state.voids))
+    missing = less(less(state.outline, united(*placed)), state.voids)
+    if shaping.options.in_one_plane:  # the clearance all round is none
+        seam = 0.5 * shaping.options.clearance_mm + OVERLAP
+        missing = missing.buffer(-seam, join_style="mitre").buffer(seam, join_style="mitre")
+    gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
     rims = shapely.intersects(gaps, state.outline.exterior)
     for by_shares in (True, False):
@@ -168,12 +172,12 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
             near = gap[piece == index]
             beside = near[rims[near]]
-            at_rim = shared(united(*gaps[beside]), placed[index].buffer(reach))
+            at_rim = shared(_together(gaps[beside]), placed[index].buffer(reach)) if len(beside) else Polygon()
             if by_shares:
-                inside = united(*gaps[near[~rims[near]]])
+                inside = _together(gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
                 share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach)))
-                want = united(needed, share)
+                want = needed if share.is_empty else united(needed, share)
             else:
                 near, needed, want = beside, at_rim, at_rim
             if needed.area < LEAST_PART:
@@ -183,6 +187,11 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
                 spent += beyond
                 gaps[near] = [less(one, added) for one in gaps[near]]
     return spent
+
+
+def _together(gaps: GeometryArray) -> BaseGeometry:
+    """Gaps, of which no two overlap, as one shape."""
+    return shapely.multipolygons(shapely.get_parts(gaps))
 
 
 def _extended(
@@ -207,17 +216,18 @@ def _extended(
     mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
     limit = motion.brought_back(np.array([other.outline], dtype=object), here, other.turn)[0]
     mine = mine.buffer(OVERLAP)
-    inside = shared(mine, limit)
+    within = limit.contains(mine)  # most pieces are: then what is free of them is, too
     free = less(mine, shaping.blocked(index, less(mine, body)))
-    may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and mine.area - inside.area > LEAST_PART
-    for room in (free, shared(free, inside)) if may_stick_out else (shared(free, inside),):
+    inside = free if within else shared(free, limit)
+    may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and free.area - inside.area > LEAST_PART
+    for room in (free, inside) if may_stick_out else (inside,):
         best = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
         if best is None:
             continue
         added = less(best, body)
-        beyond = less(added, limit).area
+        beyond = 0.0 if within else less(added, limit).area
         if (beyond <= LEAST_PART or beyond <= spare) and shared(added, missed).area > LEAST_PART:
-            shaping.add(index, best)
+            shaping.add(index, best, added)
             return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond
     return None, 0.0
 
@@ -237,7 +247,7 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
         room = room.buffer(OVERLAP)
         best = shaping.with_more(index, less(room, shaping.blocked(index, room)))
         if best is not None and best.area > body.area + LEAST_PART:
-            shaping.add(index, best)
+            shaping.add(index, best, less(best, body))
 
 
 def roomiest_place(shape: BaseGeometry, tolerance_mm: float = 0.5) -> tuple[FloatArray, float]:

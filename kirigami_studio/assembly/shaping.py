@@ -40,6 +40,28 @@ TOO_SMALL = 1e-3
 STRAIGHT = 0.002
 
 
+#: Index of a panel, its own ears and those that pass it, and their radii.
+_Notching = tuple[int, bytes, bytes, bytes, bytes]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Notched:
+    """A panel with its ears, less its notches.
+
+    Attributes
+    ----------
+    shape : geometry
+    held : Polygon or None
+        The part of it that hangs together by necks as asked for.
+    movers : (N,) int
+        Ears that cut it, as flat indices of corners.
+    """
+
+    shape: BaseGeometry
+    held: Polygon | None
+    movers: IntArray
+
+
 @dataclass(eq=False)
 class Shaping:
     """The pieces of one design in the flat sheet, mm; they change while rims are shaped.
@@ -66,10 +88,12 @@ class Shaping:
     broken: set[int] = field(default_factory=set)
     weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or no neck to their piece
     cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
+    _swept: dict[int, tuple[IntArray, GeometryArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        members = [np.flatnonzero(self.motion.layer == layer) for layer in (1, 2)]
-        self._parts = [_ConvexParts(one, self.motion.corners[one]) for one in members]
+        planes = np.unique(self.motion.plane).tolist()
+        members = {plane: np.flatnonzero(self.motion.plane == plane) for plane in planes}
+        self._parts = {plane: _ConvexParts(one, self.motion.corners[one]) for plane, one in members.items()}
         self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
         self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
@@ -80,9 +104,15 @@ class Shaping:
 
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target)
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
         made = cls(motion, options)
-        made._begin(deployment)
+        blanks = polygons(motion.corners)
+        if options.in_one_plane:  # any two sides may meet
+            blanks = shapely.buffer(blanks, -0.5 * options.clearance_mm, join_style="mitre")
+        else:
+            blanks = _less(blanks, made._rubbing_sides(deployment))
+        known: dict[_Notching, _Notched] = {}
+        made._begin(blanks, known)
         for _ in range(ROUNDS):
             fewer = motion.without(made.weak)
             if fewer is motion:
@@ -91,33 +121,60 @@ class Shaping:
                 break
             motion = fewer
             made = cls(motion, options)
-            made._begin(deployment)
+            made._begin(blanks, known)
         return made
 
-    def _begin(self, deployment: Deployment) -> None:
-        """Cut the notches; ears that would cut a piece through become smaller, halfway first."""
+    def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
+        """Cut the notches into panels; ears that would cut a piece through become smaller, halfway first.
+
+        Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
+        """
         motion, options = self.motion, self.options
-        panels = _less(polygons(motion.corners), self._rubbing_sides(deployment))
-        owner, corner = np.nonzero(motion.hinged)
         mover, seen = self._passing_ears
+        order = np.argsort(seen, kind="stable")
+        passing = np.split(mover[order], np.cumsum(np.bincount(seen, minlength=len(blanks)))[:-1])
         for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
-            ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-            every = np.concatenate([np.arange(len(panels)), owner])
-            whole = _united_by(np.concatenate([panels, ears]), every, len(panels))
-            areas = self._swept_ears(mover, seen)
-            meets = np.any(shapely.intersects(areas, whole[seen][:, None]), axis=1)
-            notches = _united_by(areas[meets].ravel(), np.repeat(seen[meets], areas.shape[1]), len(panels))
-            shapes = _less(whole, notches)
-            held = [self.held_together(index, shape) for index, shape in enumerate(shapes)]
-            narrow = [index for index, one in enumerate(held) if one is None]
-            cutting = mover[meets & np.isin(seen, narrow)]
+            keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
+            fresh = [index for index, key in enumerate(keys) if key not in known]
+            known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
+            notched = [known[key] for key in keys]
+            narrow = [one.movers for one in notched if one.held is None]
+            cutting = np.concatenate(narrow) if narrow else np.zeros(0, dtype=np.int64)
             if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
                 break
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
-        for index, one in enumerate(held):
-            self._find_weak(index, self._most_pinned(index, shapes[index]) if one is None else one)
-            self.bodies[index] = self._held_narrowly(index, shapes[index]) if one is None else one
+        for index, one in enumerate(notched):
+            self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
+            self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
+
+    def _notching(self, index: int, movers: IntArray) -> _Notching:
+        """All that the notches of a panel depend on: its own ears, and those that pass it."""
+        radius = self.ear_radius.ravel()
+        own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
+        return index, own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
+
+    def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
+        """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
+        motion = self.motion
+        owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
+        ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+        place = np.zeros(len(blanks), dtype=np.int64)
+        place[fresh] = np.arange(len(fresh))
+        whole = _united_by(
+            np.concatenate([blanks[fresh], ears]), np.concatenate([np.arange(len(fresh)), place[owner]]), len(fresh)
+        )
+        mover = np.concatenate([passing[index] for index in fresh]) if len(fresh) else np.zeros(0, dtype=np.int64)
+        seen = np.repeat(np.array(fresh, dtype=np.int64), [len(passing[index]) for index in fresh])
+        areas = self._swept_ears(mover, seen)
+        shapely.prepare(whole)
+        meets = np.any(shapely.intersects(whole[place[seen]][:, None], areas), axis=1)
+        notches = _united_by(areas[meets].ravel(), np.repeat(place[seen[meets]], areas.shape[1]), len(fresh))
+        shapes = _less(whole, notches)
+        return [
+            _Notched(shape, self.held_together(index, shape), mover[meets & (seen == index)])
+            for index, shape in zip(fresh, shapes, strict=True)
+        ]
 
     def _most_pinned(self, index: int, shape: BaseGeometry) -> Polygon:
         """The part of a shape between necks that has most pins, and of those the largest."""
@@ -162,18 +219,19 @@ class Shaping:
 
     @cached_property
     def pairs(self) -> IntArray:
-        """Pairs (K, 2) of pieces of one layer that may come near each other; the second is passed."""
+        """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
         return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
-        """Ears, as flat indices of corners, and the panels of their layer that they may touch."""
+        """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
         motion, options = self.motion, self.options
         one, other = self.pairs.T
         ear = (4 * one[:, None] + np.arange(4)).ravel()
         seen = np.repeat(other, 4)
-        hinged = motion.hinged.ravel()[ear]
-        ear, seen = ear[hinged], seen[hinged]
+        # An ear on a panel's own node is shaped to it by the joint.
+        passing = motion.hinged.ravel()[ear] & np.all(motion.nodes[seen] != motion.nodes.ravel()[ear, None], axis=1)
+        ear, seen = ear[passing], seen[passing]
         middle = motion.corners.mean(axis=1)
         radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
         radius += options.ear_mm + options.clearance_mm + options.reach_mm
@@ -184,14 +242,24 @@ class Shaping:
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
         motion = self.motion
+        if not len(ear):
+            return np.empty((0, 3), dtype=object)
         radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
-        drift = motion.drift[ear // 4] - motion.drift[seen]
+        drift = motion.seen_drift(ear // 4, seen, motion.corners.ravel()[ear])
         turn = motion.sense[seen] * motion.opening
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
 
+    def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
+        """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
+        if index not in self._swept:
+            mover, seen = self._passing_ears
+            mover = mover[seen == index]
+            self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
+        return self._swept[index]
+
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
-        """Two ears in one layer (flat indices of corners), and their least distance, mm.
+        """Two ears in one plane (flat indices of corners), and their least distance, mm.
 
         Of each pair of pieces that pass each other, both ways round.
         """
@@ -204,7 +272,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window that others need in the layer of piece ``index``, seen from it."""
+        """The area near a window that others need in the plane of piece ``index``, seen from it."""
         motion, options = self.motion, self.options
         if window.is_empty:
             return Polygon()
@@ -218,18 +286,19 @@ class Shaping:
             seen = np.full(len(mover), index)
             return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= half + grown + radius
 
-        parts = self._parts[motion.layer[index] - 1]
+        parts = self._parts[int(motion.plane[index])]
         moving = parts.owner != index
         moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
-        drifts = motion.drift[parts.owner[moving]] - motion.drift[index]
+        owner = parts.owner[moving]
+        drifts = motion.seen_drift(owner, np.full(len(owner), index), parts.corners[moving])
         hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, box)
         zone = window.buffer(grown)
         shapely.prepare(zone)
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
-        mover, seen = self._passing_ears
-        mover = mover[seen == index]
-        mover = mover[near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)]
-        ears = self._swept_ears(mover, np.full(len(mover), index)).ravel()
+        mover, swept = self._sweeps(index)
+        ears = swept[
+            near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)
+        ].ravel()
         touching = ears[shapely.intersects(zone, ears)]
         return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
 
@@ -262,12 +331,12 @@ class Shaping:
         whole = body if found is None else united(found, body)
         return whole if found is not None and isinstance(whole, Polygon) else None
 
-    def add(self, index: int, shape: Polygon) -> None:
-        """Give a piece a larger shape; it is kept in mind by all that move past it later."""
-        added = shapely.get_parts(less(shape, self.bodies[index]))
-        parts = [convex for part in added[shapely.area(added) > TOO_SMALL] for convex in _convex_parts(part)]
-        layer = self.motion.layer[index] - 1
-        self._parts[layer] = self._parts[layer].with_more(index, parts)
+    def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
+        """Give a piece a larger shape; what was added is kept in mind by all that move past it later."""
+        new = shapely.get_parts(added)
+        parts = [convex for part in new[shapely.area(new) > TOO_SMALL] for convex in _convex_parts(part)]
+        plane = int(self.motion.plane[index])
+        self._parts[plane] = self._parts[plane].with_more(index, parts)
         self.bodies[index] = shape
 
     def placed(self, turn: float) -> GeometryArray:

@@ -5,7 +5,6 @@ All lengths are mm, z is up, and the lowest corner of a plate is (0, 0, 0).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -29,36 +28,6 @@ class PrintForm(StrEnum):
 
     SHEET = "sheet"  #: the sheet with its connectors
     TILES = "tiles"  #: loose tiles, to be printed on tulle or film, or glued on it
-    PINNED = "pinned"  #: panels that turn on pins which are printed with them
-
-
-@dataclass(frozen=True, slots=True)
-class PrintedPins:
-    """Sizes of pins that are printed in place.
-
-    Raises
-    ------
-    FabricationError
-        Sizes that make no sense.
-    """
-
-    ear_mm: float = 6.4  #: diameter of the discs that turn on each other at a node
-    pin_mm: float = 2.4  #: diameter of the pin where it is narrowest
-    clearance_mm: float = 0.3  #: between all that moves past each other
-    cone_deg: float = 45.0  #: slope of the cones from the plate: from 45 degrees on they need no support
-
-    def __post_init__(self) -> None:
-        sizes = (self.pin_mm, self.clearance_mm, self.ear_mm - self.pin_mm)
-        if not all(math.isfinite(size) and size > 0.0 for size in sizes):
-            fields = {"ear_mm": self.ear_mm, "pin_mm": self.pin_mm, "clearance_mm": self.clearance_mm}
-            raise FabricationError("printed.pins_not_positive", **fields)
-        if not 45.0 <= self.cone_deg <= 80.0:
-            raise FabricationError("printed.cone_too_flat", cone_deg=self.cone_deg)
-
-    @property
-    def apart_mm(self) -> float:
-        """Least distance of pins from each other, in every state."""
-        return self.ear_mm + self.clearance_mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +43,6 @@ class Printing:
     form: PrintForm = PrintForm.SHEET
     thickness_mm: float | None = None  #: None for the usual one of the form
     tile_sizes: TileSizes = field(default_factory=TileSizes)  #: of tiles
-    pins: PrintedPins = field(default_factory=PrintedPins)  #: of panels on pins
     bed_mm: tuple[float, float] = (0.0, 0.0)  #: (width, depth) of the printer; 0 for any size
 
     def __post_init__(self) -> None:
@@ -142,28 +110,7 @@ def on_plates(solids: Sequence[Solid], bed_mm: tuple[float, float]) -> tuple[Pla
                 bed_depth_mm=bed_mm[1],
             )
     plates = [plate for band in _bands(solids, 1, depth) for plate in _bands(band, 0, width)]
-    return tuple(_at_origin(plate) for plate in plates)
-
-
-def on_one_plate(solids: Sequence[Solid], bed_mm: tuple[float, float]) -> tuple[Plate]:
-    """Bodies that hang together, on a plate of their own.
-
-    Raises
-    ------
-    FabricationError
-        Together they are larger than the bed.
-    """
-    (plate,) = (_at_origin(solids),)
-    size = np.max([solid.high for solid in plate], axis=0)
-    if np.any(size[:2] > np.array([side or np.inf for side in bed_mm]) + ROUNDING_MM):
-        raise FabricationError(
-            "printed.assembly_larger_than_bed",
-            width_mm=float(size[0]),
-            depth_mm=float(size[1]),
-            bed_width_mm=bed_mm[0],
-            bed_depth_mm=bed_mm[1],
-        )
-    return (plate,)
+    return tuple(at_origin(plate) for plate in plates)
 
 
 def _bands(solids: Sequence[Solid], axis: int, room: float) -> list[list[Solid]]:
@@ -176,6 +123,7 @@ def _bands(solids: Sequence[Solid], axis: int, room: float) -> list[list[Solid]]
     return bands
 
 
-def _at_origin(plate: Sequence[Solid]) -> Plate:
+def at_origin(plate: Sequence[Solid]) -> Plate:
+    """Bodies moved together, their lowest corner to the origin."""
     lowest = np.min([solid.low for solid in plate], axis=0)
     return tuple(solid.moved(-lowest) for solid in plate)

@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
@@ -40,7 +41,13 @@ from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, named_machine
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    construction_for,
+    is_printed,
+    machine_for,
+    named_machine,
+)
 from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
@@ -377,7 +384,7 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     if refusal:
         raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
     if made is None or made.layers is not None:
-        paths["cut"] = folder / "cut"
+        paths["cut"] = folder / ("print" if is_printed(request.settings) else "cut")
         output = Output(paths["cut"], "cut")
         try:
             found = written_pieces(request, output) if made is None else written(request, made, output, request.as_cut)
@@ -386,6 +393,8 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
         assert found.verdict is not None  # layers are judged
         return replace(design, verdict=found.verdict), {role: str(path) for role, path in paths.items()}
     machine, verdicts = named_machine(request.settings), []
+    if machine is None and machine_for(request.settings).kind is MachineKind.PRINTER:
+        machine = machine_for(request.settings)
     if machine is not None and machine.file != paths["cut"].suffix:
         paths["machine_cut"] = paths["cut"].with_suffix(machine.file)
     for role in [name for name in ("cut", "machine_cut") if name in paths]:

@@ -23,7 +23,7 @@ from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.steps import never
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
@@ -200,15 +200,18 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
     """Report on the files of a pinned design."""
     pieces, verdict = found.pieces, found.verdict
     assert pieces is not None and verdict is not None
-    assembly, beds, report = pieces.made.assembly, pieces.job.beds, pieces.report
+    assembly, beds, report, printing = pieces.made.assembly, pieces.beds, pieces.report, pieces.printing
     warnings = list(dict.fromkeys(note.text for note in (*report.problems, *pieces.job.notes)))
     if as_json:
         print_json(
             {
                 "files": [str(path) for path in found.files],
                 "construction": pieces.job.construction.value,
-                "cut_length_mm": pieces.cut_length_mm,
-                "seconds_estimate": pieces.seconds,
+                **(
+                    {"cut_length_mm": pieces.cut_length_mm, "seconds_estimate": pieces.seconds}
+                    if printing is None
+                    else {"thickness_mm": printing.thickness_mm, "volume_mm3": printing.volume_mm3}
+                ),
                 "pieces": len(assembly.pieces),
                 "pins": len(assembly.hinges),
                 "beds": len(beds),
@@ -222,19 +225,18 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
             }
         )
         return 0 if found.ok else 1
-    say(
-        tr(
-            "{folder}: {pieces} pieces on {beds} beds, {pins} pins, cut {cut:.1f} mm, about {seconds:.0f} s",
-            folder=found.path,
-            pieces=len(assembly.pieces),
-            beds=len(beds),
-            pins=len(assembly.hinges),
-            cut=pieces.cut_length_mm,
-            seconds=pieces.seconds,
-        )
-    )
+    counts = {"folder": found.path, "pieces": len(assembly.pieces), "beds": len(beds), "pins": len(assembly.hinges)}
+    if printing is not None:
+        words = mark("{folder}: {pieces} pieces, {pins} joints, {beds} plates, {volume:.1f} cm3, {height:g} mm high")
+        say(tr(words, **counts, volume=printing.volume_mm3 / 1000.0, height=printing.thickness_mm))
+    else:
+        words = mark("{folder}: {pieces} pieces on {beds} beds, {pins} pins, cut {cut:.1f} mm, about {seconds:.0f} s")
+        say(tr(words, **counts, cut=pieces.cut_length_mm, seconds=pieces.seconds))
     for one in found.verifications:
-        say("  " + tr("{path}: verified by two readers", path=one.path))
+        if printing is None:
+            say("  " + tr("{path}: verified by two readers", path=one.path))
+        else:
+            say("  " + tr("{path}: {finding}", path=one.path, finding=one.findings[0].text))
     say_verdict(verdict)
     return 0 if found.ok else 1
 

@@ -146,6 +146,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), (
         "kirigami-studio design heart --out out/heart",
+        "kirigami-studio design heart --construction printed --out out/printed-heart",
         "kirigami-studio design drawing.svg --k 8 --grid 12x12 --json",
         "kirigami-studio design butterfly --symmetry mirror --regular 0.8 --out out/butterfly",
         "kirigami-studio design star --grid 10x10 --symmetry none --rim even --regular 0 --json",

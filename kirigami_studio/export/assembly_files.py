@@ -28,12 +28,12 @@ from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pd
 from kirigami_studio.export.backed_files import HINGE_LAYER, Glued
 from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds, too_large
 from kirigami_studio.export.dxf import check_written, strokes_dxf
-from kirigami_studio.export.file_content import FileContent, bent_otherwise, largest_shift
+from kirigami_studio.export.file_content import FileContent
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
-from kirigami_studio.export.pieces_read import FoundPiece, found_pieces, motion_findings, same_pieces
+from kirigami_studio.export.pieces_read import FoundPiece, KnownOutlines, found_pieces, motion_findings
 from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
@@ -64,8 +64,6 @@ ANGLES = 181
 LENGTH_DECIMALS, TURN_DECIMALS = 6, 9
 #: Chords of a round hole there miss it by this (mm).
 RING_CHORD_MM = 5e-4
-#: Points that readers find within this (mm) of each other are the same.
-ALIKE_MM = 1e-9
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
@@ -248,20 +246,21 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     """Write all files into a new folder and read them back."""
     verified: list[Verification] = []
     by_kind: dict[str, dict[str, FoundPiece]] = {}
-    known = job.assembly.by_id
+    moving, known = job.assembly.by_id, KnownOutlines()
     for kind in kinds:
         if job.glued is not None:
             verified.append(_hinge_layer_written(job, job.glued, fresh, home, kind))
         for bed in job.beds:
-            found, pieces = _bed_written(job, bed, fresh, home, kind)
+            found, pieces = _bed_written(job, bed, fresh, home, kind, known)
             verified.append(found)
-            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in known})
+            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
     write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
-    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind))
+    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target)
     if (glued := job.glued) is not None:
-        sheet = replace(sheet, steps=glued.steps, template=board_bed(glued.board, 0.0), under=glued.under)
+        template = board_bed(glued.board, 0.0)
+        sheet = replace(sheet, steps=glued.steps, legend={2: "tiles"}, template=template, under=glued.under)
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:
@@ -305,7 +304,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
 
 
 def _bed_written(
-    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str
+    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str, known: KnownOutlines
 ) -> tuple[Verification, list[FoundPiece]]:
     """Write a bed's file, and find its pieces in it."""
     profile = find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
@@ -314,11 +313,7 @@ def _bed_written(
     record = job.record if bed is job.beds[0] and job.glued is None else b""
     cut = job.material, job.machine
     path, contents, found = _strokes_written(job, bed.name, kind, strokes, profile, facts, record, cut, fresh)
-    of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm) for content in contents[:1]]
-    if _alike(contents):
-        of_pieces *= 2
-    else:
-        of_pieces.append(found_pieces(contents[1].strokes, bed, job.allowed_mm))
+    of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
     found += agreed(contents, [findings for findings, _ in of_pieces])
     work = job.works[job.beds.index(bed)]
     verification = Verification(
@@ -375,9 +370,8 @@ def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path
     facts |= {VERDICT: job.verdict} if job.verdict else {}
     cut = glued.plan.material, glued.plan.machine
     path, contents, found = _strokes_written(job, HINGE_LAYER, kind, strokes, profile, facts, job.record, cut, fresh)
-    sheets = [glued.sheet_in(content.strokes, profile) for content in contents[: 1 if _alike(contents) else 2]]
-    judged = [sheet_findings(sheet, glued.plan, profile) for sheet in sheets]
-    found += agreed(contents, judged * (2 // len(judged)))
+    sheets = [glued.sheet_in(content.strokes, profile) for content in contents]
+    found += agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])
     work = glued.work(profile)
     return Verification(
         path=home / path.name,
@@ -394,13 +388,6 @@ def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path
 
 def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
     return laid_together([read(part) for part in layer_paths(path)], path) if path.is_dir() else read(path)
-
-
-def _alike(contents: Sequence[FileContent]) -> bool:
-    """Whether two readers found the same strokes."""
-    one, other = (content.strokes for content in contents)
-    look, wanted = ([(stroke.layer, stroke.closed) for stroke in strokes] for strokes in (one, other))
-    return look == wanted and largest_shift(one, other) <= ALIKE_MM and not bent_otherwise(one, other, ALIKE_MM)
 
 
 # pieces and motion ----------------------------------------------------------------------------------------------------
@@ -457,21 +444,16 @@ def _ring(hole: RoundHole) -> FloatArray:
 
 
 def _motion_verified(
-    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]]
+    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]], known: KnownOutlines
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
     right = record == pieces_json(job.assembly)
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
-    known: list[tuple[Mapping[str, FoundPiece], list[Finding]]] = []
     for kind, pieces in by_kind.items():
         if not right or set(pieces) != set(job.assembly.by_id):
             continue
-        # Files of one design mostly hold the same numbers: those are moved once.
-        moved = next((found for other, found in known if same_pieces(pieces, other, ALIKE_MM)), None)
-        if moved is None:
-            moved = motion_findings(pieces, record)
-            known.append((pieces, moved))
+        moved = motion_findings(pieces, record, known)
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
     far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -66,6 +66,7 @@ STEPS = (
     "Put in the pins row by row from the top, in the order of the list; leave them loose.",
     "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn.",
 )
+LEGEND: Mapping[int, str] = {1: "layer 1, in front", 2: "layer 2, behind"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +84,10 @@ class AssemblySheet:
     target : (L, 2) float or None, mm
         Target outline behind the opened sheet.
     steps : sequence of str
+    legend : mapping of int to str
+        Words on the layers.
+    pins_are_put_in : bool
+        Whether pins are listed in their order.
     template : CutBed or None
         Frame and tiles that are shown at true size in the place of the flat sheet.
     under : (L, 2) float, mm
@@ -95,13 +100,10 @@ class AssemblySheet:
     lines: Sequence[str]
     target: FloatArray | None = None
     steps: Sequence[str] = STEPS
+    legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
+    pins_are_put_in: bool = True
     template: CutBed | None = None
     under: FloatArray | None = None
-
-    @property
-    def signs(self) -> Sequence[tuple[int, str]]:
-        """What the fills of layers stand for."""
-        return ((1, "layer 1, in front"), (2, "layer 2, behind")) if self.template is None else ((2, "tiles"),)
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -359,7 +361,7 @@ def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, sheet, y, scale)
+    _legend(canvas, sheet.legend, y, scale, bool(sheet.assembly.hinges))
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
     column.head("Parts")
     for line in sheet.lines:
@@ -372,18 +374,18 @@ def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -
     canvas.showPage()
 
 
-def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
+def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float, pins: bool) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
-    for layer, words in sheet.signs:
+    for layer, words in legend.items():
         ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
         x = _words(canvas, words, x + 6.0, y)
-    if sheet.assembly.hinges:
+    if pins:
         stroke_colour(canvas, PIN)
         draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
         x = _words(canvas, "pin", x + 5.0, y)
@@ -415,7 +417,7 @@ def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
 
 def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> int:
     """List the pins in their order; return the number of pages."""
-    if not sheet.assembly.hinges:
+    if not (sheet.assembly.hinges and sheet.pins_are_put_in):
         return 0
     width = (page[0] - 2.0 * MARGIN_MM - (COLUMNS - 1) * GAP_MM) / COLUMNS
     lines: list[tuple[bool, str]] = []

@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -39,6 +40,8 @@ BEAM_CHORDS = 64
 CORNER_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Designs whose beds are kept, with the order of their cuts.
+MOST_KEPT = 16
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
@@ -125,14 +128,28 @@ def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     """Farthest that a corner of a shape is from another shape, mm."""
-    corners = np.asarray(shapely.points(shapely.get_coordinates(one)), dtype=object).reshape(-1)
-    tree = shapely.STRtree(np.asarray(shapely.points(shapely.get_coordinates(other)), dtype=object).reshape(-1))
-    if not len(corners) or not len(tree):
+    corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
+    if not len(corners) or not len(others):
         return math.inf
-    near = tree.query_nearest(corners, return_distance=True, all_matches=False)[1]
-    # From corner to corner is quick, and nearly always near enough.
-    far = near > SHARP_MM
-    return float(max(near[~far].max(initial=0.0), shapely.distance(other, corners[far]).max(initial=0.0)))
+    tree = shapely.STRtree(np.asarray(shapely.points(others), dtype=object).reshape(-1))
+    points = np.asarray(shapely.points(corners), dtype=object).reshape(-1)
+    near = tree.query_nearest(points, return_distance=True, all_matches=False)[1]
+    # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
+    far = np.flatnonzero(near > SHARP_MM)
+    if len(far):
+        shapely.prepare(other)
+        outside = far[~shapely.intersects(other, points[far])]
+        near[far] = 0.0
+        if len(outside):
+            sides = shapely.STRtree(_sides(other))
+            near[outside] = sides.query_nearest(points[outside], return_distance=True, all_matches=False)[1]
+    return float(near.max())
+
+
+def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
+    """The sides of all rings of a shape."""
+    found, ring = shapely.get_coordinates(shapely.get_rings(shapely.get_parts(shape)), return_index=True)
+    return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +252,7 @@ def laid_on_beds(
     margin_mm: float = 0.0,
     order: CutOrder = CutOrder.SHORTEST,
 ) -> tuple[CutBed, ...]:
-    """Lay pieces on beds, those of each layer by themselves.
+    """Lay pieces on beds, those of each layer by themselves; the same pieces are not laid again.
 
     Parameters
     ----------
@@ -254,6 +271,13 @@ def laid_on_beds(
     FabricationError
         As :meth:`PieceCuts.of`.
     """
+    return _laid(tuple(pieces), kerf_mm, bed, margin_mm, order)
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def _laid(
+    pieces: tuple[Piece, ...], kerf_mm: float, bed: tuple[float, float], margin_mm: float, order: CutOrder
+) -> tuple[CutBed, ...]:
     found = []
     for layer in sorted({piece.layer for piece in pieces}):
         cuts = [PieceCuts.of(piece, kerf_mm) for piece in pieces if piece.layer == layer]

@@ -36,6 +36,8 @@ SAME_PLACE_MM = 2e-3
 STL_HEADER = 80
 #: Decimals of coordinates (mm) in 3MF and OBJ.
 DECIMALS = 6
+#: Name of the object that has all bodies of a plate.
+TOGETHER = "Kirigami"
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "3D/3dmodel.model"
 RELATIONSHIPS = (
@@ -67,19 +69,25 @@ def write_meshes(job: ExportJob, path: Path) -> tuple[Path, ...]:
     """
     plan = job.required_plan
     about = "; ".join(f"{key} {value}" for key, value in facts_of(plan, find_profile("any")).items())
-    encode, decode = KINDS[path.suffix.lower()]
-    kept = None if job.trim is None else job.trim.kept
-    plates = print_plates(plan, job.deployment, job.phi, job.printing, kept)
+    plates = print_plates(plan, job.deployment, job.phi, job.printing)
     written = []
     for number, plate in enumerate(plates, start=1):
         goal = path if number == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}")
-
-        def verify(draft: Path, plate: Plate = plate) -> None:
-            check_bodies(decode(draft.read_bytes()), plate)
-
-        write_atomically(goal, encode(plate, about), verify)
+        write_plate(plate, goal, about)
         written.append(goal)
     return tuple(written)
+
+
+def write_plate(plate: Plate, path: Path, about: str) -> None:
+    """Write the file of a plate, of the kind of its extension, and read it back.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    encode, decode = KINDS[path.suffix.lower()]
+    write_atomically(path, encode(plate, about), lambda draft: check_bodies(decode(draft.read_bytes()), plate))
 
 
 def check_bodies(found: Bodies, plate: Plate) -> None:
@@ -145,7 +153,10 @@ def _read_obj(content: bytes) -> Bodies:
 
 
 def threemf_bytes(plate: Plate, about: str) -> bytes:
-    """An object for each body of a plate, with the colour of its layer."""
+    """An object for each body of a plate, with the colour of its layer; several are parts of one object.
+
+    So slicers keep them in their places.
+    """
     root = ElementTree.Element("model", {"unit": "millimeter", "xml:lang": "en-US", "xmlns": CORE})
     for name, text in (
         ("Title", "Kirigami"),
@@ -169,7 +180,14 @@ def threemf_bytes(plate: Plate, about: str) -> bytes:
         triangles = ElementTree.SubElement(mesh, "triangles")
         for a, b, c in solid.faces.tolist():
             ElementTree.SubElement(triangles, "triangle", {"v1": f"{a}", "v2": f"{b}", "v3": f"{c}"})
-        ElementTree.SubElement(build, "item", {"objectid": f"{number}"})
+    whole = len(plate) + 1
+    if len(plate) > 1:
+        whole += 1
+        together = ElementTree.SubElement(resources, "object", {"id": f"{whole}", "type": "model", "name": TOGETHER})
+        parts = ElementTree.SubElement(together, "components")
+        for number in range(2, whole):
+            ElementTree.SubElement(parts, "component", {"objectid": f"{number}"})
+    ElementTree.SubElement(build, "item", {"objectid": f"{whole}"})
     model = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     stream = BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
@@ -185,6 +203,8 @@ def _read_3mf(content: bytes) -> Bodies:
         root = ElementTree.fromstring(archive.read(MODEL))
     found = {}
     for body in root.iter(f"{{{CORE}}}object"):
+        if body.find(f"{{{CORE}}}mesh") is None:  # all of them together
+            continue
         vertices = [[float(one.attrib[axis]) for axis in "xyz"] for one in body.iter(f"{{{CORE}}}vertex")]
         faces = [[int(one.attrib[f"v{place}"]) for place in (1, 2, 3)] for one in body.iter(f"{{{CORE}}}triangle")]
         found[body.attrib["name"]] = trimesh.Trimesh(vertices, faces, process=False)

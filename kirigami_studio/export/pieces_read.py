@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ import shapely
 from scipy.spatial import cKDTree
 from shapely.geometry import Polygon
 
+from kirigami_studio.assembly.nesting import LaidShape
+from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import RoundHole
 from kirigami_studio.export.cut_bed import BEAM_CHORDS, CutBed, PieceCuts, closed_by, farthest
 from kirigami_studio.export.profile import NAME_LAYER
@@ -28,6 +30,8 @@ from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
 OUTLINE_MM, HOLE_MM, OVERLAP_MM2 = 2e-3, 1e-3, 0.01
+#: Corners of outlines that agree within this (mm) are the same.
+SAME_MM = 1e-7
 #: Outlines are those of a piece if their middles, and the roots of their areas, are nearer than this (mm).
 SAME_PLACE_MM = 0.5
 #: Share of its margin that a number may be nearer to a cut: rounding.
@@ -63,7 +67,28 @@ class FoundPiece:
         return max(self.outline_miss_mm, self.hole_miss_mm)
 
 
-def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tuple[list[Finding], list[FoundPiece]]:
+@dataclass(frozen=True, slots=True)
+class KnownOutlines:
+    """Outlines that were found in files of one assembly: what holds of one holds of all that are the same.
+
+    Files of several kinds mostly have the same numbers, and readers agree.  Outlines whose corners agree within
+    ``SAME_MM`` are finished, compared with their pieces and moved once; holes are compared in every file.
+
+    Attributes
+    ----------
+    finished : dict
+        Finished area, and how far that is from the one asked for, of each piece and ways of the beam.
+    moved : dict
+        What moving them has found, by the identities of the areas, which ``finished`` keeps.
+    """
+
+    finished: dict[tuple[object, ...], tuple[Polygon, float]] = field(default_factory=dict)
+    moved: dict[tuple[int, ...], Finding] = field(default_factory=dict)
+
+
+def found_pieces(
+    strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float, known: KnownOutlines | None = None
+) -> tuple[list[Finding], list[FoundPiece]]:
     """Find every piece of a bed among the strokes of its file.
 
     Parameters
@@ -73,6 +98,8 @@ def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tupl
     bed : CutBed
     kerf_mm : float
         That the file allows for.
+    known : KnownOutlines, optional
+        Of other readers and files of the same assembly and kerf.
 
     Returns
     -------
@@ -89,12 +116,19 @@ def found_pieces(strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float) -> tupl
     if numbers is None:
         counts = {"count": len(outer), "planned": len(bed.pieces)}
         return [Finding.judged(False, "verify.pieces_lost", **counts)], []
+    finished = {} if known is None else known.finished
+    ways = [shapely.get_coordinates(ring) for ring in rings]
     pieces = []
     for (piece, place), number in zip(bed.placed, numbers, strict=True):
-        inside = inner[outer[number]]
-        here = place.taken(cuts[outer[number]].travelled(MEASURED_CHORD_MM)[:-1])
-        parts = [(place.taken(cuts[one].points), place.taken(cuts[one].travelled(MEASURED_CHORD_MM))) for one in inside]
-        pieces.append(_piece(piece, here, parts, kerf_mm))
+        at = int(outer[number])
+        holes, openings = _holes_and_openings([cuts[one] for one in inner[at]], piece, place, kerf_mm)
+        cut = (ways[at], *(ways[inner[at][one]] for one in openings))
+        key = (bed.name, piece.piece.id, *((way / SAME_MM).round().astype(np.int64).tobytes() for way in cut))
+        if key not in finished:
+            finished[key] = _finished(piece, [place.taken(way) for way in cut], kerf_mm)
+        area, miss = finished[key]
+        asked = piece.piece
+        pieces.append(FoundPiece(asked.id, asked.layer, area, holes, miss, _holes_miss(holes, asked.holes)))
     wrong = [one for one in pieces if one.outline_miss_mm > OUTLINE_MM or one.hole_miss_mm > HOLE_MM]
     worst = max(wrong or pieces, key=lambda one: one.miss_mm)
     told = {"count": len(pieces), "piece": worst.id, "miss_um": round(1e3 * worst.miss_mm, 2)}
@@ -133,28 +167,32 @@ def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
     return found
 
 
-def _piece(
-    cuts: PieceCuts, ring: FloatArray, inside: Sequence[tuple[FloatArray, FloatArray]], kerf_mm: float
-) -> FoundPiece:
-    """A finished piece, of the beam's ways inside it: their points, and points along them."""
-    piece, half = cuts.piece, 0.5 * kerf_mm
+def _holes_and_openings(
+    inside: Sequence[Stroke], cuts: PieceCuts, place: LaidShape, kerf_mm: float
+) -> tuple[tuple[RoundHole, ...], list[int]]:
+    """Finished holes of a piece, and which of the strokes inside of it are openings."""
     holes: list[RoundHole] = []
-    openings: list[Polygon] = []
-    for points, way in inside:
+    openings: list[int] = []
+    for number, stroke in enumerate(inside):
+        points = place.taken(stroke.points)
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
         if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(cuts.openings):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
-            openings.append(Polygon(way))
-    area = Polygon(ring).buffer(-half, quad_segs=BEAM_CHORDS)
-    burned = [opening.buffer(half, quad_segs=BEAM_CHORDS) for opening in openings]
+            openings.append(number)
+    return tuple(holes), openings
+
+
+def _finished(cuts: PieceCuts, ways: Sequence[FloatArray], kerf_mm: float) -> tuple[Polygon, float]:
+    """What the beam leaves of a piece on its ways (L, 2), mm, round it and in its openings; and how far that is off."""
+    half = 0.5 * kerf_mm
+    area = Polygon(ways[0]).buffer(-half, quad_segs=BEAM_CHORDS)
+    burned = [Polygon(way).buffer(half, quad_segs=BEAM_CHORDS) for way in ways[1:]]
     finished = shapely.difference(area, shapely.union_all(burned)) if burned else area
     if not isinstance(finished, Polygon) or finished.is_empty:
-        return FoundPiece(piece.id, piece.layer, Polygon(ring), tuple(holes), math.inf, math.inf)
-    asked = Polygon(piece.outline, piece.openings)
-    off = _outline_miss(finished, asked, half), _holes_miss(holes, piece.holes)
-    return FoundPiece(piece.id, piece.layer, finished, tuple(holes), *off)
+        return Polygon(ways[0]), math.inf
+    return finished, _outline_miss(finished, Polygon(cuts.piece.outline, cuts.piece.openings), half)
 
 
 def _outline_miss(finished: Polygon, asked: Polygon, half: float) -> float:
@@ -195,21 +233,9 @@ def _number_finding(strokes: Sequence[Stroke], cuts: Sequence[Stroke], kerf_mm: 
 # put together -----------------------------------------------------------------------------------------------------
 
 
-def same_pieces(one: Mapping[str, FoundPiece], other: Mapping[str, FoundPiece], tolerance_mm: float) -> bool:
-    """Whether all points of pieces agree within a tolerance."""
-    if list(one) != list(other):
-        return False
-    alike = shapely.equals_exact(
-        [piece.area for piece in one.values()], [piece.area for piece in other.values()], tolerance_mm
-    )
-    holes, others = (
-        np.array([(*hole.centre, hole.diameter_mm) for piece in pieces.values() for hole in piece.holes])
-        for pieces in (one, other)
-    )
-    return bool(np.all(alike)) and holes.shape == others.shape and bool(np.all(np.abs(holes - others) <= tolerance_mm))
-
-
-def motion_findings(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]) -> list[Finding]:
+def motion_findings(
+    pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], known: KnownOutlines | None = None
+) -> list[Finding]:
     """Whether pieces that were read from files move as their record says.
 
     Parameters
@@ -218,10 +244,16 @@ def motion_findings(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any])
         By their ids.
     record : mapping
         What ``pieces.json`` holds.
+    known : KnownOutlines, optional
+        Of other files with the same record: the same outlines are not moved again.
     """
     names = list(pieces)
     poses = np.array([[step["poses"][name] for name in names] for step in record["motion"]])
-    return [_pin_finding(pieces, record, poses), _overlap_finding(pieces, record, poses)]
+    moved = {} if known is None else known.moved
+    outlines = tuple(id(piece.area) for piece in pieces.values())
+    if outlines not in moved:
+        moved[outlines] = _overlap_finding(pieces, record, poses)
+    return [_pin_finding(pieces, record, poses), moved[outlines]]
 
 
 def _pin_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any], poses: FloatArray) -> Finding:
@@ -259,29 +291,10 @@ def _overlap_finding(pieces: Mapping[str, FoundPiece], record: Mapping[str, Any]
     for layer in sorted({piece.layer for piece in pieces.values()}):
         here = [number for number, piece in enumerate(pieces.values()) if piece.layer == layer]
         layer_pieces = [list(pieces.values())[number] for number in here]
-        for angle, area, (one, other) in _overlaps(layer_pieces, poses[:, here]):
-            if area > worst:
-                worst, where = area, (angles[angle], layer_pieces[one].id, layer_pieces[other].id)
+        for one in passing([piece.area for piece in layer_pieces], poses[:, here]).overlaps:
+            if one.area_mm2 > worst:
+                first, second = (layer_pieces[number].id for number in one.worst)
+                worst, where = one.area_mm2, (angles[one.pose], first, second)
     told = {"angles": len(angles), "area_mm2": round(worst, 4), "phi_deg": where[0], "one": where[1], "other": where[2]}
     right = worst <= OVERLAP_MM2
     return Finding.judged(right, "verify.pieces_pass" if right else "verify.pieces_collide", **told)
-
-
-def _overlaps(pieces: Sequence[FoundPiece], poses: FloatArray) -> list[tuple[int, float, tuple[int, int]]]:
-    """Angles at which pieces lie upon each other: number, shared area, and the worst two."""
-    shapes = np.array([piece.area for piece in pieces], dtype=object)
-    coordinates, rings = shapely.get_coordinates(shapes, return_index=True)
-    places = coordinates @ (1.0, 1j)
-    found = []
-    for angle, pose in enumerate(poses):
-        turn, shift = np.exp(1j * pose[:, 2]), pose[:, 0] + 1j * pose[:, 1]
-        moved = turn[rings] * places + shift[rings]
-        areas = shapely.set_coordinates(shapes.copy(), np.column_stack([moved.real, moved.imag]))
-        one, other = shapely.STRtree(areas).query(areas, predicate="intersects")
-        once = one < other
-        if np.any(once):
-            shared = shapely.area(shapely.intersection(areas[one[once]], areas[other[once]]))
-            if (total := float(shared.sum())) > 0.0:
-                most = int(shared.argmax())
-                found.append((angle, total, (int(one[once][most]), int(other[once][most]))))
-    return found

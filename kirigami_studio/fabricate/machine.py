@@ -1,4 +1,4 @@
-"""Machines: reach and speeds of cutters, their materials, and the files of their programs.
+"""Machines: reach and speeds of cutters and printers, their materials, and the files of their programs.
 
 A material's figures hold for one kind of machine.  ``resources/figures`` has those of bundled materials on other kinds,
 a file for each kind with a table for each material: :func:`material_on` puts them together.  Bundled machines stand in
@@ -15,7 +15,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
-from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, Material, library
+from kirigami_studio.fabricate.material import BY_HAND, DEFAULT_PRESET, PRINTER, Material, library
 from kirigami_studio.fabricate.shelf import LARGEST_NUMBER, LEAST_NUMBER, Contents, Shelf
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
@@ -36,6 +36,7 @@ class MachineKind(StrEnum):
     DIODE = "diode"
     KNIFE = "knife"
     HAND = "hand"
+    PRINTER = "printer"
     OTHER = "other"  #: of materials whose machine has another name
 
     @classmethod
@@ -56,11 +57,13 @@ _WORDS = {
     MachineKind.DIODE: mark("diode laser"),
     MachineKind.KNIFE: mark("cutting plotter"),
     MachineKind.HAND: BY_HAND,
+    MachineKind.PRINTER: PRINTER,
     MachineKind.OTHER: mark("another machine"),
 }
 #: What the names of machines of a kind have in them; the first that fits decides.
 _SIGNS = {
     MachineKind.HAND: ("by hand", "scissors"),
+    MachineKind.PRINTER: ("3d print", "fdm", "fff"),
     MachineKind.DIODE: ("diode",),
     MachineKind.CO2: ("co2", "co₂"),
     MachineKind.UV: ("uv ", "uv-", "ultraviolet", "green"),
@@ -73,10 +76,11 @@ USUAL = {
     MachineKind.DIODE: "diode-10w",
     MachineKind.KNIFE: "cutting-plotter",
     MachineKind.HAND: "hand",
+    MachineKind.PRINTER: "fdm-220",
 }
-#: Profiles that machines may name (``export.profile`` has them) and kinds of cut files.
+#: Profiles that machines may name (``export.profile`` has them) and kinds of files.
 PROFILES = ("any", "lightburn", "k40", "single", "layers", "slots", "cricut", "silhouette", "glowforge", "xtool")
-FILES = (".dxf", ".svg", ".pdf", ".lbrn2")
+FILES = (".dxf", ".svg", ".pdf", ".lbrn2", ".3mf")
 #: Numbers of the machine that older files of materials have.
 OLDER_ENTRIES = (
     "travel_mm_s", "acceleration_mm_s2", "on_delay_s", "off_delay_s", "bed_width_mm", "bed_height_mm",
@@ -128,7 +132,7 @@ def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A cutter and the program that drives it."""
+    """A cutter or a printer and the program that drives it."""
 
     key: str = field(metadata=_text())  #: Short name for the command line and for project files (the file's name)
     name: str = field(metadata=_text(mark("Name"), mark("Name shown in the list of machines.")))  #: Shown name

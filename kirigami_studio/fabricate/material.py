@@ -24,8 +24,12 @@ from kirigami_studio.foundation.words import mark
 
 #: The preset that a new project starts with.
 DEFAULT_PRESET = "film-uv"
+#: The preset of sheets that are to be printed, where none is named.
+PRINTED_PRESET = "pla-print"
 #: The machine of materials that are cut with scissors or a knife.
 BY_HAND = "by hand"
+#: The machine of materials that are printed.
+PRINTER = "3D printer"
 #: Names the folder of the user's own materials, if it is set.
 FOLDER_VARIABLE = "KIRIGAMI_STUDIO_MATERIALS"
 #: Full power, percent.
@@ -43,6 +47,13 @@ class Construction(StrEnum):
     PINNED = "pinned"  #: two layers of rigid panels turn on pins
     BACKED = "backed"  #: tiles are glued on a hinge layer
     PRINTED = "printed"  #: a 3D printer makes the sheet, its tiles, or panels with their pins in place
+
+
+#: Codes of notes on materials whose connectors break, by the construction that works.
+BETTER_MADE = {
+    Construction.BACKED: "plan.material_needs_backing",
+    Construction.PRINTED: "plan.material_needs_printed_pins",
+}
 
 
 def _text(label: str = "", about: str = "") -> Mapping[str, Setting]:
@@ -238,8 +249,7 @@ class Material:
             if self.construction is Construction.ONE_SHEET:
                 return None
             return Note.of("material.near_its_limit", material=self.name, least_mm=self.min_ligament_mm)
-        backed = self.construction is Construction.BACKED
-        return Note.of("plan.material_needs_backing" if backed else "plan.material_does_not_hold", material=self.name)
+        return Note.of(BETTER_MADE.get(self.construction, "plan.material_does_not_hold"), material=self.name)
 
     @property
     def by_hand(self) -> bool:

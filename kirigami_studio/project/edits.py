@@ -19,7 +19,12 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project.document import FARTHEST_GUIDE, MOST_GUIDES, Document, Void
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.settings.design import DesignChange, DesignSettings
-from kirigami_studio.settings.fabrication import FabricationChange, FabricationSettings, OptionsChange
+from kirigami_studio.settings.fabrication import (
+    FabricationChange,
+    FabricationSettings,
+    OptionsChange,
+    construction_changes,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +147,7 @@ def set_fabrication(document: Document, **changes: Unpack[FabricationChange]) ->
     UsageError
         The number does not fit; see :class:`FabricationSettings`.
     """
-    values: dict[str, Any] = {**changes}
+    values: dict[str, Any] = {**construction_changes(document.fabrication, changes), **changes}
     cut = replace(document.fabrication, **values)
     if "width_mm" in changes and "opened_mm" not in changes:
         cut = replace(cut, opened_mm=None)

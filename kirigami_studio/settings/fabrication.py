@@ -8,10 +8,18 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
-from kirigami_studio.fabricate.fastener import LEAST_WALL_MM, NECK_IN_THICKNESSES, SIZES, Fastener
+from kirigami_studio.fabricate.fastener import (
+    CLEARANCE_MM,
+    LEAST_WALL_MM,
+    NECK_IN_THICKNESSES,
+    SIZES,
+    Fastener,
+    PrintedPins,
+)
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import (
     Machine,
+    MachineKind,
     cuttable,
     find_machine,
     machine_of,
@@ -21,6 +29,7 @@ from kirigami_studio.fabricate.machine import (
 )
 from kirigami_studio.fabricate.material import (
     DEFAULT_PRESET,
+    PRINTED_PRESET,
     Construction,
     Material,
     default_material,
@@ -70,9 +79,11 @@ class FabricationSettings:
     fastener : Fastener
         Pins of pinned sheets.
     pin_mm, ear_mm : float or None
-        Diameters of the hole for a pin, and of the ear round it; None takes those of the fastener.
-    clearance_mm : float
-        Between ears and pieces that pass each other in one layer, and between printed parts that turn.
+        Diameters of the hole for a pin, or of a printed pin's neck, and of the ear round it; None takes those of the
+        fastener, or the usual ones of printed pins.
+    clearance_mm : float or None
+        Between ears and pieces that pass each other in one layer, and between printed parts that turn; None takes that
+        of the construction: 0.6 and 0.3 mm.
     gap_mm : float
         By which the tiles of backed sheets are smaller than their panels, all round.
     second_material : str
@@ -180,6 +191,11 @@ class FabricationSettings:
                         "Tiles of board are glued on a soft sheet, which has the cuts: for boards, cloth, tape, film."
                     ),
                 ),
+                Choice(
+                    Construction.PRINTED,
+                    mark("Printed on pins"),
+                    mark("A 3D printer makes pieces and pins at once, without support: they turn as they come off."),
+                ),
             ),
             option="--construction",
         ).metadata,
@@ -218,8 +234,8 @@ class FabricationSettings:
             200.0,
         ),
     )
-    clearance_mm: float = field(
-        default=0.6,
+    clearance_mm: float | None = field(
+        default=None,
         metadata=_millimetres(
             mark("Room between pieces that pass each other, mm."), mark("Clearance, mm"), "--clearance-mm", 0.0, 20.0
         ),
@@ -401,8 +417,6 @@ class FabricationSettings:
 
     def __post_init__(self) -> None:
         check(self)
-        if self.construction is Construction.PRINTED:
-            raise UsageError("settings.printed_not_fitted")
 
 
 class SheetChange(TypedDict, total=False):
@@ -415,7 +429,7 @@ class SheetChange(TypedDict, total=False):
     fastener: Fastener | str
     pin_mm: float | None
     ear_mm: float | None
-    clearance_mm: float
+    clearance_mm: float | None
     gap_mm: float
     second_material: str
     board_cut: BoardCut | str
@@ -504,8 +518,17 @@ def construction_for(settings: FabricationSettings) -> Construction:
 
 def is_pinned(settings: FabricationSettings) -> bool:
     """Whether the sheet is made of pieces on pins; an unknown material is not, unless asked for."""
+    return _is_made(settings, Construction.PINNED, Construction.PRINTED)
+
+
+def is_printed(settings: FabricationSettings) -> bool:
+    """Whether a printer makes pieces and pins at once; an unknown material is not, unless asked for."""
+    return _is_made(settings, Construction.PRINTED)
+
+
+def _is_made(settings: FabricationSettings, *ways: Construction) -> bool:
     try:
-        return construction_for(settings) is Construction.PINNED
+        return construction_for(settings) in ways
     except FabricationError:
         return False
 
@@ -517,13 +540,16 @@ class PinSizes:
     Attributes
     ----------
     hole_mm, ear_mm : float
-        Diameters.
+        Diameters; of a printed pin that of its neck.
     clearance_mm : float
-        Between pieces of one layer that pass each other.
+        Between pieces that pass each other.
     head_mm : float
-        Diameter of the widest part of the pin.
+        Diameter of the widest part of the pin that is outside of its ears; 0 for printed ones.
     neck_mm : float
         Least width of a piece.
+    margin_mm : float
+        Distance of the pins at the rim from both outlines: all of their ears lies inside.  Printed pieces cannot fill
+        it, for their neighbours pass there: their ears stick out.
     """
 
     hole_mm: float
@@ -531,11 +557,7 @@ class PinSizes:
     clearance_mm: float
     head_mm: float
     neck_mm: float
-
-    @property
-    def margin_mm(self) -> float:
-        """Distance of the pins at the rim from both outlines: all of their ears lies inside."""
-        return 0.5 * self.ear_mm
+    margin_mm: float
 
     @property
     def apart_mm(self) -> float:
@@ -558,13 +580,28 @@ def pin_sizes(settings: FabricationSettings) -> PinSizes:
         No such material.
     """
     material = material_for(settings)
+    if is_printed(settings):
+        pins = printed_pins(settings)
+        return PinSizes(pins.pin_mm, pins.ear_mm, pins.clearance_mm, 0.0, material.min_ligament_mm, 0.0)
     size = SIZES[settings.fastener]
     hole = settings.pin_mm if settings.pin_mm is not None else size.hole_mm
     ear = settings.ear_mm if settings.ear_mm is not None else hole + 2.0 * max(hole, LEAST_WALL_MM)
     neck = max(material.min_ligament_mm, NECK_IN_THICKNESSES * material.thickness_mm)
     if ear <= hole:
         raise UsageError("settings.ear_within_hole", ear_mm=ear, pin_mm=hole)
-    return PinSizes(hole, ear, settings.clearance_mm, size.head_mm, neck)
+    clearance = CLEARANCE_MM if settings.clearance_mm is None else settings.clearance_mm
+    return PinSizes(hole, ear, clearance, size.head_mm, neck, 0.5 * ear)
+
+
+def printed_pins(settings: FabricationSettings) -> PrintedPins:
+    """Sizes of pins that are printed with their pieces.
+
+    Raises
+    ------
+    FabricationError
+        Sizes that make no sense.
+    """
+    return PrintedPins.of(settings.pin_mm, settings.ear_mm, settings.clearance_mm)
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:
@@ -627,6 +664,20 @@ def material_changes(settings: FabricationSettings, key: str) -> FabricationChan
     return changes
 
 
+def construction_changes(settings: FabricationSettings, given: Mapping[str, Any]) -> FabricationChange:
+    """Changes that come with a construction: sheets are printed of what printers take."""
+    if given.get("construction") != Construction.PRINTED or given.get("material") is not None:
+        return {}
+    try:
+        if MachineKind.of(material_for(settings).machine) is MachineKind.PRINTER:
+            return {}
+    except FabricationError:
+        pass
+    machine = named_machine(settings)
+    keeps = machine is None or machine.kind is MachineKind.PRINTER
+    return material_changes(settings, PRINTED_PRESET) | ({} if keeps else {"machine": "", "profile": "any"})
+
+
 def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     """Settings without a project: the given material, or one that the machine cuts.
 
@@ -638,6 +689,8 @@ def new_settings(given: Mapping[str, Any]) -> FabricationSettings:
     if given.get("machine") is not None and given.get("material") is None:
         changes = machine_changes(usual, find_machine(given["machine"]))
         usual = replace(usual, material=changes.get("material", usual.material))
+    if given.get("construction") == Construction.PRINTED and given.get("material") is None:
+        usual = replace(usual, material=PRINTED_PRESET)
     material = material_for(with_choices(usual, given))
     own_style = replace(usual.options, style=material.style)
     return with_choices(replace(usual, width_mm=material.sheet_mm, options=own_style), given)
@@ -660,7 +713,8 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     FabricationError
         No such material or machine.
     """
-    changes = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
+    named = {name: given[name] for name in settings_of(FabricationSettings) if name in given and name != "options"}
+    changes: dict[str, Any] = {**construction_changes(saved, named), **named}
     if "material" in given:
         changes["material"] = find_material(given["material"]).key
     if given.get("second_material"):

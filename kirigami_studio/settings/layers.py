@@ -134,6 +134,8 @@ def note_before_run(settings: FabricationSettings) -> Note | None:
 def note_on(material: Material, settings: FabricationSettings) -> Note | None:
     """Return the same note for a material that is known, whatever the settings name."""
     construction = settings.construction or material.construction
+    if construction is Construction.PRINTED:
+        return Note.of("construction.printed", material=tr(material.name))
     if construction is Construction.PINNED:
         fastener = tr(SIZES[settings.fastener].name)
         return Note.of("construction.pinned", material=tr(material.name), fastener=fastener)

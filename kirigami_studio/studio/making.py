@@ -15,6 +15,7 @@ import shapely
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
     Cancelled,
@@ -27,15 +28,18 @@ from kirigami_studio.foundation.errors import (
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.steps import Cancel, in_turns, never
 from kirigami_studio.foundation.threads import one_blas_thread
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     is_pinned,
+    is_printed,
     machine_for,
     material_for,
     pin_sizes,
+    printed_pins,
 )
 from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed, sheet_material
 from kirigami_studio.studio import importing
@@ -44,14 +48,18 @@ from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.checks import PinnedReport
+    from kirigami_studio.assembly.nesting import LaidShape
+    from kirigami_studio.assembly.pieces import Piece
     from kirigami_studio.export.assembly_files import AssemblyFiles, AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
+    from kirigami_studio.export.print_files import PrintJob
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
+    from kirigami_studio.foundation.arrays import FloatArray
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
@@ -255,12 +263,21 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
     yield pieces_of(request) if request.is_pinned else planned(request, cancel)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LaidBed:
+    """Pieces with their places on a bed or a plate, and the size (width, height; mm) that they take."""
+
+    title: str
+    placed: tuple[tuple[Piece, LaidShape], ...]
+    size_mm: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False)
 class MadePieces:
     """The pieces of a pinned design, laid on the beds of its machine, and judged."""
 
     made: Assembled
-    job: AssemblyJob
+    job: AssemblyJob | PrintJob
     verdict: Verdict
 
     @property
@@ -269,9 +286,33 @@ class MadePieces:
         return self.made.report
 
     @property
+    def printing(self) -> PrintJob | None:
+        """The job of what is printed; None where pieces are cut."""
+        from kirigami_studio.export.print_files import PrintJob
+
+        return self.job if isinstance(self.job, PrintJob) else None
+
+    @property
+    def cutting(self) -> AssemblyJob | None:
+        """The job of what is cut; None where pieces are printed."""
+        from kirigami_studio.export.assembly_files import AssemblyJob
+
+        return self.job if isinstance(self.job, AssemblyJob) else None
+
+    @property
+    def beds(self) -> tuple[LaidBed, ...]:
+        """Pieces on each bed, or on each plate of what is printed."""
+        if self.printing is not None:
+            return tuple(
+                LaidBed(tr("Plate {number}", number=plate.number), plate.placed, plate.size_mm)
+                for plate in self.printing.plates
+            )
+        return () if self.cutting is None else laid_beds(self.cutting)
+
+    @property
     def works(self) -> tuple[Work, ...]:
-        """Length and time of the cuts of each bed."""
-        return self.job.works
+        """Length and time of the cuts of each bed; none of what is printed."""
+        return () if self.cutting is None else self.cutting.works
 
     @property
     def flat_size_mm(self) -> tuple[float, float]:
@@ -290,6 +331,18 @@ class MadePieces:
         return sum(work.times.total for work in self.works)
 
 
+def laid_beds(job: AssemblyJob) -> tuple[LaidBed, ...]:
+    """Pieces on each bed of what is cut."""
+    return tuple(
+        LaidBed(
+            tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
+            tuple((cuts.piece, place) for cuts, place in bed.placed),
+            bed.size_mm,
+        )
+        for bed in job.beds
+    )
+
+
 def pieces_of(request: CutRequest) -> MadePieces:
     """Make, check and judge the pieces of a pinned design.
 
@@ -298,16 +351,42 @@ def pieces_of(request: CutRequest) -> MadePieces:
     FabricationError, UsageError
         No such material, or sizes that do not go together.
     """
-    from kirigami_studio.export.assembly_files import AssemblyJob
-    from kirigami_studio.project.store import packed_design
     from kirigami_studio.studio.assembling import assembled
     from kirigami_studio.studio.verdict import judge_assembled
 
     settings, target = request.settings, request.target
     if target is None:
         raise ProjectError("export.no_chosen_design")
-    made, material, sizes = assembled(request.candidate, settings, target), material_for(settings), pin_sizes(settings)
-    job = AssemblyJob(
+    made = assembled(request.candidate, settings, target)
+    shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
+    verdict = judge_assembled(request.candidate, made)
+    job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
+    return MadePieces(made, job, verdict)
+
+
+def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
+    from kirigami_studio.export.print_files import PrintJob
+
+    settings = request.settings
+    return PrintJob(
+        made.assembly,
+        material_for(settings),
+        machine_for(settings),
+        printed_pins(settings),
+        name=request.name,
+        paper=settings.paper,
+        target=shown,
+        provenance=request.facts,
+    )
+
+
+def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
+    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.project.store import packed_design
+
+    settings = request.settings
+    material, sizes = material_for(settings), pin_sizes(settings)
+    return AssemblyJob(
         made.assembly,
         material,
         machine_for(settings),
@@ -321,11 +400,11 @@ def pieces_of(request: CutRequest) -> MadePieces:
         dxf_version=settings.dxf_version,
         paper=settings.paper,
         order=settings.options.order,
-        target=shapely.get_coordinates(made.plan.opened.exterior)[:-1],
+        target=shown,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        verdict=verdict.level.value,
     )
-    return MadePieces(made, job, judge_assembled(request.candidate, made))
 
 
 def writes_layers(request: CutRequest, output: Output) -> bool:
@@ -351,7 +430,7 @@ def judged_pieces(request: CutRequest) -> Verdict:
 def written_pieces(request: CutRequest, output: Output, picture_phi: float | None = None) -> ExportedFiles:
     """Write the folder of a pinned design, read its files back, and judge it; or a picture of it.
 
-    A file's name stands for the folder without its extension, which gets cut files of that kind alone.  Pictures show
+    A file's name stands for the folder without its extension, which gets files of that kind alone.  Pictures show
     the ideal motion, which is that of the pieces, at ``picture_phi`` (radians) or the target angle.
 
     Raises
@@ -379,21 +458,26 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
 
 
 def _layers_written(
-    job: AssemblyJob,
+    job: AssemblyJob | PrintJob,
     output: Output,
     judge: Callable[[Sequence[Verification]], Verdict],
     problems: Sequence[Problem],
 ) -> tuple[Path, AssemblyFiles]:
     """Write the folder of a design in layers, and return it; its ``problems`` explain files that cannot be right."""
-    from kirigami_studio.export.assembly_files import KINDS, write_assembly
+    from kirigami_studio.export.assembly_files import KINDS, AssemblyJob, write_assembly
+    from kirigami_studio.export.print_files import KINDS as PRINTED
+    from kirigami_studio.export.print_files import write_print
 
+    kinds = KINDS if isinstance(job, AssemblyJob) else PRINTED
     kind = output.path.suffix.lower()
-    if output.name is None and kind not in ("", ".pdf", *KINDS):
-        raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *KINDS)))
-    one = output.name is None and kind in KINDS
+    if output.name is None and kind not in ("", ".pdf", *kinds):
+        raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *kinds)))
+    wanted = (kind,) if output.name is None and kind in kinds else kinds
     folder = output.path.with_suffix("") if output.name is None else output.path
     try:
-        return folder, write_assembly(job, folder, (kind,) if one else KINDS, lambda read: judge(read).level.value)
+        if isinstance(job, AssemblyJob):
+            return folder, write_assembly(job, folder, wanted, lambda read: judge(read).level.value)
+        return folder, write_print(job, folder, wanted, lambda read: judge(read).level.value)
     except ExportError as error:
         broken = next((one for one in problems if one.severity is Severity.ERROR), None)
         if broken is None:
@@ -518,8 +602,13 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
 
     target = None if request.target is None else request.target.points
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
+    machine = machine_for(request.settings) if made is not None else None
+    bed = machine.reach_mm if machine is not None and machine.kind is MachineKind.PRINTER else (0.0, 0.0)
     if made is not None and (made.layers is not None or made.plan.material.backing):
-        job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=TileSizes(request.settings.gap_mm)))
+        tiles = TileSizes(request.settings.gap_mm)
+        job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=tiles, bed_mm=bed))
+    elif any(bed):
+        job = replace(job, printing=Printing(bed_mm=bed))
     return replace(
         job,
         profile=request.settings.profile,
@@ -814,6 +903,8 @@ def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDe
     importing.import_as_cut()
     for request in requests:
         try:
+            if is_printed(request.settings):
+                continue  # the slicer knows
             seconds = (pieces_of(request) if request.is_pinned else planned(request, cancel)).seconds
         except (FabricationError, UsageError):
             continue  # which planning explains once it is chosen

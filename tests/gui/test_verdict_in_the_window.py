@@ -232,3 +232,22 @@ def test_that_pieces_on_pins_are_judged_and_pins_without_room_refused_without_a_
     fabrication.change(construction=None, pin_mm=None, ear_mm=None)
     until(lambda: judged(ready) and keeper.state.verdict is not None and keeper.state.verdict.ok)
     assert ready.stage.cuts.view.isVisible() and not ready.stage.cuts.beds.isVisible()
+
+
+def test_that_pieces_to_print_are_judged_and_shown_on_their_plate_and_leave_as_3mf(
+    ready: MainWindow, until: Until
+) -> None:
+    fabrication, panel = ready.services.fabrication, ready.fabrication
+    offered = [panel.construction.itemData(row) for row in range(panel.construction.count())]
+    assert Construction.PRINTED in offered
+    fabrication.change(construction=Construction.PRINTED)
+    until(lambda: judged(ready) and panel.numbers["pieces"].text().endswith("pins"))
+    assert ready.session.document.fabrication.material == "pla-print"
+    assert panel.exports.extension == ".3mf" and panel.numbers["time"].text() == panel.numbers["length"].text()
+    (bed,) = ready.stage.cuts.beds._beds
+    assert bed.title == "Plate 1" and len(bed.placed) == len({piece.id for piece, _ in bed.placed})
+    ready.commands["cuts"].trigger()
+    assert ready.stage.cuts.beds.isVisible() and "plate" in ready.stage.cuts.summary[0]
+    ready.commands["undo"].trigger()
+    until(lambda: judged(ready) and ready.stage.cuts.view.isVisible())
+    assert ready.session.document.fabrication.construction is None

@@ -153,6 +153,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The LightBurn project did not read back as planned: {found_mm:.3f} instead of {planned_mm:.3f} mm of {layer}. "
         "Nothing was written. Please report it."
     ),
+    "mesh.as_planned": mark(
+        "read back: {bodies} closed bodies in their places, {volume_cm3:.1f} cm3 as planned, {height_mm:g} mm high"
+    ),
     "mesh.other_bodies": mark(
         "The file of solids did not read back as planned: {found} bodies instead of {planned}, or other names. Nothing "
         "was written. Please report it."

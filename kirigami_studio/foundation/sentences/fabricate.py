@@ -331,9 +331,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "construction.pinned": mark("{material}: made of two layers of pieces that turn on pins ({fastener})."),
     "construction.backed": mark("Tiles of {board} are glued on a hinge layer of {hinge}."),
+    "construction.printed": mark(
+        "{material}: pieces and their pins are printed at once and turn on each other, without support or assembly."
+    ),
     "plan.material_does_not_hold": mark(
         "{material}: one sheet cannot close, its connectors break whatever their style and width. Two layers on pins "
         "can: choose that construction. For one sheet cut film, paper or polypropylene."
+    ),
+    "plan.material_needs_printed_pins": mark(
+        "{material}: one sheet cannot close, its connectors break whatever their style and width. Pieces that are "
+        "printed on their pins can: choose that construction."
     ),
     "plan.material_needs_backing": mark(
         "{material}: one sheet cannot close, its connectors break whatever their style and width. Tiles of it glued on "
@@ -452,16 +459,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Panels of {thickness_mm:g} mm are too thin for pins that are printed in place: with ears of {ear_mm:g} mm "
         "they have to be at least {least_mm:.2f} mm thick."
     ),
-    "printed.pins_too_near": mark(
-        "Two pins come within {apart_mm:.1f} mm of each other, but their ears need {needed_mm:.1f} mm. Make the sheet "
-        "larger, the ears smaller, or choose a design that was made for pins."
+    "printed.pieces_too_near": mark(
+        "At {angle_deg:.0f} degrees pieces come nearer to each other than their clearance of {clearance_mm:g} mm, and "
+        "may fuse or rub. Choose another design."
     ),
-    "printed.panel_too_small": mark(
-        "The panel {name:.40} does not hang together with its ears. Make the sheet larger or the ears smaller."
-    ),
-    "printed.loose_parts": mark(
-        "The panels do not all hang together by pins: they are in {parts} parts. Trim less of the sheet."
-    ),
+    "printed.material_is_cut": mark("{material} is cut, not printed. Choose a material of a 3D printer, such as PLA."),
     "printed.assembly_larger_than_bed": mark(
         "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
         "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."

@@ -68,10 +68,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "settings.markers_not_true_or_false": mark("Connector markers are on or off (true or false), got {value!r:.40}."),
     "settings.connector_width": mark("The connector width must be above 0 and at most {most:g} mm, got {value!r:.40}."),
     "settings.length_out_of_range": mark("{name} must be from {least:g} to {most:g} mm, got {value!r:.40}."),
-    "settings.printed_not_fitted": mark(
-        "Designs are not fitted to printed pins yet. Export a design of one sheet as .3mf or .stl, or its tiles with "
-        "the construction backed."
-    ),
     "settings.ear_within_hole": mark(
         "An ear of {ear_mm:g} mm leaves no wall round a hole of {pin_mm:g} mm. Make the ear wider or the hole smaller."
     ),

@@ -16,8 +16,7 @@ from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 if TYPE_CHECKING:
-    from kirigami_studio.export.assembly_files import AssemblyJob
-    from kirigami_studio.export.cut_bed import CutBed
+    from kirigami_studio.studio.making import LaidBed
 
 #: Between two beds, in widths of a bed; height of a caption (pixels).
 BETWEEN, CAPTION = 0.06, 16.0
@@ -26,22 +25,22 @@ NUMBERED, HALF_LABEL = 0.8, QPointF(30.0, 10.0)
 
 
 class BedsView(Canvas):
-    """Draws the nested pieces of each bed."""
+    """Draws the pieces of each bed or plate."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("bedsView")
         self.setAccessibleName(tr("Beds of the pieces"))
         self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
-        self._beds: tuple[CutBed, ...] = ()
+        self._beds: tuple[LaidBed, ...] = ()
         self._room = (0.0, 0.0)
         self._places: list[FloatArray] = []
 
-    def show_job(self, job: AssemblyJob | None) -> None:
-        """Show other beds; None shows nothing."""
-        self._beds = () if job is None else job.beds
-        if job is not None:
-            self._room = job.machine.reach_mm
+    def show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float]) -> None:
+        """Show other beds, or none, of a machine that reaches so far (width, height; mm)."""
+        self._beds = beds
+        if beds:
+            self._room = room
             if min(self._room) <= 0.0:  # a hand has no bed
                 self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
         columns = max(1, round(len(self._beds) ** 0.5))
@@ -67,8 +66,7 @@ class BedsView(Canvas):
             painter.setPen(QPen(QColor(self.palette_.border), 1.0))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(QRectF(left, top, *size.tolist()))
-            for cuts, at in bed.placed:
-                piece = cuts.piece
+            for piece, at in bed.placed:
                 ring = transform.to_pixels(at.put(piece.outline) + place)
                 holes = np.array([hole.centre for hole in piece.holes]).reshape(-1, 2)
                 centres = transform.to_pixels(at.put(holes) + place)
@@ -79,5 +77,4 @@ class BedsView(Canvas):
                     box = QRectF(middle - HALF_LABEL, middle + HALF_LABEL)
                     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, piece.id)
             painter.setPen(QColor(self.palette_.muted))
-            words = tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number)
-            painter.drawText(QPointF(left, top - 0.3 * CAPTION), words)
+            painter.drawText(QPointF(left, top - 0.3 * CAPTION), bed.title)

@@ -26,11 +26,11 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.studio.making import laid_beds
 
 if TYPE_CHECKING:
-    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.fabricate.cut_plan import CutPlan
-    from kirigami_studio.studio.making import MadePieces, Planned
+    from kirigami_studio.studio.making import LaidBed, MadePieces, Planned
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0
@@ -102,7 +102,9 @@ class CutsPage(QWidget):
     def summary(self) -> tuple[str, ...]:
         """What the header says, longest first."""
         if self._pieces is not None:
-            pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.job.beds)
+            pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.beds)
+            if self._pieces.printing is not None:
+                return (tr("{pieces} pieces  ·  {plates} plates", pieces=pieces, plates=beds),)
             return (tr("{pieces} pieces  ·  {beds} beds", pieces=pieces, beds=beds),)
         if self._plan is None:
             return ()
@@ -121,15 +123,15 @@ class CutsPage(QWidget):
     def show_pieces(self, made: MadePieces | None) -> None:
         """Show the beds of a pinned design in the place of a plan; None shows the plan again."""
         self._pieces = made
-        self._show_beds(None if made is None else made.job)
+        self._show_beds(() if made is None else made.beds, (0.0, 0.0) if made is None else made.job.machine.reach_mm)
         for part in (self.view, self.hinges, self.bar):
             part.setVisible(made is None)
         if made is not None:
             self.problems.show_problems(made.report.problems)
 
-    def _show_beds(self, job: AssemblyJob | None) -> None:
-        self.beds.show_job(job)
-        self.beds.setVisible(job is not None)
+    def _show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float]) -> None:
+        self.beds.show_beds(beds, room)
+        self.beds.setVisible(bool(beds))
 
     def show_plan(self, planned: Planned | None) -> None:
         """Show another plan, or the empty state; a new picture of one sheet keeps its place.
@@ -137,7 +139,8 @@ class CutsPage(QWidget):
         The board of a backed design lies below its hinge layer.
         """
         self.show_pieces(None)
-        self._show_beds(None if planned is None else planned.layers)
+        if planned is not None and planned.layers is not None:
+            self._show_beds(laid_beds(planned.layers), planned.layers.machine.reach_mm)
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm

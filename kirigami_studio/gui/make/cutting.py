@@ -316,13 +316,18 @@ def message_of_pieces(path: Path, pieces: MadePieces, verdict: Verdict | None) -
         level, text = verdict.level.words, verdict.problems[0].text
         sentence = tr("{name} exported. {level}: {text}", name=path.name, level=level, text=text)
         return Message(sentence, Tone.WARNING, details)
-    sentence = tr(
-        "Folder “{name}” exported and checked: {pieces} pieces, {pins} pins, {beds} beds, no faults.",
-        name=path.name,
-        pieces=len(pieces.made.assembly.pieces),
-        pins=len(pieces.made.assembly.hinges),
-        beds=len(pieces.job.beds),
-    )
+    assembly = pieces.made.assembly
+    counts = {"name": path.name, "pieces": len(assembly.pieces), "pins": len(assembly.hinges)}
+    if pieces.printing is not None:
+        sentence = tr(
+            "Folder “{name}” exported and checked: {pieces} pieces and {pins} joints to print, no faults.", **counts
+        )
+    else:
+        sentence = tr(
+            "Folder “{name}” exported and checked: {pieces} pieces, {pins} pins, {beds} beds, no faults.",
+            beds=len(pieces.beds),
+            **counts,
+        )
     return Message(sentence, Tone.DONE, details)
 
 

@@ -17,6 +17,7 @@ EXPORT = {
     ".pdf": mark("Export PDF"),
     ".svg": mark("Export SVG"),
     ".lbrn2": mark("Export for LightBurn"),
+    ".3mf": mark("Export 3MF"),
 }
 
 
@@ -76,6 +77,9 @@ class ExportRow(QWidget):
         self.export.setText(tr(EXPORT[extension]))
         if extension == ".pdf":
             self.export.setToolTip(tr("Export the cut sheet at 1:1, to print and to cut by hand (Ctrl+E)."))
+            return
+        if extension == ".3mf":
+            self.export.setToolTip(tr("Export and check the plates to print in mm, as 3MF (Ctrl+E)."))
             return
         if extension != ".dxf":
             self.export.setToolTip(

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
+from kirigami_studio.fabricate.material import PRINTER
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
@@ -42,7 +43,7 @@ from kirigami_studio.gui.widgets.readable import (
     readable_size,
     readable_time,
 )
-from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed
 from kirigami_studio.settings.layers import sheet_material
 
 if TYPE_CHECKING:
@@ -277,6 +278,8 @@ class FabricationPanel(Card):
         extension = ".pdf" if chosen is not None and chosen.by_hand else ".dxf"
         if settings.machine:
             extension = self.chooser.wanted_file or extension
+        if is_printed(settings) or (material is not None and material.machine == PRINTER):
+            extension = ".3mf"
         self.exports.show_goal(self.options.profile.currentText(), settings.dxf_version, extension)
 
     def show_plan(self, planned: Planned | None) -> None:
@@ -315,14 +318,17 @@ class FabricationPanel(Card):
     def show_pieces(self, made: MadePieces) -> None:
         """Show the amount of pieces, pins and cuts of a pinned design."""
         self.exports.allow(cuts=True, pictures=True)
-        assembly, works, beds = made.made.assembly, made.works, made.job.beds
+        assembly, works, cuts = made.made.assembly, made.works, made.cutting
         pieces, pins = len(assembly.pieces), len(assembly.hinges)
-        cuts = sum(len(bed.pieces) + sum(len(one.holes) for one in bed.pieces) for bed in beds)
+        beds = () if cuts is None else cuts.beds
+        slits = sum(len(bed.pieces) + sum(len(one.holes) for one in bed.pieces) for bed in beds)
         texts = {
             "size": readable_size(*made.flat_size_mm),
-            "slits": f"{cuts}",
-            "length": readable_length(made.cut_length_mm),
-            "time": readable_range(sum(work.times.low for work in works), sum(work.times.high for work in works)),
+            "slits": f"{slits}" if works else UNKNOWN,
+            "length": readable_length(made.cut_length_mm) if works else UNKNOWN,
+            "time": readable_range(sum(work.times.low for work in works), sum(work.times.high for work in works))
+            if works
+            else UNKNOWN,
             "pieces": tr("{pieces} + {pins} pins", pieces=pieces, pins=pins),
             "ligament": tr("{width_mm:.2f} mm", width_mm=made.report.figures.neck_mm),
         }

@@ -19,6 +19,7 @@ KINDS = (
     (MachineKind.CO2, mark("CO2 laser"), mark("Card, plastics, felt, leather.")),
     (MachineKind.DIODE, mark("Diode laser"), mark("Card, felt, leather, plywood.")),
     (MachineKind.UV, mark("UV laser"), mark("Thin films and foils.")),
+    (MachineKind.PRINTER, mark("3D printer"), mark("PLA, PETG and TPU: pieces with their pins, or one soft sheet.")),
 )
 
 

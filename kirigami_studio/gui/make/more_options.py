@@ -105,11 +105,10 @@ class MoreOptions(QWidget):
             construction, sizes = construction_for(settings), pin_sizes(settings)
         except KirigamiError:  # its material is gone, or its ears are; the plan says so
             return
-        self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm})
-        pinned = construction is Construction.PINNED
-        for name in ("fastener", "pin_mm", "ear_mm"):
-            self.files.fields[name].setEnabled(pinned)
-        self.files.fields["clearance_mm"].setEnabled(pinned or construction is Construction.PRINTED)
+        self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
+        self.files.fields["fastener"].setEnabled(construction is Construction.PINNED)
+        for name in ("pin_mm", "ear_mm", "clearance_mm"):
+            self.files.fields[name].setEnabled(construction in (Construction.PINNED, Construction.PRINTED))
         for name in ("gap_mm", "second_material", "board_cut"):
             self.files.fields[name].setEnabled(construction is Construction.BACKED)
 

@@ -67,6 +67,7 @@ def test_that_every_preset_is_for_a_machine_that_takes_it() -> None:
 
 
 def test_that_every_kind_of_machine_has_materials_that_begin_with_one_that_holds() -> None:
+    unpowered = (MachineKind.KNIFE, MachineKind.HAND, MachineKind.PRINTER)
     for machine in machines().items.values():
         taken = cuttable(machine)
         assert len(taken) >= 2, machine.key
@@ -74,7 +75,7 @@ def test_that_every_kind_of_machine_has_materials_that_begin_with_one_that_holds
         assert taken[usual_material(machine, taken)].connectors_hold
         for material in taken.values():
             assert MachineKind.of(material.machine) is machine.kind
-            assert (material.power_percent > 0.0) == (machine.kind not in (MachineKind.KNIFE, MachineKind.HAND))
+            assert (material.power_percent > 0.0) == (machine.kind not in unpowered)
 
 
 def test_that_a_material_has_its_own_figures_on_another_kind_of_machine() -> None:
@@ -100,6 +101,7 @@ def test_that_the_thinner_blade_does_not_take_what_the_thicker_does() -> None:
         ("Silhouette Cameo 4", MachineKind.KNIFE),
         ("my diode laser", MachineKind.DIODE),
         ("by hand", MachineKind.HAND),
+        ("my 3D printer", MachineKind.PRINTER),
         ("water jet", MachineKind.OTHER),
     ],
 )

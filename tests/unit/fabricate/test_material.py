@@ -18,8 +18,9 @@ from kirigami_studio.foundation.resources import resource
 def test_that_the_presets_are_bundled_and_none_claims_to_be_calibrated() -> None:
     assert list(presets()) == [
         "film-uv", "acrylic-co2", "card-05-co2", "card-co2", "cotton-co2", "drag-knife", "eva-foam-co2", "felt-3-co2",
-        "felt-co2", "foil-uv", "leather-co2", "pa-film-uv", "paper-hand", "pet-co2", "plywood-co2",
-        "polypropylene-co2", "ripstop-co2", "silicone-co2", "tape-knife", "tpu-co2", "tulle-co2",
+        "felt-co2", "foil-uv", "leather-co2", "pa-film-uv", "paper-hand", "pet-co2",
+        "petg-print", "pla-print", "plywood-co2", "polypropylene-co2", "ripstop-co2", "silicone-co2", "tape-knife",
+        "tpu-co2", "tpu-print", "tulle-co2",
     ]  # fmt: skip
     assert not any(material.calibrated for material in presets().values())
     assert all(material.connector_mm > material.min_ligament_mm for material in presets().values())
@@ -61,6 +62,8 @@ def test_that_what_one_sheet_cannot_do_is_known_before_a_run() -> None:
     assert known == {
         "acrylic-co2": "plan.material_does_not_hold",
         "plywood-co2": "plan.material_does_not_hold",
+        "pla-print": "plan.material_needs_printed_pins",
+        "petg-print": "plan.material_needs_printed_pins",
         "felt-3-co2": "plan.material_needs_backing",
         "foil-uv": "plan.material_needs_backing",
         "felt-co2": "material.near_its_limit",

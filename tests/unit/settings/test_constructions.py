@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from kirigami_studio.fabricate.fastener import SIZES, Fastener
+from kirigami_studio.fabricate.fastener import SIZES, Fastener, PrintedPins
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction, presets
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     construction_for,
+    is_pinned,
+    is_printed,
+    machine_for,
     new_settings,
     pin_gap_mm,
     pin_sizes,
@@ -57,10 +61,27 @@ def test_that_impossible_lengths_are_refused(name: str, value: float) -> None:
     assert refused.value.code == "settings.length_out_of_range"
 
 
-def test_that_printed_pins_are_refused_with_what_can_be_printed() -> None:
-    with pytest.raises(UsageError) as refused:
-        new_settings({"construction": "printed"})
-    assert refused.value.code == "settings.printed_not_fitted"
+def test_that_printed_sheets_are_of_a_material_that_printers_take_unless_another_is_named() -> None:
+    asked = new_settings({"construction": "printed"})
+    assert (asked.material, asked.width_mm) == ("pla-print", presets()["pla-print"].sheet_mm)
+    assert machine_for(asked).kind is MachineKind.PRINTER and is_pinned(asked) and is_printed(asked)
+    mini = new_settings({"construction": "printed", "machine": "fdm-180"})
+    assert (mini.material, machine_for(mini).key) == ("pla-print", "fdm-180")
+    film = with_choices(new_settings({"machine": "uv-laser"}), {"construction": "printed"})
+    assert (film.material, film.machine) == ("pla-print", "")
+    assert with_choices(new_settings({"material": "tpu-print"}), {"construction": "printed"}).material == "tpu-print"
+    assert with_choices(film, {"material": "acrylic-co2"}).material == "acrylic-co2"
+    assert new_settings({"construction": "printed", "material": "acrylic-co2"}).material == "acrylic-co2"
+
+
+def test_that_the_clearance_is_that_of_the_construction_unless_asked_for() -> None:
+    printed, plywood = new_settings({"construction": "printed"}), new_settings({"material": "plywood-co2"})
+    assert (pin_sizes(printed).clearance_mm, pin_sizes(plywood).clearance_mm) == (PrintedPins().clearance_mm, 0.6)
+    for settings in (printed, plywood):
+        assert pin_sizes(with_choices(settings, {"clearance_mm": 0.4})).clearance_mm == 0.4
+    sizes = pin_sizes(printed)
+    assert (sizes.hole_mm, sizes.ear_mm, sizes.margin_mm) == (PrintedPins().pin_mm, PrintedPins().ear_mm, 0.0)
+    assert pin_gap_mm(printed) == pytest.approx(sizes.ear_mm + 2.0 * sizes.clearance_mm + sizes.neck_mm)
 
 
 def test_that_an_unknown_construction_is_refused() -> None:
