@@ -30,7 +30,7 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
-from kirigami_studio.fabricate.strain import StrainFigure, Survival, survival, used_up
+from kirigami_studio.fabricate.strain import RigidPanels, StrainFigure, Survival, survival, used_up
 from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
@@ -513,11 +513,12 @@ def _simulated(plan: CutPlan, found: Closing, jam: float, phi: float, lap: Overl
     largest = float(worst[_until(found, phi)].max())
     blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     until = _until(found, reached)
-    connectors, rigid = found.sheet.connectors, None
+    connectors = found.sheet.connectors
+    rigid: RigidPanels | None = None
     if plan.tiles is not None:
         there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
-        rigid = plan.tiles.rigid_panels(plan.hinges, plan.kerf_mm, reached).of(there)
-        rigid = replace(rigid, flexure_mm=connectors.flexure_mm)
+        free = plan.tiles.rigid_panels(plan.hinges, plan.kerf_mm, reached).of(there)
+        rigid = replace(free, flexure_mm=connectors.flexure_mm)
     figures = found.in_plane[until], found.out_of_plane[until]
     judged = survival(plan.material, connectors.width_mm, *figures, rigid)
     return _made(jam, phi, Outcome.CLOSES if closes else blame, largest, judged, Source.SIMULATION, lap)

@@ -419,8 +419,9 @@ def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Ite
     for key, material in (library().items if machine is None else cuttable(machine)).items():
         if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
-            changes = {"material": key, "construction": None, "connector_mm": None, "kerf_mm": None}
-            other = replace(settings, **changes, options=options, own=None)
+            other = replace(
+                settings, material=key, construction=None, connector_mm=None, kerf_mm=None, options=options, own=None
+            )
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)
 
 
