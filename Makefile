@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak pinned quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -29,6 +29,7 @@ help:
 	@echo "make test-durations  measure every test, for the choice that make test makes: tests/durations.json"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make pinned  write DESIGNS random pinned designs and read them back without the program"
+	@echo "make readers  read ICONS drawings of npm packages, and compare them with what rsvg-convert paints"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
@@ -120,6 +121,11 @@ DESIGNS ?= 200
 pinned: setup
 	OMP_NUM_THREADS=1 $(BIN)/python tests/random_assemblies.py $(DESIGNS)
 
+#: Icons of public packages, read and compared with an independent renderer: make readers ICONS=200 SEED=0
+ICONS ?= 200
+readers: setup
+	OMP_NUM_THREADS=1 $(BIN)/python tests/icons_read.py --icons $(ICONS) --seed $(SEED) --out build/readers
+
 #: Random designs on printed pins, written and read back by lib3mf and numpy-stl.
 PRINTS ?= 40
 prints: setup
@@ -162,6 +168,8 @@ states: setup
 pairs: setup
 	$(BIN)/python packaging/make_pairs.py
 
+#: Designs in plywood for their picture.
+PLYWOOD := --material plywood-co2 --k 6 --out out/plywood
 pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
@@ -176,6 +184,10 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.tutorial_pictures --out docs/pictures/tutorials
+	$(BIN)/kirigami-studio design heart --grid 6x7 $(PLYWOOD)/1-heart
+	$(BIN)/kirigami-studio design hexagon --grid auto $(PLYWOOD)/2-hexagon
+	$(BIN)/kirigami-studio design square --start circle --grid auto $(PLYWOOD)/3-disk
+	$(BIN)/python -m kirigami_studio.lab.demonstrations.assembled_pieces out/plywood/*/design.kiri --out docs/pictures/plywood.png
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
 	  --out docs/pictures/artwork.png

@@ -206,8 +206,8 @@ class Reader:
 
 
 READERS = {
-    "target": Reader(target, (".svg", ".dxf", ".json", ".png")),
-    "parts": Reader(parts, (".svg", ".dxf", ".png")),
+    "target": Reader(target, (".svg", ".dxf", ".json", ".png", ".pdf", ".webp", ".tif", ".gif")),
+    "parts": Reader(parts, (".svg", ".dxf", ".png", ".pdf", ".tif")),
     "check": Reader(checked, (".dxf",)),
     "dxf": Reader(verified_dxf, (".dxf",)),
     "svg": Reader(verified_svg, (".svg",)),
@@ -219,7 +219,7 @@ READERS = {
     "project": Reader(store.load_all, (".kiri",)),
     "recovery": Reader(recovery.read_note, (".kiri",)),
     "carried": Reader(store.load_all, (".dxf", ".svg")),
-    "opened": Reader(opened, (".svg", ".dxf", ".json", ".png")),
+    "opened": Reader(opened, (".svg", ".dxf", ".json", ".png", ".pdf")),
     "pasted": Reader(pasted, (".svg", ".json")),
     "artwork": Reader(artwork, (".svg", ".png")),
     "archive": Reader(archive, (".npz",)),

@@ -107,6 +107,22 @@ def _picture(kind: str) -> bytes:
     return stream.getvalue()
 
 
+def _page() -> bytes:
+    from reportlab.pdfgen.canvas import Canvas
+
+    stream = io.BytesIO()
+    page = Canvas(stream, pagesize=(60, 40), pageCompression=0)
+    page.beginForm("a")
+    page.circle(5, 5, 4, fill=1)
+    page.endForm()
+    page.rect(5, 5, 30, 20, fill=1)
+    page.translate(40, 10)
+    page.doForm("a")
+    page.drawString(3, 3, "i")
+    page.save()
+    return stream.getvalue()
+
+
 def _drawings(reader: str) -> list[bytes]:
     import ezdxf
     from attacked_readers import FAULTY, READERS
@@ -143,6 +159,10 @@ def _drawings(reader: str) -> list[bytes]:
         ".svg": [cut_svg_bytes(job), SVG],
         ".json": [b"[[0, 0], [1, 0], [1, 1], [0.5, 0.2], [0, 1]]"],
         ".png": [_picture("PNG")],
+        ".webp": [_picture("WEBP")],
+        ".tif": [_picture("TIFF")],
+        ".gif": [_picture("GIF")],
+        ".pdf": [_page()],
     }
     of[".dxf"].append(text.getvalue().encode())
     return [content for ending in (READERS | FAULTY)[reader].endings for content in of[ending]]

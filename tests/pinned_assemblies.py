@@ -9,8 +9,31 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.outlines import silhouettes
+from kirigami_studio.project.document import Document
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import new_settings
+
+
+def plain_pinwheel(*factors: float) -> Document:
+    """A square of 3 x 3 voids whose panels alternate in size, to be cut of plywood 160 mm wide.
+
+    For each of ``factors`` there is another design whose ratios are nearer to 1, or farther from it.
+    """
+    target = silhouettes.load("square")
+    candidates = []
+    for number, factor in enumerate((1.0, *factors)):
+        ratios = 10 ** (0.2 * factor * (-1.0) ** np.add.outer(range(3), range(3)))
+        sheet = Sheet(RatioField(ratios))
+        candidates.append(Candidate(sheet, evaluate(deploy(sheet), target), 0, number))
+    settings = new_settings({"material": "plywood-co2", "width_mm": 160.0})
+    return Document(target, DesignSettings(), tuple(candidates), 0, fabrication=settings)
+
 
 CELL_MM, EAR_MM, HOLE_MM, CLEARANCE_MM = 30.0, 7.0, 3.2, 0.6
 

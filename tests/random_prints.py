@@ -110,9 +110,9 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as folder:
             found = faults(seed, Path(folder) / "out")
         bad += bool(found)
-        for line in found:
-            print(f"{seed}: {line}", flush=True)
-    print(f"{asked.designs} designs, {bad} with faults, {time.process_time() - begun:.0f} s of processor")
+        sys.stdout.write(f"{seed}: {'; '.join(found) or 'as it should be'}\n")
+        sys.stdout.flush()
+    sys.stdout.write(f"{asked.designs} designs, {bad} bad, {time.process_time() - begun:.0f} s of processor time\n")
     return int(bad > 0)
 
 

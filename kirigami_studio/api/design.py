@@ -69,8 +69,8 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     chosen_candidate,
-    export_job,
     judged,
+    picture_job,
     pieces_of,
     planned,
     written,
@@ -494,7 +494,7 @@ class Design:
             if is_pinned(with_choices(self.document.fabrication, deciding)):
                 return self.make_pieces(**cuts)._written(Output(goal))
             return self.plan_cuts(**cuts).export(goal)
-        return Exported((export(export_job(CutRequest.of(self.document), None), goal),))
+        return Exported((export(picture_job(CutRequest.of(self.document)), goal),))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a project (.kiri) of this design alone.
@@ -826,7 +826,7 @@ class Pieces:
         return Exported(found.files, found.verifications, self)
 
     def _judge(self, verifications: Sequence[Verification] = ()) -> Verdict:
-        return judge_assembled(self._request.candidate, self._made.made, verifications)
+        return judge_assembled(self._request.candidate, self._made.made, self._request.settings, verifications)
 
     def __repr__(self) -> str:
         level = self.verdict.words

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -83,15 +84,17 @@ def load_target(
     bridge: float | None = None,
     stroke: float | None = None,
     threshold: float | None = None,
+    object_at: Sequence[tuple[float, float]] | None = None,
+    not_object_at: Sequence[tuple[float, float]] | None = None,
 ) -> Target:
     """Make a target of a library silhouette, a file, points, a mask or a Shapely geometry.
 
     Parameters
     ----------
     source : str, path, array or geometry
-        A name out of :func:`target_names`; an image, SVG, DXF or JSON file; vertices (L, 2), y up; a mask (H, W), row 0
-        on top, of which is inside what is above half of its highest value; a polygon or several, of which the largest
-        piece counts, its holes filled.
+        A name out of :func:`target_names`; an image, SVG, DXF, PDF, AI or JSON file; vertices (L, 2), y up; a mask
+        (H, W), row 0 on top, of which is inside what is above half of its highest value; a polygon or several, of which
+        the largest piece counts, its holes filled.
     name : str, optional
         What it is called; by default as its source.
     parts : str, optional
@@ -103,7 +106,11 @@ def load_target(
     stroke : float, optional
         Takes lines as they are painted, with their own width, or this one where they have none (0: 2 % of the size).
     threshold : float, 0..1, optional
-        Grey level that separates the shape of a picture from its background; found by itself unless given.
+        Level that separates the shape of a picture from its background; found by itself unless given.  Grey level of
+        pictures in grey, of others how much alike the background a pixel is.
+    object_at, not_object_at : sequence of (x, y), optional
+        Places on the object in a picture, which is taken instead of the largest shape, and places beside it; pixels
+        from the upper left corner.
 
     Raises
     ------
@@ -122,7 +129,7 @@ def load_target(
     """
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
-    choice = PartChoice.of(parts, join, bridge, stroke)
+    choice = PartChoice.of(parts, join, bridge, stroke, object_at, not_object_at)
     outline = outline_of(source.outline if isinstance(source, Target) else source, choice, threshold)
     return Target(outline if name is None else replace(outline, name=str(name)))
 

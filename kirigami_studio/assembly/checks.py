@@ -12,6 +12,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray
+from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
@@ -133,8 +134,8 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             Problem.warning("pinned.ears_meet", plan.gap_at, count=plan.tight, gap_mm=plan.gap_mm, needed_mm=needed)
         )
     if overlap > OVERLAP_MM2:
-        values = {"overlap_mm2": overlap, "angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
-        problems.append(Problem.error(COLLISIONS[options.in_one_plane], **values))
+        collision = {"angle_deg": math.degrees(worst_phi), "clearance_mm": options.clearance_mm}
+        problems.append(Problem.error(COLLISIONS[options.in_one_plane], overlap_mm2=overlap, **collision))
     least_wall = options.asked_wall_mm
     thin = sorted((wall, piece.id) for piece, wall in zip(assembly.pieces, walls, strict=True))
     thin = [one for one in thin if one[0] < least_wall - ROUNDNESS_MM]
@@ -171,6 +172,47 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     return PinnedReport(figures, tuple(sorted(problems, key=lambda problem: problem.severity is Severity.WARNING)))
 
 
+def bed_problems(
+    assembly: Assembly, bed: tuple[float, float], kerf_mm: float, width_mm: float, fixed_mm: float
+) -> list[Problem]:
+    """Warn about pieces that a machine cannot reach all of, whichever way round they lie; several beds are no problem.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    bed : (width, height), mm
+        0 for a side that has no end.
+    kerf_mm : float
+        That is cut round a piece.
+    width_mm : float
+        Of the flat sheet.
+    fixed_mm : float
+        How much of the sides of pieces stays the same on smaller sheets: an ear.
+    """
+    room = sorted((side if side > 0.0 else math.inf for side in bed), reverse=True)
+    found: list[tuple[float, str, float, float]] = []
+    for piece in assembly.pieces:
+        sides = [side + kerf_mm for side in smallest_rectangle(piece.outline)]
+        if any(side > most for side, most in zip(sides, room, strict=True)):
+            shares = [(most - fixed_mm) / max(side - fixed_mm, 1.0) for side, most in zip(sides, room, strict=True)]
+            found.append((min(shares), piece.id, sides[0], sides[1]))
+    if not found:
+        return []
+    share, name, long, short = min(found)
+    places = zip(assembly.pieces, assembly.poses(math.pi).tolist(), strict=True)
+    where = next((x, y) for piece, (x, y, _) in places if piece.id == name)
+    told = {
+        "count": len(found),
+        "piece": name,
+        "long_mm": long,
+        "short_mm": short,
+        "width_mm": bed[0],
+        "height_mm": bed[1],
+        "largest_mm": math.floor(share * width_mm),
+    }
+    return [Problem.warning("pieces.larger_than_bed" if share > 0.0 else "pieces.bed_below_ear", where, **told)]
+
+
 def _broken(plan: PinnedPlan, places: Mapping[str, tuple[float, float]]) -> list[Problem]:
     if not plan.broken:
         return []
@@ -203,8 +245,13 @@ def largest_overlap(plan: PinnedPlan, bodies: Sequence[Polygon], angles: Sequenc
     if options.in_one_plane:
         plane = np.ones_like(plane)
         joint = 0.5 * options.ear_mm + options.clearance_mm
-        pins = [shapely.multipoints([hole.centre for hole in piece.holes]).buffer(joint) for piece in assembly.pieces]
-        shapes = shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM)
+        pins = [
+            shapely.union_all(shapely.buffer(shapely.points([hole.centre for hole in piece.holes]), joint))
+            for piece in assembly.pieces
+        ]
+        shapes = np.asarray(
+            shapely.buffer(shapely.difference(shapes, pins), 0.5 * options.clearance_mm - ROUNDNESS_MM), dtype=object
+        )
     found = [one for number in (1, 2) for one in passing(shapes[plane == number], poses[:, plane == number]).overlaps]
     worst = max(found, key=lambda one: one.area_mm2, default=None)
     return (0.0, math.pi) if worst is None else (worst.area_mm2, angles[worst.pose])

@@ -8,19 +8,17 @@ places where a pin through both holds them, and with them the whole sheet, which
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from kirigami_studio.assembly.checks import body_of, placed_bodies
 from kirigami_studio.assembly.motion import discs
-from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.assembly.rim_pieces import roomiest_place
 from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 #: Sides that touch for less than this, mm, hold nothing.
@@ -29,13 +27,6 @@ LEAST_LENGTH_MM = 3.0
 CLOSED_MM = 0.01
 #: Beyond half the gap between sides, mm: how far from the line on which they meet an edge may lie.
 BESIDE_MM = 0.02
-
-
-class HeldState(StrEnum):
-    """End state in which pieces meet."""
-
-    OPEN = "open"
-    FLAT = "flat"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,26 +135,41 @@ def _seen_from(pose: FloatArray, places: ComplexArray) -> FloatArray:
     return as_points((places - complex(x, y)) * np.exp(-1j * turn))
 
 
-def locks(plan: PinnedPlan, state: HeldState) -> tuple[Lock, ...]:
+def locks(
+    plan: PinnedPlan,
+    state: HeldState,
+    hole_mm: float | None = None,
+    head_mm: float | None = None,
+    wall_mm: float | None = None,
+) -> tuple[Lock, ...]:
     """Locks in one end state: those first whose places move farthest apart towards the other.
 
-    Each has a wall of half a neck at least, and its head lies clear of all pins.
+    Parameters
+    ----------
+    plan : PinnedPlan
+    state : HeldState
+    hole_mm, head_mm : float, optional
+        Diameters of the hole and of the head, which lies clear of all pins; those of the pins unless given.
+    wall_mm : float, optional
+        Least wall; half a neck unless given.
     """
     assembly, options = plan.assembly, plan.options
     phi, away = (math.pi, assembly.phi_target) if state is HeldState.FLAT else (assembly.phi_target, math.pi)
     placed = placed_bodies(assembly, [body_of(piece) for piece in assembly.pieces], phi)
     poses, poses_away = assembly.poses(phi), assembly.poses(away)
     layer = np.array([piece.layer for piece in assembly.pieces])
-    room = 0.5 * (options.pin_mm + options.neck_mm)
+    hole, head = hole_mm or options.pin_mm, head_mm or options.head_mm
+    room = 0.5 * hole + (0.5 * options.neck_mm if wall_mm is None else wall_mm)
+    apart = max(0.5 * (options.head_mm + head), room + 0.5 * options.pin_mm)
     nodes = assembly.deployment.nodes(phi)[[hinge.node for hinge in assembly.hinges]] * assembly.cell_mm
-    pins = discs(as_plane(nodes), max(options.head_mm - room, 0.5 * options.pin_mm))
+    pins = discs(as_plane(nodes), apart - room)
     tree = shapely.STRtree(pins)
     found = []
     one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
     for first, second in zip(one.tolist(), other.tolist(), strict=True):
         if layer[first] != 1 or layer[second] != 2:
             continue
-        overlap = placed[first].intersection(placed[second])
+        overlap = placed[first].intersection(placed[second]).buffer(0.0)  # without lines where edges touch
         near = pins[tree.query(overlap, predicate="intersects")]
         overlap = overlap.difference(shapely.union_all(near)) if len(near) else overlap
         if overlap.buffer(-room).is_empty:
@@ -178,16 +184,3 @@ def locks(plan: PinnedPlan, state: HeldState) -> tuple[Lock, ...]:
         ids = assembly.pieces[first].id, assembly.pieces[second].id
         found.append(Lock(ids, at, radius, float(abs(there[0] - there[1])), state))
     return tuple(sorted(found, key=lambda lock: -lock.apart_mm))
-
-
-def with_locks(assembly: Assembly, chosen: Sequence[Lock], hole_mm: float) -> Assembly:
-    """The assembly with holes for locks drilled."""
-    more: dict[str, list[RoundHole]] = {}
-    for lock in chosen:
-        for name, place in zip(lock.pieces, lock.at, strict=True):
-            more.setdefault(name, []).append(RoundHole(place, hole_mm))
-
-    def drilled(piece: Piece) -> Piece:
-        return replace(piece, holes=(*piece.holes, *more.get(piece.id, ())))
-
-    return replace(assembly, pieces=tuple(map(drilled, assembly.pieces)))

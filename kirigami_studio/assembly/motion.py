@@ -266,21 +266,21 @@ def swept_hulls(
         Sagitta of the chords that stand for the arcs.
     window : (left, bottom, right, top), mm
     """
+    if np.all(drifts == drifts[:, :1]):  # unturned: all corners of a polygon move alike
+        drifts = drifts[:, :1]
     farthest = float(np.abs(drifts).max(initial=0.0))
     steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
-    turned = np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0
-    shifts = turned[:, None] * drifts[:, None, :]
-    begin, end = shifts[:, :-1], shifts[:, 1:]
-    low, high = np.minimum(begin.real, end.real).min(axis=2), np.maximum(begin.real, end.real).max(axis=2)
-    under, over = np.minimum(begin.imag, end.imag).min(axis=2), np.maximum(begin.imag, end.imag).max(axis=2)
-    near = (
-        (corners.real.max(axis=1)[:, None] + high >= window[0])
-        & (corners.imag.max(axis=1)[:, None] + over >= window[1])
-        & (corners.real.min(axis=1)[:, None] + low <= window[2])
-        & (corners.imag.min(axis=1)[:, None] + under <= window[3])
-    )
+    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0)[:, None] * drifts[:, None, :]
+    near = np.ones((len(corners), steps), dtype=bool)
+    for corner, shift, low, high in (
+        (corners.real, shifts.real, window[0], window[2]),
+        (corners.imag, shifts.imag, window[1], window[3]),
+    ):
+        least, most = shift.min(axis=2), shift.max(axis=2)
+        near &= corner.max(axis=1)[:, None] + np.maximum(most[:, :-1], most[:, 1:]) >= low
+        near &= corner.min(axis=1)[:, None] + np.minimum(least[:, :-1], least[:, 1:]) <= high
     polygon, step = np.nonzero(near)
-    both = corners[polygon][:, None, :] + shifts[polygon[:, None], step[:, None] + np.arange(2)]
+    both = [corners[polygon] + shifts[polygon, step + end] for end in (0, 1)]
     # Hulls of lines, which are quicker to make than multipoints.
-    lines = shapely.linestrings(as_points(both.reshape(len(both), 2 * corners.shape[1])))
+    lines = shapely.linestrings(as_points(np.concatenate(both, axis=1)))
     return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)

@@ -95,6 +95,12 @@ class _Rectangle:
         return LaidShape(shape, corner - low, self.turn + 0.5 * math.pi)
 
 
+def smallest_rectangle(outline: FloatArray) -> tuple[float, float]:
+    """Longer and shorter side, mm, of the smallest rectangle round an outline (L, 2)."""
+    short, long = np.sort(_Rectangle.of(outline).size).tolist()
+    return long, short
+
+
 def nested(
     outlines: Sequence[FloatArray], bed: tuple[float, float], gap_mm: float, margin_mm: float = 0.0
 ) -> list[Bed]:

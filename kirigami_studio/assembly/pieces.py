@@ -55,6 +55,10 @@ class Piece:
         Where its number has most room.
     label_mm : float
         Largest height of the number there.
+    marks : tuple of (K, 2) float, mm
+        Open lines to engrave, where tabs are stuck on.
+    pivot : (2,) float or None, mm
+        Of an arm: its origin in the frame of its panel's piece, about which it turns as the other layer does.
     """
 
     id: str
@@ -65,6 +69,8 @@ class Piece:
     openings: tuple[FloatArray, ...] = ()
     label_at: FloatArray | tuple[float, float] = (0.0, 0.0)
     label_mm: float = 3.0
+    marks: tuple[FloatArray, ...] = ()
+    pivot: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +134,12 @@ class Assembly:
         half = 0.5 * (math.pi - check_phi(phi))
         rows, columns = np.array([piece.panel for piece in self.pieces], dtype=np.int64).T
         origins = self.deployment.panels(phi)[rows, columns].mean(axis=1) * self.cell_mm
-        return np.column_stack([origins, np.where((rows + columns) % 2 == 0, -half, half)])
+        turns = np.where((rows + columns) % 2 == 0, -half, half)
+        for index, piece in enumerate(self.pieces):
+            if piece.pivot is not None:
+                origins[index] += rotate(piece.pivot, turns[index])
+                turns[index] = -turns[index]
+        return np.column_stack([origins, turns])
 
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""

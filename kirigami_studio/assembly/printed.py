@@ -6,7 +6,7 @@ Outlines are on a grid of a tenth of a micrometre: no two vertices fall together
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import BackedSheet
-from kirigami_studio.assembly.pieces import Assembly, Piece
+from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.solids import (
     LAYER_MM,
     ROUNDING_MM,
@@ -44,6 +44,8 @@ LEAST_SLIT_MM = 0.01
 LEAST_WEB_MM = 0.8
 #: The disc on a pin and its panel lap over by this much (mm), so that they are one body.
 LAPPED_MM = 0.02
+#: Room (mm) between the neck of a pin at a seam and its cap, which is glued on; between two caps on their plate.
+CAP_FIT_MM, CAP_APART_MM = 0.1, 4.0
 #: Segments of a full turn.
 ROUND_SEGMENTS = 64
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
@@ -167,6 +169,8 @@ class PinJoint:
     """
 
     pin: Polygon  #: the body of layer 1
+    seam_pin: Polygon  #: the same without its foot, which a cap is, where the ring is printed on another plate
+    cap: Polygon  #: the foot, with room for the neck
     round_pin: Polygon  #: what layer 2 leaves out for it
     round_ring: Polygon  #: what layer 1 leaves out for the ring of layer 2
 
@@ -192,6 +196,8 @@ class PinJoint:
         rim = height + slope * (ear - neck)
         disc = ear / math.cos(math.pi / ROUND_SEGMENTS)  # holds all of the ear of its piece
         pin = [(0.0, 0.0), (foot, 0.0), (neck, height), (disc, rim + slope * (disc - ear)), (disc, top), (0.0, top)]
+        seam_pin = [(0.0, 0.0), (neck, 0.0), *pin[2:]]
+        cap = shapely.intersection(Polygon(pin[:3]), shapely.box(neck + CAP_FIT_MM, 0.0, foot, height))
         high = [(0.0, -above), (foot, -above), (foot, 0.0), (neck, height), (ear, rim), (ear, above), (0.0, above)]
         both = high + [(-x, z) for x, z in reversed(high[1:-1])]
         room = shapely.buffer(Polygon(both), gap, join_style="mitre", mitre_limit=MITRE)
@@ -199,7 +205,9 @@ class PinJoint:
         ring = [(0.0, -above), (reach, -above), (reach, low + slope * (reach - neck)), (neck, low), (0.0, low)]
         return cls(
             Polygon(pin),
-            Polygon(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
+            Polygon(seam_pin),
+            _polygon(cap),
+            _polygon(shapely.intersection(room, shapely.box(0.0, -above, 2.0 * ear, above))),
             Polygon(ring),
         )
 
@@ -222,41 +230,76 @@ class PinJoint:
             raise FabricationError("printed.ear_too_small", **values)
         return 0.5 * pins.ear_mm - PRINTED_WALL_MM - pins.beside_mm
 
-    def bodies(self) -> tuple[Manifold, Manifold, Manifold]:
-        """The three areas turned about the axis; no corner of one is at one of the others, nor of an ear of a piece."""
-        pin, round_pin, round_ring = (
-            Manifold.revolve(CrossSection(_rings(area, GRID_MM), FillRule.Positive), ROUND_SEGMENTS)
-            for area in (self.pin, self.round_pin, self.round_ring)
+    def bodies(self) -> tuple[Manifold, Manifold, Manifold, Manifold]:
+        """Pin, seam pin, room for a pin and for a ring: the areas turned about the axis.
+
+        No corner of one is at one of the others, nor of an ear of a piece.
+        """
+        pin, seam_pin, round_pin, round_ring = map(
+            _revolved, (self.pin, self.seam_pin, self.round_pin, self.round_ring)
         )
         half = 180.0 / ROUND_SEGMENTS
         round_pin, round_ring = (one.rotate((0.0, 0.0, 0.5 * half)) for one in (round_pin, round_ring))
-        return pin.rotate((0.0, 0.0, half)), round_pin, round_ring
+        return pin.rotate((0.0, 0.0, half)), seam_pin.rotate((0.0, 0.0, half)), round_pin, round_ring
 
 
-def pinned_solids(assembly: Assembly, thickness_mm: float, pins: PrintedPins) -> tuple[Solid, ...]:
+def _polygon(shape: BaseGeometry) -> Polygon:
+    """The shape, which is one polygon."""
+    (found,) = (part for part in shapely.get_parts(shape) if isinstance(part, Polygon))
+    return found
+
+
+def _revolved(area: Polygon) -> Manifold:
+    """An area of radius x height turned about the axis."""
+    return Manifold.revolve(CrossSection(_rings(area, GRID_MM), FillRule.Positive), ROUND_SEGMENTS)
+
+
+def cap_solids(count: int, thickness_mm: float, pins: PrintedPins) -> tuple[Solid, ...]:
+    """Caps for pins at seams, side by side."""
+    joint = PinJoint.of(pins, thickness_mm)
+    body, step = _revolved(joint.cap), 2.0 * joint.cap.bounds[2] + CAP_APART_MM
+    columns = math.ceil(math.sqrt(count))
+    return tuple(
+        solid_of(f"cap {number + 1}", 1, body, body.volume()).moved(
+            step * np.array([number % columns, number // columns, 0.0])
+        )
+        for number in range(count)
+    )
+
+
+def pinned_solids(
+    assembly: Assembly, thickness_mm: float, pins: PrintedPins, seams: Collection[int] = ()
+) -> tuple[Solid, ...]:
     """Pieces in one plane, in the flat sheet, that turn on pins printed with them.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    thickness_mm : float
+    pins : PrintedPins
+    seams : collection of int
+        Nodes whose pins have no foot, for their rings are printed elsewhere.
 
     Raises
     ------
     FabricationError
         Sizes that do not fit together, or a piece that falls apart.
     """
-    bodies = PinJoint.of(pins, thickness_mm).bodies()
-    return tuple(
-        _pinned_solid(piece, place, thickness_mm, bodies)
-        for piece, place in zip(assembly.pieces, assembly.poses(math.pi)[:, :2], strict=True)
-    )
-
-
-def _pinned_solid(piece: Piece, place: FloatArray, thickness_mm: float, joint: Sequence[Manifold]) -> Solid:
-    """A piece at its place in the flat sheet, with its pins or the rings round those of its neighbours."""
-    pin, round_pin, round_ring = joint
-    places = [(*hole.centre.tolist(), 0.0) for hole in piece.holes]
-    taken = round_ring if piece.layer == 1 else round_pin
-    body = prism(Polygon(piece.outline, piece.openings), thickness_mm)
-    body -= Manifold.batch_boolean([taken.translate(at) for at in places], OpType.Add)
-    if piece.layer == 1:
-        body = Manifold.batch_boolean([body, *(pin.translate(at) for at in places)], OpType.Add)
-    # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
-    body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
-    return solid_of(piece.id, piece.layer, body, body.volume()).moved(np.array([*place.tolist(), 0.0]))
+    pin, seam_pin, round_pin, round_ring = PinJoint.of(pins, thickness_mm).bodies()
+    joints: dict[str, list[tuple[FloatArray, bool]]] = {piece.id: [] for piece in assembly.pieces}
+    for hinge in assembly.hinges:
+        for name, at in zip(hinge.pieces, hinge.at, strict=True):
+            joints[name].append((at, hinge.node in seams))
+    solids = []
+    for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True):
+        places = [((*at.tolist(), 0.0), seam) for at, seam in joints[piece.id]]
+        taken = round_ring if piece.layer == 1 else round_pin
+        body = prism(Polygon(piece.outline, piece.openings), thickness_mm)
+        body -= Manifold.batch_boolean([taken.translate(at) for at, _ in places], OpType.Add)
+        if piece.layer == 1:
+            own = [(seam_pin if seam else pin).translate(at) for at, seam in places]
+            body = Manifold.batch_boolean([body, *own], OpType.Add)
+        # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
+        body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
+        solids.append(solid_of(piece.id, piece.layer, body, body.volume()).moved(np.array([x, y, 0.0])))
+    return tuple(solids)

@@ -28,6 +28,9 @@ COARSE = 0.25
 NARROWER = (0.75, 0.5, 0.25, 0.05)
 #: Corners sharper than 2 asin(1 / MITRE) = 23 degrees are blunted.
 MITRE = 5.0
+#: Discs of straps are so much larger, mm, than half a neck, and so far apart: a row of them is a neck wide.  Their
+#: notches are larger by the scallops between.
+STRAP_MORE, STRAP_STEP, STRAP_SCALLOP = 0.06, 0.6, 0.03
 #: Times that pins are left out, and notches cut anew.
 ROUNDS = 6
 #: Grid (mm) of overlays that fail in floating point, where edges nearly coincide.
@@ -40,8 +43,8 @@ TOO_SMALL = 1e-3
 STRAIGHT = 0.002
 
 
-#: Index of a panel, its own ears and those that pass it, and their radii.
-_Notching = tuple[int, bytes, bytes, bytes, bytes]
+#: Index of a panel, its own ears and those that pass it, and their radii; the straps of all.
+_Notching = tuple[int, bytes, bytes, bytes, bytes, bytes]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,11 +58,14 @@ class _Notched:
         The part of it that hangs together by necks as asked for.
     movers : (N,) int
         Ears that cut it, as flat indices of corners.
+    strapped : (M,) int
+        Ears whose straps do.
     """
 
     shape: BaseGeometry
     held: Polygon | None
     movers: IntArray
+    strapped: IntArray
 
 
 @dataclass(eq=False)
@@ -125,7 +131,7 @@ class Shaping:
         return made
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
-        """Cut the notches into panels; ears that would cut a piece through become smaller, halfway first.
+        """Cut the notches into panels; where they would cut a piece through, straps go, then ears get smaller.
 
         Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
         """
@@ -133,46 +139,79 @@ class Shaping:
         mover, seen = self._passing_ears
         order = np.argsort(seen, kind="stable")
         passing = np.split(mover[order], np.cumsum(np.bincount(seen, minlength=len(blanks)))[:-1])
-        for radius in (0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm, 0.0):
+        self._straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
+        radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
+        while True:
             keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
             fresh = [index for index, key in enumerate(keys) if key not in known]
             known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
             notched = [known[key] for key in keys]
-            narrow = [one.movers for one in notched if one.held is None]
-            cutting = np.concatenate(narrow) if narrow else np.zeros(0, dtype=np.int64)
-            if not len(cutting) or np.all(self.ear_radius.ravel()[cutting] <= radius) or not radius:
+            narrow = [one for one in notched if one.held is None]
+            given_up = np.isin(self._straps.ear, [ear for one in narrow for ear in one.strapped.tolist()])
+            if given_up.any():
+                self._straps = self._straps.some(~given_up)
+                continue
+            cutting = np.concatenate([np.zeros(0, dtype=np.int64), *(one.movers for one in narrow)])
+            if not len(cutting) or not radii or np.all(self.ear_radius.ravel()[cutting] <= radii[0]):
                 break
-            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radius)
+            self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radii.pop(0))
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
+        for ear in np.unique(self._straps.ear).tolist():
+            own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
+            plane = int(motion.plane[ear // 4])
+            parts = _convex_parts(shapely.union_all(own).convex_hull)
+            self._parts[plane] = self._parts[plane].with_more(ear // 4, parts)
         for index, one in enumerate(notched):
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
             self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
 
     def _notching(self, index: int, movers: IntArray) -> _Notching:
-        """All that the notches of a panel depend on: its own ears, and those that pass it."""
+        """All that the notches of a panel depend on: its own ears, those that pass it, and their straps."""
         radius = self.ear_radius.ravel()
         own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
-        return index, own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
+        straps = self._straps.centre[np.isin(self._straps.ear, np.concatenate([own, movers]))]
+        ears = own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
+        return index, *ears, straps.tobytes()
 
     def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
         """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
         motion = self.motion
         owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
         ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
-        place = np.zeros(len(blanks), dtype=np.int64)
+        place, straps = np.zeros(len(blanks), dtype=np.int64), self._straps
         place[fresh] = np.arange(len(fresh))
-        whole = _united_by(
-            np.concatenate([blanks[fresh], ears]), np.concatenate([np.arange(len(fresh)), place[owner]]), len(fresh)
-        )
-        mover = np.concatenate([passing[index] for index in fresh]) if len(fresh) else np.zeros(0, dtype=np.int64)
+        strapped = np.isin(straps.ear // 4, fresh)
+        parts = np.concatenate([blanks[fresh], ears, discs(straps.centre[strapped], straps.radius)])
+        owners = np.concatenate([np.arange(len(fresh)), place[owner], place[straps.ear[strapped] // 4]])
+        whole = _united_by(parts, owners, len(fresh))
+        mover = np.concatenate([np.zeros(0, dtype=np.int64), *(passing[index] for index in fresh)])
         seen = np.repeat(np.array(fresh, dtype=np.int64), [len(passing[index]) for index in fresh])
-        areas = self._swept_ears(mover, seen)
+        number, passed = straps.passing(mover, seen)
+        areas = np.concatenate(
+            [
+                self._swept_ears(mover, seen),
+                self._sweep(straps.ear[number], passed, straps.centre[number], straps.radius + STRAP_SCALLOP),
+            ]
+        )
+        mover, seen, is_strap = (
+            np.concatenate(both)
+            for both in (
+                (mover, straps.ear[number]),
+                (seen, passed),
+                (np.zeros(len(mover), dtype=np.bool_), np.ones(len(number), dtype=np.bool_)),
+            )
+        )
         shapely.prepare(whole)
         meets = np.any(shapely.intersects(whole[place[seen]][:, None], areas), axis=1)
         notches = _united_by(areas[meets].ravel(), np.repeat(place[seen[meets]], areas.shape[1]), len(fresh))
         shapes = _less(whole, notches)
         return [
-            _Notched(shape, self.held_together(index, shape), mover[meets & (seen == index)])
+            _Notched(
+                shape,
+                self.held_together(index, shape),
+                mover[meets & (seen == index) & ~is_strap],
+                mover[meets & (seen == index) & is_strap],
+            )
             for index, shape in zip(fresh, shapes, strict=True)
         ]
 
@@ -180,7 +219,7 @@ class Shaping:
         """The part of a shape between necks that has most pins, and of those the largest."""
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
         half = 0.5 * self.options.neck_mm
-        cores = shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)).tolist()
+        cores = shapely.get_parts(shapely.buffer(shape, -half)).tolist()
         if not cores:
             return _largest(shape)
         core = max(cores, key=lambda one: (int(np.sum(shapely.contains(one, centres))), float(one.area)))
@@ -241,13 +280,16 @@ class Shaping:
 
     def _swept_ears(self, ear: IntArray, seen: IntArray) -> GeometryArray:
         """Areas (K, 3) that ears (flat indices of corners) with clearance sweep, seen from panels."""
-        motion = self.motion
+        return self._sweep(ear, seen, self.motion.corners.ravel()[ear], self.ear_radius.ravel()[ear])
+
+    def _sweep(self, ear: IntArray, seen: IntArray, centre: ComplexArray, radius: FloatArray | float) -> GeometryArray:
+        """The same of other discs of the ears' panels."""
         if not len(ear):
             return np.empty((0, 3), dtype=object)
-        radius = self.ear_radius.ravel()[ear] + self.options.clearance_mm
-        drift = motion.seen_drift(ear // 4, seen, motion.corners.ravel()[ear])
-        turn = motion.sense[seen] * motion.opening
-        return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
+        motion = self.motion
+        grown = np.broadcast_to(radius + self.options.clearance_mm, centre.shape)
+        drift = motion.seen_drift(ear // 4, seen, centre)
+        return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
 
     def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
         """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
@@ -309,7 +351,7 @@ class Shaping:
         """
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
         half = 0.5 * float(self.neck_mm[index])
-        for core in shapely.get_parts(shapely.buffer(shape, -half, join_style="mitre", mitre_limit=MITRE)):
+        for core in shapely.get_parts(shapely.buffer(shape, -half)):
             if np.all(shapely.contains(core, centres)):
                 whole = shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape)
                 return _tidy(_largest(whole), 0.25 * math.pi * self.options.ear_mm**2)
@@ -342,6 +384,58 @@ class Shaping:
     def placed(self, turn: float) -> GeometryArray:
         """All pieces at t = ``turn``, in the frame of the deployment, mm."""
         return self.motion.placed(self.bodies, np.arange(len(self.bodies)), turn)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Straps:
+    """Discs that lead from ears at sharp corners to where the panel is as wide as a neck.
+
+    An ear of radius r hangs on 2 r sin(w / 2) of a panel with the angle w there.
+    """
+
+    ear: IntArray  #: (D,); the ear of each disc, as the flat index of its corner
+    centre: ComplexArray  #: (D,), mm
+    radius: float  #: mm
+
+    @classmethod
+    def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
+        """Straps of all corners with pins that need one; none in a single plane, where partners turn beside them."""
+        before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
+        half = 0.5 * np.abs(np.angle(before / after))
+        radius = 0.5 * options.neck_mm + STRAP_MORE
+        needed = motion.hinged & (options.ear_mm * np.sin(half) < options.neck_mm) & (not options.in_one_plane)
+        ears = np.flatnonzero(needed)
+        inwards = (before / np.abs(before) + after / np.abs(after)).ravel()[ears]
+        inwards /= np.abs(inwards)
+        first = 0.5 * options.ear_mm - radius
+        last = np.minimum(0.5 * options.neck_mm / np.sin(half.ravel()[ears]), options.ear_mm + options.clearance_mm)
+        steps = np.ceil((last - first) / STRAP_STEP).astype(np.int64).clip(1) + 1
+        share = np.concatenate([np.linspace(0.0, 1.0, count) for count in steps] or [np.zeros(0)])
+        along = first + share * np.repeat(last - first, steps)
+        ear = np.repeat(ears, steps)
+        return cls(ear, motion.corners.ravel()[ear] + along * np.repeat(inwards, steps), radius)
+
+    def clear_of_walls(self, motion: LayerMotion, options: PinOptions, mover: IntArray, seen: IntArray) -> _Straps:
+        """Those discs whose notches leave the walls of all pins that they may pass; see :meth:`passing`."""
+        number, passed = self.passing(mover, seen)
+        number, panel = np.repeat(number, 4), np.repeat(passed, 4)
+        pins = motion.corners[passed].ravel()
+        apart = motion.distance_on_arc(pins, self.centre[number], self.ear[number] // 4, panel)
+        least = self.radius + options.clearance_mm + STRAP_SCALLOP + 0.5 * options.pin_mm + options.asked_wall_mm
+        near = number[(apart < least) & motion.hinged[passed].ravel()]
+        return self.some(~np.isin(np.arange(len(self.ear)), near))
+
+    def some(self, chosen: BoolArray) -> _Straps:
+        """Those discs that are chosen."""
+        return _Straps(self.ear[chosen], self.centre[chosen], self.radius)
+
+    def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:
+        """Discs (numbers), and the panels that they may touch, of ears and the panels that these may."""
+        order = np.argsort(mover, kind="stable")
+        first, last = (np.searchsorted(mover[order], self.ear, side=side) for side in ("left", "right"))
+        pairs = [order[one:other] for one, other in zip(first, last, strict=True)]
+        number = np.repeat(np.arange(len(self.ear)), last - first)
+        return number, seen[np.concatenate([np.zeros(0, dtype=np.int64), *pairs])]
 
 
 class _ConvexParts:

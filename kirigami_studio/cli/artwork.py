@@ -18,7 +18,7 @@ from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
-from kirigami_studio.studio.making import CutRequest, export_job, planned
+from kirigami_studio.studio.making import CutRequest, printed_job
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0
@@ -31,7 +31,7 @@ def artwork(arguments: argparse.Namespace) -> int:
     document = load(arguments.project)
     request = CutRequest.of(document, overridden(document.fabrication, arguments))
     printed = _artwork(arguments, document)
-    job = export_job(request, planned(request))
+    job = printed_job(request)
     try:
         work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
         files = write_artwork(work, arguments.out)

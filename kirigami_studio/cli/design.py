@@ -59,6 +59,7 @@ from kirigami_studio.studio.making import (
     export_job,
     judged,
     judged_pieces,
+    picture_job,
     planned,
     with_cuttable_chosen,
     written,
@@ -407,7 +408,10 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
 
 
 def _write_pictures(request: CutRequest, made: Planned | None, paths: Mapping[str, Path]) -> None:
-    job = export_job(request, made)
+    try:
+        job = picture_job(request) if made is None else export_job(request, made)
+    except (FabricationError, UsageError):  # panels are shown; writing the pieces says why there are none
+        job = export_job(request, None)
     write_layout_svg(job, paths["layout"])
     write_png(job, paths["preview"])
 

@@ -35,7 +35,7 @@ from kirigami_studio.settings.fabrication import (
 )
 from kirigami_studio.settings.layers import is_backed, note_before_run
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
-from kirigami_studio.studio.checking import checked
+from kirigami_studio.studio.checking import Checked, checked_together
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.designing import request_for
 from kirigami_studio.studio.fixes import Advice
@@ -45,8 +45,8 @@ from kirigami_studio.studio.making import (
     Output,
     chosen_candidate,
     closed,
-    export_job,
     fixing,
+    picture_job,
     planned,
     writes_layers,
     written,
@@ -90,7 +90,10 @@ def export(arguments: argparse.Namespace) -> int:
     if not arguments.all and not writes_layers(request, output):
         find_writer(arguments.out)
     if request.is_pinned:
-        return _export_pieces(written_pieces(request, output, angle), as_json=arguments.json)
+        found = written_pieces(request, output, angle)
+        assert found.verdict is not None  # pieces are judged
+        wanted = arguments.fixes and not found.verdict.ok
+        return _export_pieces(found, _advice(request, found.verdict) if wanted else None, as_json=arguments.json)
     check_connectors(request.candidate, settings.options)
     try:
         made = planned(request)
@@ -143,8 +146,7 @@ def export(arguments: argparse.Namespace) -> int:
                 "verified": verified,
                 "ok": verdict.ok,
                 "verdict": verdict.to_json(),
-                **({} if advice is None else {"fixes": [fix.to_json() for fix in advice.fixes]}),
-                **({} if advice is None else {"tried": advice.tried.text}),
+                **_advice_json(advice),
             }
         )
         return 0 if found.ok else 1
@@ -182,8 +184,7 @@ def export(arguments: argparse.Namespace) -> int:
     for text in bad:
         say("  " + tr("fault: {text}", text=text))
     say_verdict(verdict)
-    for text in () if advice is None else advice.lines:
-        say("  " + tr("fix: {text}", text=text))
+    _say_advice(advice)
     said = {note.text for note in (*verdict.problems, *verdict.notes)} | {problem.text for problem in report.problems}
     for warning in warnings:
         if warning not in said:
@@ -196,7 +197,7 @@ def _wants_record(arguments: argparse.Namespace) -> bool:
     return arguments.sidecar is not False if arguments.all else bool(arguments.sidecar)
 
 
-def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
+def _export_pieces(found: ExportedFiles, advice: Advice | None, *, as_json: bool) -> int:
     """Report on the files of a pinned design."""
     pieces, verdict = found.pieces, found.verdict
     assert pieces is not None and verdict is not None
@@ -222,6 +223,7 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
                 "verified": [_summary(one) for one in found.verifications],
                 "ok": verdict.ok,
                 "verdict": verdict.to_json(),
+                **_advice_json(advice),
             }
         )
         return 0 if found.ok else 1
@@ -238,7 +240,19 @@ def _export_pieces(found: ExportedFiles, *, as_json: bool) -> int:
         else:
             say("  " + tr("{path}: {finding}", path=one.path, finding=one.findings[0].text))
     say_verdict(verdict)
+    _say_advice(advice)
     return 0 if found.ok else 1
+
+
+def _advice_json(advice: Advice | None) -> dict[str, object]:
+    if advice is None:
+        return {}
+    return {"fixes": [fix.to_json() for fix in advice.fixes], "tried": advice.tried.text}
+
+
+def _say_advice(advice: Advice | None) -> None:
+    for text in () if advice is None else advice.lines:
+        say("  " + tr("fix: {text}", text=text))
 
 
 def _check_picture(arguments: argparse.Namespace) -> None:
@@ -310,38 +324,49 @@ def _summary(found: Verification) -> dict[str, object]:
 def check(arguments: argparse.Namespace) -> int:
     """Re-read a cut file; exit code 1 where something is wrong with it or with the sheet."""
     document = None if arguments.design is None else load(arguments.design)
-    found = checked(Path(arguments.file), document)
-    report, record = found.report, found.report.record or found.report.of_pieces
-    problems = [problem.text for problem in report.problems]
+    every = checked_together([Path(name) for name in arguments.file], document)
+    ok = all(found.ok for found in every)
     if arguments.json:
-        answer: dict[str, object] = {
-            "ok": found.ok,
-            "sound": found.sound,
-            "problems": problems,
-            "unit": report.unit,
-            "layers": report.layers,
-            "paths": report.path_count,
-            "size_mm": report.bounds_mm,
-            "cut_length_mm": report.cut_length_mm,
-            "overlap_mm": report.overlap_mm,
-            "pieces": report.pieces,
-            "min_ligament_mm": report.min_ligament_mm,
-            "record": None if record is None else record.to_json(),
-            "verdict_at_export": None if found.said is None else found.said.value,
-        }
-        if found.verification is not None:
-            answer["void_miss_um"] = found.verification.void_miss_um
-        if found.verdict is not None:
-            answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
-        print_json(answer)
-        return 0 if found.ok else 1
-    sound = tr("{file}: the file is sound", file=arguments.file)
-    say(sound if found.sound else tr("{file}: the file is not sound", file=arguments.file))
-    for line in (*problems, *found.lines):
-        say(f"  {line}")
+        answers = [_checked_json(found) for found in every]
+        # One file answers as it always did; of several, those of each stand in a list.
+        print_json(
+            answers[0] if len(every) == 1 else {"ok": ok, "sound": all(one.sound for one in every), "files": answers}
+        )
+        return 0 if ok else 1
+    for name, found in zip(arguments.file, every, strict=True):
+        sound = tr("{file}: the file is sound", file=name)
+        say(sound if found.sound else tr("{file}: the file is not sound", file=name))
+        for line in (*(problem.text for problem in found.report.problems), *found.lines):
+            say(f"  {line}")
+    verdicts = {id(found.verdict): found.verdict for found in every if found.verdict is not None}
+    for verdict in verdicts.values():
+        say_verdict(verdict)
+    return 0 if ok else 1
+
+
+def _checked_json(found: Checked) -> dict[str, object]:
+    report, record = found.report, found.report.record or found.report.of_pieces
+    answer: dict[str, object] = {
+        "file": str(report.path),
+        "ok": found.ok,
+        "sound": found.sound,
+        "problems": [problem.text for problem in report.problems],
+        "unit": report.unit,
+        "layers": report.layers,
+        "paths": report.path_count,
+        "size_mm": report.bounds_mm,
+        "cut_length_mm": report.cut_length_mm,
+        "overlap_mm": report.overlap_mm,
+        "pieces": report.pieces,
+        "min_ligament_mm": report.min_ligament_mm,
+        "record": None if record is None else record.to_json(),
+        "verdict_at_export": None if found.said is None else found.said.value,
+    }
+    if found.verification is not None:
+        answer["void_miss_um"] = found.verification.void_miss_um
     if found.verdict is not None:
-        say_verdict(found.verdict)
-    return 0 if found.ok else 1
+        answer |= {**jam_json(found.verdict.as_cut), "verdict": found.verdict.to_json()}
+    return answer
 
 
 def animate(arguments: argparse.Namespace) -> int:
@@ -350,9 +375,10 @@ def animate(arguments: argparse.Namespace) -> int:
     if path.suffix.lower() != ".gif":
         raise UsageError("animate.not_a_gif", name=path.name)
     document = load(arguments.project)
-    job = export_job(CutRequest.of(document), None)
-    if arguments.as_cut:
-        job = replace(job, motion=_cut_motion(document, overridden(document.fabrication, arguments)))
+    request = CutRequest.of(document, overridden(document.fabrication, arguments))
+    job = picture_job(request)
+    if arguments.as_cut and not request.is_pinned:  # pieces move as the ideal sheet does
+        job = replace(job, motion=_cut_motion(document, request.settings))
     frames, motion = write_animation(job, path, FRAMES), job.motion
     if arguments.json:
         answer: dict[str, object] = {"frames": frames, "files": [str(path)]}

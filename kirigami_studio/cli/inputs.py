@@ -26,7 +26,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import SUFFIXES, named_sheet, read_sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import PART_READERS, read_target, target_files
+from kirigami_studio.outlines.read import PART_READERS, has_parts, read_target, target_files
 from kirigami_studio.outlines.read_image import opened_image
 from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.outlines.source_file import decoding, read_bytes
@@ -103,7 +103,14 @@ def for_each(
 
 def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
     """The choice of parts that the options make; None where they make none."""
-    return PartChoice.of(arguments.parts, arguments.join, arguments.bridge, arguments.stroke_outline)
+    return PartChoice.of(
+        arguments.parts,
+        arguments.join,
+        arguments.bridge,
+        arguments.stroke_outline,
+        arguments.object,
+        arguments.not_object,
+    )
 
 
 def warn(name: str, target: Outline) -> list[str]:
@@ -132,7 +139,7 @@ def read_targets(
         elif source not in names() and _is_folder(source):
             for file in target_files(path):
                 yield Named(file.stem, partial(read_drawing, file, choice))
-        elif path.suffix.lower() in PART_READERS:
+        elif has_parts(path):
             yield Named(source, partial(read_drawing, path, choice, threshold))
         elif choice is not None:
             raise UsageError("parts.not_a_drawing", source=source, kinds=", ".join(PART_READERS))

@@ -61,6 +61,8 @@ def parts(arguments: argparse.Namespace) -> int:
                 "layers": [name for name in source.layers if name],
                 "unit": source.unit,
                 "largest": list(source.usual),
+                "as_painted": source.choice.as_painted,
+                "ambiguous": source.is_ambiguous,
                 "warnings": list(source.left_out),
             }
         )

@@ -203,6 +203,17 @@ def number(text: str) -> float:
     return value
 
 
+def places(text: str) -> tuple[tuple[float, float], ...]:
+    """Places in pixels, such as ``120,80`` or ``120,80 200,95``."""
+    try:
+        found = [tuple(map(number, place.split(","))) for place in text.split()]
+    except argparse.ArgumentTypeError:
+        found = []
+    if not found or any(len(place) != 2 for place in found):
+        raise argparse.ArgumentTypeError(str(UsageError("object.not_a_place", value=text)))
+    return tuple((place[0], place[1]) for place in found)
+
+
 def share(text: str) -> float:
     """A number from 0 to 1."""
     value = number(text)

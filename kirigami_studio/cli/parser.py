@@ -18,6 +18,7 @@ from kirigami_studio.cli.option_types import (
     name,
     number,
     option,
+    places,
     positive,
     setting_options,
     share,
@@ -93,6 +94,10 @@ PARTS = (
            help="parts of an SVG, DXF or picture: all, largest, or names, numbers, layers or colours, joined by commas "
                 "(default: what is filled or enclosed, of several pieces the largest); 'kirigami-studio parts' lists "
                 "them"),
+    option("--object", type=places, default=None, metavar="X,Y",
+           help="a place on the object in a picture, or several ('120,80 200,95'), pixels from the upper left corner"),
+    option("--not-object", type=places, default=None, metavar="X,Y",
+           help="a place that does not belong to it, such as its shadow, or several"),
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
                 "a tight hull (default union; all parts with the others)"),
@@ -250,11 +255,14 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio mechanics --network resources/mechanics/panel_network.npz --ka 882 --ks 220.5 --kt 3.78e-4 "
         "--steps 100")),
     SubCommand("check", "read a cut file and list its problems", "fabrication:check", (
-        option("file", help="a DXF of any program, an SVG that this one exported, or a folder of layer files"),
+        option("file", nargs="+",
+               help="a DXF of any program, an SVG that this one exported, or a folder of layer files; "
+                    "several, such as both layers of a pinned design, are judged together"),
         option("--design", default=None, metavar="PROJECT",
                help="the project that it was exported from: compare the file with its design, and judge the sheet"),
         JSON,
-    ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri")),
+    ), ("kirigami-studio check heart.dxf", "kirigami-studio check heart.dxf --design heart.kiri",
+        "kirigami-studio check heart/layer-1.dxf heart/layer-2.dxf --design heart.kiri")),
     SubCommand("animate", "write an animation of the sheet opening to its target angle", "fabrication:animate", (
         option("project", help="a .kiri project"),
         option("--out", required=True, help=".gif file to write"),

@@ -94,7 +94,7 @@ class PanelSizes:
 
     def below(self, least: float) -> PanelSizes:
         """Those sizes that are smaller than ``least``."""
-        return self._some(self.size < least)
+        return self.some(self.size < least)
 
     def distinct(self) -> PanelSizes:
         """Those of all panels' sizes, as :func:`panel_sizes` lists them, that are not an edge a second time.
@@ -102,9 +102,10 @@ class PanelSizes:
         The place on a far edge that is nearest to a corner may be the end that is a neighbour of the corner.
         """
         kind = np.arange(len(self.size)) % 12 // 4
-        return self._some(~(((kind == 1) & (self.share <= 0.0)) | ((kind == 2) & (self.share >= 1.0))))
+        return self.some(~(((kind == 1) & (self.share <= 0.0)) | ((kind == 2) & (self.share >= 1.0))))
 
-    def _some(self, chosen: BoolArray) -> PanelSizes:
+    def some(self, chosen: BoolArray) -> PanelSizes:
+        """Those that are chosen."""
         return PanelSizes(
             self.corner[chosen],
             self.start[chosen],
@@ -128,7 +129,11 @@ class PanelSizes:
 
 def panel_sizes(nodes: FloatArray, rows: int, columns: int) -> PanelSizes:
     """Measure all panels of an m x n grid with compact ``nodes`` (N, 2), unit cells."""
-    corner, start, end = _size_nodes(rows, columns)
+    return distances_to_lines(nodes, *_size_nodes(rows, columns))
+
+
+def distances_to_lines(nodes: FloatArray, corner: IntArray, start: IntArray, end: IntArray) -> PanelSizes:
+    """Measure from corners to the lines between others, all (F,) numbers of ``nodes`` (N, 2)."""
     edge = nodes[end] - nodes[start]
     squared = np.maximum(np.square(edge).sum(axis=1), 1e-24)
     share = np.clip(((nodes[corner] - nodes[start]) * edge).sum(axis=1) / squared, 0.0, 1.0)

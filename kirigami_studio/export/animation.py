@@ -16,7 +16,14 @@ from PIL import Image, ImageDraw, ImageFont
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import INK, SUPERSAMPLING, PictureFrame, draw_polygons
+from kirigami_studio.export.picture import (
+    INK,
+    SUPERSAMPLING,
+    PictureFrame,
+    draw_pieces,
+    draw_polygons,
+    shown_points,
+)
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -87,6 +94,11 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     design, motion = job.posed, job.motion
     end = job.phi if motion is None else motion.reached
     angles = [float(angle) for angle in frame_angles(end, frames)]
+    if job.pieces is not None:
+        box = PictureFrame.around(shown_points(job.pieces, angles, job.target), longest)
+        pieces = job.pieces.small
+        pictures = [draw_pieces(pieces, angle, box, job.target) for angle in angles]
+        return _with_one_palette(pictures, captioned=False)
     # The ideal motion decides what part of the plane is shown.
     poses = [design.parts(angle) for angle in angles]
     clouds = [np.concatenate(panels) for panels in poses]
@@ -95,11 +107,15 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
         pictures = [draw_polygons(panels, box, job.target) for panels in poses]
     else:
         pictures = [_as_cut(design, job.target, motion, angle, box) for angle in angles]
-    # Open and closed states together show every colour.
-    width, height = box.pixels
-    sample = Image.new("RGB", (width, 2 * height + (0 if motion is None else 2 * LETTERS)), OVERSTRETCHED)
+    return _with_one_palette(pictures, captioned=motion is not None)
+
+
+def _with_one_palette(pictures: list[Image.Image], captioned: bool) -> list[Image.Image]:
+    """Pictures in the colours of all; open and closed states together show every one."""
+    width, height = pictures[0].size
+    sample = Image.new("RGB", (width, 2 * height + (2 * LETTERS if captioned else 0)), OVERSTRETCHED)
     sample.paste(INK, (0, 2 * height + LETTERS, *sample.size))
-    sample.paste(pictures[frames // 2], (0, 0))
+    sample.paste(pictures[len(pictures) // 2], (0, 0))
     sample.paste(pictures[-1], (0, height))
     shared = sample.quantize(colors=PALETTE_COLOURS)
     return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]

@@ -12,8 +12,9 @@ import io
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -23,12 +24,16 @@ import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.backed_files import HINGE_LAYER, Glued
-from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds, too_large
+from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds
+from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
+from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
@@ -50,6 +55,7 @@ from kirigami_studio.export.verification import (
 from kirigami_studio.fabricate.cut_plan import Layer, design_hash
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import BoardCut, CutOrder
@@ -57,6 +63,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Angles of the motion from flat to the target.
 ANGLES = 181
@@ -67,7 +74,9 @@ RING_CHORD_MM = 5e-4
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
-OWN_NAME = re.compile(r"layer-[1-9]\d*(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf")
+OWN_NAME = re.compile(
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+)
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
 
@@ -104,6 +113,14 @@ class AssemblyJob:
         The design as a packed project, which the first DXF and SVG carry; empty for none.
     verdict : str
         Level of the verdict on the design; "" where nobody has judged it.
+    hold : HoldOptions
+        Parts that hold it in its end states.
+    holds : tuple of HoldPlace
+        Where they are.
+    drive : DriveParts or None
+        Board and arms that move it.
+    width_mm : float
+        Of the flat sheet; 0 where that is not known.
     glued : Glued or None
         The hinge layer that the pieces are glued on, in the place of pins.
     """
@@ -127,7 +144,16 @@ class AssemblyJob:
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     record: bytes = b""
     verdict: str = ""
+    hold: HoldOptions = field(default_factory=HoldOptions)
+    holds: tuple[HoldPlace, ...] = ()
+    drive: DriveParts | None = None
+    width_mm: float = 0.0
     glued: Glued | None = None
+
+    @property
+    def whole(self) -> Assembly:
+        """The assembly with the parts of its drive."""
+        return self.assembly if self.drive is None else self.drive.assembly
 
     @cached_property
     def beds(self) -> tuple[CutBed, ...]:
@@ -140,7 +166,7 @@ class AssemblyJob:
         """
         if (glued := self.glued) is not None:
             return (board_bed(glued.board, self.allowed_mm, glued.cut is BoardCut.KISS, self.order),)
-        return laid_on_beds(self.assembly.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
+        return laid_on_beds(self.whole.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
     @property
     def allowed_mm(self) -> float:
@@ -151,15 +177,16 @@ class AssemblyJob:
     def notes(self) -> tuple[Note, ...]:
         """Notes to read before cutting."""
         room = self.machine.reach_mm
-        large = [
-            Note.of("pieces.larger_than_bed", piece=bed.pieces[0].piece.id, width_mm=room[0], height_mm=room[1])
-            for bed in self.beds
-            if too_large(bed, room)
+        layers = Counter(bed.layer for bed in self.beds)
+        several = [
+            Note.of("pieces.several_beds", layer=layer, count=count, width_mm=room[0], height_mm=room[1])
+            for layer, count in layers.items()
+            if count > 1
         ]
         note = find_profile(self.profile).note
         kiss = self.glued is not None and self.glued.cut is BoardCut.KISS
         kissed = [Note.of("backed.kiss_cut", layer=find_profile(self.profile).layer_name(Layer.KISS))] if kiss else []
-        return (*large, *kissed, *([] if note is None else [note]))
+        return (*several, *kissed, *([] if note is None else [note]))
 
     @cached_property
     def works(self) -> tuple[Work, ...]:
@@ -246,7 +273,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     """Write all files into a new folder and read them back."""
     verified: list[Verification] = []
     by_kind: dict[str, dict[str, FoundPiece]] = {}
-    moving, known = job.assembly.by_id, KnownOutlines()
+    moving, known = job.whole.by_id, KnownOutlines()
     for kind in kinds:
         if job.glued is not None:
             verified.append(_hinge_layer_written(job, job.glued, fresh, home, kind))
@@ -254,10 +281,11 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             found, pieces = _bed_written(job, bed, fresh, home, kind, known)
             verified.append(found)
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
-    write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
+    record = pieces_json(job.whole, holds=job.holds)
+    write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target)
+    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     if (glued := job.glued) is not None:
         template = board_bed(glued.board, 0.0)
         sheet = replace(sheet, steps=glued.steps, legend={2: "tiles"}, template=template, under=glued.under)
@@ -284,6 +312,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "LAYER": f"{bed.layer}",
         "BED": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
         "PIECES": f"{len(bed.pieces)}",
+        **({"WIDTH_MM": exactly(job.width_mm)} if job.width_mm else {}),
         "PIN_MM": exactly(job.hole_mm),
         "EAR_MM": exactly(job.ear_mm),
         "CLEARANCE_MM": exactly(job.clearance_mm),
@@ -313,18 +342,56 @@ def _bed_written(
     record = job.record if bed is job.beds[0] and job.glued is None else b""
     cut = job.material, job.machine
     path, contents, found = _strokes_written(job, bed.name, kind, strokes, profile, facts, record, cut, fresh)
+    return _bed_verified(job, bed, home / path.name, contents, known, found)
+
+
+def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) -> tuple[Verification, list[FoundPiece]]:
+    """Find the pieces of a bed in a file of any origin, by both readers.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+        With the kerf and the profile of the file.
+    bed : CutBed
+        Of that job.
+    path : Path
+        A file, or a folder of layer files.
+    known : KnownOutlines
+        Of the other files of the job.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    """
+    kind = path.suffix.lower()
+    how = FORMATS[".dxf"] if path.is_dir() else PROJECT if kind == ".lbrn2" else FORMATS.get(kind)
+    if how is None:
+        raise ExportError("verify.unknown_kind", path=path, known=", ".join(KINDS))
+    return _bed_verified(job, bed, path, [_content(read, path) for read in how.readers], known, [])
+
+
+def _bed_verified(
+    job: AssemblyJob,
+    bed: CutBed,
+    path: Path,
+    contents: Sequence[FileContent],
+    known: KnownOutlines,
+    found: Sequence[Finding],
+) -> tuple[Verification, list[FoundPiece]]:
+    """The pieces of a bed, with what else was found in its file."""
     of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
-    found += agreed(contents, [findings for findings, _ in of_pieces])
+    findings = (*found, *agreed(contents, [one for one, _ in of_pieces]))
     work = job.works[job.beds.index(bed)]
     verification = Verification(
-        path=home / path.name,
-        ok=all(finding.ok for finding in found),
+        path=path,
+        ok=all(finding.ok for finding in findings),
         size_mm=extent(contents[-1].strokes),
         pieces=len(of_pieces[-1][1]) or None,
         cut_length_mm=work.cut_length_mm,
         seconds_low=work.times.low,
         seconds_high=work.times.high,
-        findings=tuple(found),
+        findings=findings,
         warnings=job.notes,
     )
     return verification, of_pieces[-1][1]
@@ -393,8 +460,8 @@ def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
 # pieces and motion ----------------------------------------------------------------------------------------------------
 
 
-def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
-    """Pieces, hinges and motion, as plain lists.
+def pieces_json(assembly: Assembly, angles: int = ANGLES, holds: Sequence[HoldPlace] = ()) -> dict[str, Any]:
+    """Pieces, hinges, motion and, where there are any, places that hold the pieces, as plain lists.
 
     Outlines, holes (as rings) and hinge points are in the frame of their piece, in mm; a pose turns a piece about its
     origin, then moves it.
@@ -419,6 +486,7 @@ def pieces_json(assembly: Assembly, angles: int = ANGLES) -> dict[str, Any]:
             {"phi_deg": round(math.degrees(phi), TURN_DECIMALS), "poses": _poses(assembly, phi)}
             for phi in phis.tolist()
         ],
+        **({"holds": holds_json(holds, LENGTH_DECIMALS)} if holds else {}),
     }
 
 
@@ -448,12 +516,12 @@ def _motion_verified(
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.assembly)
+    right = record == pieces_json(job.whole, holds=job.holds)
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
     for kind, pieces in by_kind.items():
-        if not right or set(pieces) != set(job.assembly.by_id):
+        if not right or set(pieces) != set(job.whole.by_id):
             continue
-        moved = motion_findings(pieces, record, known)
+        moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
     far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
@@ -461,7 +529,7 @@ def _motion_verified(
         path=goal,
         ok=all(finding.ok for finding in findings),
         size_mm=(width, height),
-        pieces=len(job.assembly.pieces),
+        pieces=len(job.whole.pieces),
         cut_length_mm=sum(work.cut_length_mm for work in job.all_works),
         seconds_low=sum(work.times.low for work in job.all_works),
         seconds_high=sum(work.times.high for work in job.all_works),
@@ -480,6 +548,7 @@ class PartLine:
     Attributes
     ----------
     item : str
+        One of ``ITEMS``.
     layer, bed : int or None
     file : str
         Stem of the cut file.
@@ -501,11 +570,32 @@ class PartLine:
     note: str = ""
 
 
-COLUMNS = tuple(entry.name for entry in fields(PartLine))
+#: Headings of the columns, by the names of the entries.
+HEADINGS = {
+    "item": mark("item"),
+    "layer": mark("layer"),
+    "bed": mark("bed"),
+    "file": mark("file"),
+    "count": mark("count"),
+    "diameter_mm": mark("diameter_mm"),
+    "length_mm": mark("length_mm"),
+    "area_mm2": mark("area_mm2"),
+    "cut_mm": mark("cut_mm"),
+    "seconds": mark("seconds"),
+    "note": mark("note"),
+}
+ITEMS = {
+    "pieces": mark("pieces"),
+    "pins": mark("pins"),
+    "material": mark("material"),
+    "all cuts": mark("all cuts"),
+    "hinge layer": mark("hinge layer"),
+    "glue": mark("glue"),
+}
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
-    """The parts list: pieces of each bed, pins or glue, materials, and all together."""
+    """The parts list: pieces of each bed, pins or glue, parts that hold, materials, and all together."""
     found = _hinge_layer_parts(job)
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)
@@ -529,20 +619,27 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             count=len(job.assembly.hinges),
             diameter_mm=job.hole_mm,
             length_mm=job.fastener_length_mm,
-            note=f"{SIZES[job.fastener].name}; holes of this diameter, pins at least this long",
+            note=tr("{pins}; holes of this diameter, pins at least this long", pins=tr(SIZES[job.fastener].name)),
         )
         found.append(pins)
+    found += [
+        PartLine(line.item, count=line.count, diameter_mm=line.diameter_mm, length_mm=line.length_mm, note=line.note)
+        for line in (
+            *hold_lines(job.holds, job.hold),
+            *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
+        )
+    ]
     if job.glued is not None:
-        found.append(PartLine("glue", area_mm2=job.glued.glue_mm2, note="area of the tiles, one side"))
+        found.append(PartLine("glue", area_mm2=job.glued.glue_mm2, note=tr("area of the tiles, one side")))
     found.append(_material_part(job.material, [bed.size_mm for bed in job.beds]))
     found.append(
         PartLine(
             "all cuts",
-            count=len(job.assembly.pieces),
-            area_mm2=sum(map(_area, job.assembly.pieces)),
+            count=len(job.whole.pieces),
+            area_mm2=sum(map(_area, job.whole.pieces)),
             cut_mm=sum(work.cut_length_mm for work in job.all_works),
             seconds=sum(work.times.total for work in job.all_works),
-            note=f"on {job.machine.name}",
+            note=tr("on {machine}", machine=tr(job.machine.name)),
         )
     )
     return tuple(found)
@@ -556,13 +653,13 @@ def _hinge_layer_parts(job: AssemblyJob) -> list[PartLine]:
     area = float(shapely.area(Polygon(plan.outline)))
     line = PartLine("hinge layer", 1, 1, HINGE_LAYER, 1, area_mm2=area, cut_mm=work.cut_length_mm)
     return [
-        replace(line, seconds=work.times.total, note=f"on {plan.machine.name}"),
+        replace(line, seconds=work.times.total, note=tr("on {machine}", machine=tr(plan.machine.name))),
         _material_part(plan.material, [job.glued.board.size_mm]),
     ]
 
 
 def _material_part(material: Material, sizes: Sequence[tuple[float, float]]) -> PartLine:
-    note = f"{material.name}; area of the rectangles round what is cut"
+    note = tr("{material}; area of the rectangles round what is cut", material=tr(material.name))
     return PartLine("material", count=len(sizes), note=note, area_mm2=sum(width * height for width, height in sizes))
 
 
@@ -573,12 +670,13 @@ def _area(piece: Piece) -> float:
 
 
 def parts_csv(job: AssemblyJob) -> str:
-    """The parts list as a table."""
+    """The parts list as a table; words are in the user's language, numbers have points in all of them."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\r\n")
-    table.writerow(COLUMNS)
+    table.writerow([tr(heading) for heading in HEADINGS.values()])
     for part in parts(job):
-        table.writerow([_cell(getattr(part, column)) for column in COLUMNS])
+        named = replace(part, item=tr(ITEMS.get(part.item, part.item)))
+        table.writerow([_cell(getattr(named, column)) for column in HEADINGS])
     return text.getvalue()
 
 
@@ -592,25 +690,49 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
     """The parts list in sentences for the assembly sheet."""
     lines = []
     for part in parts(job):
+        cut: dict[str, object] = {"cut": part.cut_mm or 0.0, "time": _minutes(part.seconds)}
+        count = part.count or 0
         if part.item == "pieces":
-            lines.append(f"{part.file}: {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
+            one = tr_n(
+                "{file}: {count} piece, cut {cut:.1f} mm, {time}",
+                "{file}: {count} pieces, cut {cut:.1f} mm, {time}",
+                count,
+                file=part.file,
+                **cut,
+            )
         elif part.item == "pins":
-            name = SIZES[job.fastener].name
-            lines.append(
-                f"{part.count} pins: {name}, at least {_cell(part.length_mm)} mm long, holes {part.diameter_mm:g} mm"
+            one = tr_n(
+                "{count} pin: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                "{count} pins: {name}, at least {length:.1f} mm long, holes {hole:g} mm",
+                count,
+                name=tr(SIZES[job.fastener].name),
+                length=part.length_mm,
+                hole=part.diameter_mm,
             )
         elif part.item == "material":
-            lines.append(
-                f"{part.note.partition(';')[0]}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2 on {part.count} beds"
+            one = tr_n(
+                "{material}: {area:.0f} cm2 on {count} bed",
+                "{material}: {area:.0f} cm2 on {count} beds",
+                count,
+                material=tr(job.material.name),
+                area=(part.area_mm2 or 0.0) / 100.0,
             )
         elif part.item == "hinge layer":
-            lines.append(f"{part.file}: hinge layer, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}")
+            one = f"{part.file}: {tr(part.item)}, {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}"
         elif part.item == "glue":
-            lines.append(f"Glue for {(part.area_mm2 or 0.0) / 100.0:.0f} cm2")
+            one = f"{tr(part.item)}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2"
+        elif part.item != "all cuts":
+            size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
+            one = f"{part.count} {tr(part.item)}{f', {size} mm' if size else ''}, {part.note}"
         else:
-            lines.append(
-                f"Together {part.count} pieces, cut {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}, {part.note}"
+            one = tr_n(
+                "Together {count} piece, cut {cut:.1f} mm, {time}, {machine}",
+                "Together {count} pieces, cut {cut:.1f} mm, {time}, {machine}",
+                count,
+                machine=part.note,
+                **cut,
             )
+        lines.append(one)
     return tuple(lines)
 
 
@@ -623,6 +745,6 @@ def _about(job: AssemblyJob) -> dict[str, str]:
     """Title and facts for the assembly sheet."""
     facts = {"design": design_hash(job.assembly.deployment, ()), **job.provenance}
     return {
-        "title": job.name or "Kirigami assembly",
+        "title": job.name or tr("Kirigami assembly"),
         "subject": "; ".join(f"{key} {text}" for key, text in facts.items()),
     }

@@ -20,9 +20,13 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Hinge
 from kirigami_studio.export import picture
 from kirigami_studio.export.cut_bed import CutBed
+from kirigami_studio.export.drive_files import drive_steps
+from kirigami_studio.export.hold_files import HOLD_STEPS
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, PAPERS, Paper, Size, Tile, Tiling, find_paper, tile
 from kirigami_studio.export.pdf import ROUNDING_MM, SAME_LENGTH, length_in_cell, read_pages
 from kirigami_studio.export.pdf_library import Canvas, mm
@@ -37,14 +41,23 @@ from kirigami_studio.export.pdf_pages import (
     to_page,
 )
 from kirigami_studio.export.picture import Colour
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
-#: Fill and edge of the pieces of each layer: the first solid, the other lighter.
-FILLS: Mapping[int, Colour] = {1: picture.PANEL, 2: (236, 242, 248)}
-EDGES: Mapping[int, Colour] = {1: picture.PANEL_EDGE, 2: (120, 146, 178)}
+#: Fill and edge of the pieces of each layer: the first solid, the other lighter; then arms, board and handle.
+FILLS: Mapping[int, Colour] = {
+    1: picture.PANEL, 2: (236, 242, 248), 3: (255, 224, 178), 4: (245, 239, 227), 5: (255, 240, 214),
+}  # fmt: skip
+EDGES: Mapping[int, Colour] = {
+    1: picture.PANEL_EDGE, 2: (120, 146, 178), 3: (176, 112, 32), 4: (140, 120, 90), 5: (190, 150, 90),
+}  # fmt: skip
 PIN: Colour = picture.TARGET_EDGE
+#: Places that hold the sheet, and how far their numbers stand beside them (points).
+HOLD: Colour = (178, 34, 34)
+BESIDE_POINTS = 3.0
 #: Corners nearer than this (mm) to the line of their neighbours are left out of pictures.
 UNSEEN_MM = 0.02
 #: Corners of a pin's circle.
@@ -59,14 +72,18 @@ GAP_MM = 8.0
 #: Pins that a page lists in a column, columns on a page, and pictures of beds in a row.
 COLUMNS, BEDS_IN_A_ROW = 2, 2
 STEPS = (
-    "Engraved numbers and bars face you in both layers; the bar is below the number. Without engraving, number the "
-    "pieces by the pictures of the beds.",
-    "Lay the pieces of layer 2 (light) on the page at true size, each on its number.",
-    "Lay the pieces of layer 1 (dark) over them, hole on hole.",
-    "Put in the pins row by row from the top, in the order of the list; leave them loose.",
-    "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn.",
+    mark(
+        "Engraved numbers and bars face you in both layers; the bar is below the number. Without engraving, number the "
+        "pieces by the pictures of the beds."
+    ),
+    mark("Lay the pieces of layer 2 (light) on the page at true size, each on its number."),
+    mark("Lay the pieces of layer 1 (dark) over them, hole on hole."),
+    mark("Put in the pins row by row from the top, in the order of the list; leave them loose."),
+    mark(
+        "Open and close the sheet by hand. Where a piece rubs, smooth its edge; then lock the pins so that they turn."
+    ),
 )
-LEGEND: Mapping[int, str] = {1: "layer 1, in front", 2: "layer 2, behind"}
+LEGEND: Mapping[int, str] = {1: mark("layer 1, in front"), 2: mark("layer 2, behind")}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +100,10 @@ class AssemblySheet:
         The parts list.
     target : (L, 2) float or None, mm
         Target outline behind the opened sheet.
+    holds : sequence of HoldPlace
+        Places that hold the sheet, shown in their states.
+    drive : DriveParts or None
+        Board and arms that move it, which have a page of their own.
     steps : sequence of str
     legend : mapping of int to str
         Words on the layers.
@@ -99,6 +120,8 @@ class AssemblySheet:
     about: Mapping[str, str]
     lines: Sequence[str]
     target: FloatArray | None = None
+    holds: Sequence[HoldPlace] = ()
+    drive: DriveParts | None = None
     steps: Sequence[str] = STEPS
     legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
     pins_are_put_in: bool = True
@@ -133,10 +156,19 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     canvas.setSubject(sheet.about["subject"])
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setLineJoin(1)
-    _first_page(canvas, sheet, flat, upright)
+    _first_page(canvas, sheet, upright)
     before = 1 + _pages_of_pins(canvas, sheet, flat, upright) + _pages_of_beds(canvas, sheet.beds, upright)
+    if sheet.drive is not None:
+        _page_of_drive(canvas, sheet.drive, upright)
+        before += 1
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
-    about = f"{sheet.about['title']}, flat, at true size: {full.size[0]:.1f} x {full.size[1]:.1f} mm"
+    width, height = full.size
+    about = tr(
+        "{title}, flat, at true size: {width:.1f} x {height:.1f} mm",
+        title=sheet.about["title"],
+        width=width,
+        height=height,
+    )
     draw_pages(canvas, tiling, full.size, about, lambda part: _draw_part(canvas, full, part))
     canvas.save()
     content = stream.getvalue()
@@ -174,15 +206,20 @@ class _Drawing:
     pins : (H, 2) float, mm
     target : (L, 2) float or None, mm
     size : (width, height), mm
+    holds : tuple of (number, tuple of (K, 2) float, mm)
+        Numbers of places that hold the sheet, and rings round their holes and tabs.
     """
 
     shapes: tuple[_Shape, ...]
     pins: FloatArray
     target: FloatArray | None
     size: Size
+    holds: tuple[tuple[str, tuple[FloatArray, ...]], ...] = ()
 
     @classmethod
-    def of(cls, assembly: Assembly, phi: float, target: FloatArray | None = None) -> _Drawing:
+    def of(
+        cls, assembly: Assembly, phi: float, target: FloatArray | None = None, holds: Sequence[HoldPlace] = ()
+    ) -> _Drawing:
         """The sheet at an angle."""
         pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
         placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
@@ -207,7 +244,14 @@ class _Drawing:
         ]
         pins = np.array([_pin_place(assembly, hinge, phi) - low for hinge in assembly.hinges]).reshape(-1, 2)
         width, height = (high - low).tolist()
-        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height))
+        signs = []
+        for place in holds:
+            rings: list[FloatArray] = []
+            for name, at in zip(place.parts, place.at, strict=True):
+                points = assembly.placed(assembly.by_id[name], at, phi) - low
+                rings += [point + 0.5 * place.hole_mm * CIRCLE for point in points] if place.hole_mm else [points]
+            signs.append((f"{place.number}", tuple(rings)))
+        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height), tuple(signs))
 
     @classmethod
     def of_bed(cls, bed: CutBed, under: FloatArray | None = None) -> _Drawing:
@@ -263,6 +307,13 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)
     for shape in drawing.shapes:
         _number(canvas, shape, scale, corner)
+    for number, rings in drawing.holds:
+        for ring in rings:
+            _fill(canvas, [corner + scale * ring], HOLD)
+        x, y = ((corner + scale * np.concatenate(rings).max(axis=0)) * mm).tolist()
+        canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
+        canvas.setFont("Helvetica-Bold", MOST_POINTS)
+        canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)
 
 
 def _coarse(ring: FloatArray) -> FloatArray:
@@ -345,58 +396,66 @@ def _title(canvas: Any, text: str, page: Size) -> float:
     return top - GAP_MM
 
 
-def _first_page(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size) -> None:
-    opened = _Drawing.of(sheet.assembly, sheet.assembly.phi_target, sheet.target)
+def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
+    here = {state: [place for place in sheet.holds if place.state is state] for state in HeldState}
+    flat = _Drawing.of(sheet.assembly, math.pi, holds=here[HeldState.FLAT])
+    opened = _Drawing.of(sheet.assembly, sheet.assembly.phi_target, sheet.target, here[HeldState.OPEN])
     top = _title(canvas, sheet.about["title"], page)
     width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
     room = (width, 0.42 * page[1])
     scale = min(_fitting(flat, room), _fitting(opened, room))
     degrees = math.degrees(sheet.assembly.phi_target)
     height = scale * max(flat.size[1], opened.size[1])
-    for number, (drawing, words) in enumerate(((flat, "Flat"), (opened, f"Opened, {degrees:.0f} degrees"))):
+    for number, (drawing, words) in enumerate(
+        ((flat, tr("Flat")), (opened, tr("Opened, {angle:.0f} degrees", angle=degrees)))
+    ):
         left = MARGIN_MM + number * (width + GAP_MM)
         _ink(canvas)
         canvas.setFont("Helvetica-Bold", HEAD_POINTS)
-        canvas.drawString(left * mm, top * mm, words)
+        canvas.drawString(left * mm, top * mm, _printable(words))
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, sheet.legend, y, scale, bool(sheet.assembly.hinges))
+    _legend(canvas, sheet, y, scale)
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
-    column.head("Parts")
+    column.head(tr("Parts"))
     for line in sheet.lines:
         column.text(line)
-    column.head("Assembly")
-    for number, line in enumerate(sheet.steps, start=1):
-        column.text(line, f"{number}.")
+    column.head(tr("Assembly"))
+    held = [HOLD_STEPS[kind] for kind in dict.fromkeys(place.kind for place in sheet.holds)]
+    for number, line in enumerate((*sheet.steps, *held), start=1):
+        column.text(tr(line), f"{number}.")
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
 
 
-def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float, pins: bool) -> None:
+def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
-    for layer, words in legend.items():
+    for layer, words in sheet.legend.items():
         ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
-        x = _words(canvas, words, x + 6.0, y)
-    if pins:
+        x = _words(canvas, tr(words), x + 6.0, y)
+    if sheet.assembly.hinges:
         stroke_colour(canvas, PIN)
         draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
-        x = _words(canvas, "pin", x + 5.0, y)
-    _words(canvas, f"pictures at 1 : {1.0 / scale:.1f}", x, y)
+        x = _words(canvas, tr("pin"), x + 5.0, y)
+    if sheet.holds:
+        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
+        x = _words(canvas, tr("keeps it so"), x + 5.0, y)
+    _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)
 
 
 def _words(canvas: Any, words: str, x: float, y: float) -> float:
     """Write on a line, and return where the next words may begin, mm."""
     _ink(canvas)
     canvas.setFont("Helvetica", TEXT_POINTS)
-    canvas.drawString(x * mm, (y + 0.6) * mm, words)
+    canvas.drawString(x * mm, (y + 0.6) * mm, _printable(words))
     return float(x + canvas.stringWidth(words, "Helvetica", TEXT_POINTS) / mm + 6.0)
 
 
@@ -422,12 +481,12 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
     width = (page[0] - 2.0 * MARGIN_MM - (COLUMNS - 1) * GAP_MM) / COLUMNS
     lines: list[tuple[bool, str]] = []
     for number, row in enumerate(pins_in_order(sheet.assembly), start=1):
-        lines.append((True, f"Row {number}: {len(row)} pins"))
+        lines.append((True, tr_n("Row {row}: {count} pin", "Row {row}: {count} pins", len(row), row=number)))
         text = ", ".join(f"{hinge.pieces[0]}+{hinge.pieces[1]}" for hinge in row)
         lines += [(False, line) for line in textwrap.wrap(text, int(width * LETTERS_PER_MM), break_on_hyphens=False)]
     pages, at = 0, 0
     while at < len(lines):
-        top = _title(canvas, "Pins in order" if pages == 0 else "Pins in order, continued", page)
+        top = _title(canvas, tr("Pins in order") if pages == 0 else tr("Pins in order, continued"), page)
         for number in range(COLUMNS):
             column = _Column(canvas, MARGIN_MM + number * (width + GAP_MM), top, width)
             while at < len(lines) and column.y > MARGIN_MM + FOOTER_MM + 3.0 * LINE_STEP_MM:
@@ -441,13 +500,37 @@ def _pages_of_pins(canvas: Any, sheet: AssemblySheet, flat: _Drawing, page: Size
     return pages
 
 
+def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
+    """Show board and arms at both ends of the motion, with the pieces that they move."""
+    top = _title(canvas, "Board and arms, seen from the front", page)
+    width = 0.5 * (page[0] - 2.0 * MARGIN_MM - GAP_MM)
+    parts = drive.parts
+    ends = ((math.pi, "Flat"), (parts.phi_target, f"Opened, {math.degrees(parts.phi_target):.0f} degrees"))
+    drawings = [_Drawing.of(parts, phi) for phi, _ in ends]
+    scale = min(_fitting(drawing, (width, 0.42 * page[1])) for drawing in drawings)
+    for number, (drawing, (_, words)) in enumerate(zip(drawings, ends, strict=True)):
+        left = MARGIN_MM + number * (width + GAP_MM)
+        _ink(canvas)
+        canvas.setFont("Helvetica-Bold", HEAD_POINTS)
+        canvas.drawString(left * mm, top * mm, words)
+        _draw(canvas, drawing, scale, np.array([left, top - 4.0 - scale * drawing.size[1]]))
+    y = top - 4.0 - scale * max(drawing.size[1] for drawing in drawings) - GAP_MM
+    column = _Column(canvas, MARGIN_MM, y, page[0] - 2.0 * MARGIN_MM)
+    column.text(f"Pictures at 1 : {1.0 / scale:.1f}. {drive.fixed} is fixed to the board.")
+    for number, line in enumerate(drive_steps(drive), start=1):
+        column.text(line, f"{number}.")
+    _ink(canvas)
+    draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
+    canvas.showPage()
+
+
 def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
     """Show which piece lies where on each bed; return the number of pages."""
     width = (page[0] - 2.0 * MARGIN_MM - (BEDS_IN_A_ROW - 1) * GAP_MM) / BEDS_IN_A_ROW
     drawings = [_Drawing.of_bed(bed) for bed in beds]
     at, pages = 0, 0
     while at < len(beds):
-        y = _title(canvas, "Pieces on their beds", page)
+        y = _title(canvas, tr("Pieces on their beds"), page)
         while at < len(beds):
             row = range(at, min(at + BEDS_IN_A_ROW, len(beds)))
             room = (width, 0.3 * page[1])
@@ -459,8 +542,15 @@ def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:
                 left, size = MARGIN_MM + number * (width + GAP_MM), drawings[one].size
                 _ink(canvas)
                 canvas.setFont("Helvetica-Bold", TEXT_POINTS)
-                words = f"{beds[one].name}: {len(beds[one].pieces)} pieces, {size[0]:.1f} x {size[1]:.1f} mm"
-                canvas.drawString(left * mm, y * mm, words)
+                words = tr_n(
+                    "{bed}: {count} piece, {width:.1f} x {height:.1f} mm",
+                    "{bed}: {count} pieces, {width:.1f} x {height:.1f} mm",
+                    len(beds[one].pieces),
+                    bed=beds[one].name,
+                    width=size[0],
+                    height=size[1],
+                )
+                canvas.drawString(left * mm, y * mm, _printable(words))
                 _draw(canvas, drawings[one], scale, np.array([left, y - 3.0 - scale * size[1]]))
             y -= high + 3.0 + GAP_MM
             at = row.stop

@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import Board
@@ -40,6 +40,10 @@ BEAM_CHORDS = 64
 CORNER_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Layers of a sheet, and the stem of the file of all parts behind them.
+LAYERS, BOARD = 2, "board"
+#: Distance of numbers from the marks of tabs, mm.
+CLEAR_OF_MARK_MM = 0.5
 #: Designs whose beds are kept, with the order of their cuts.
 MOST_KEPT = 16
 #: Chords of a quarter circle where the room round holes is measured.
@@ -60,7 +64,7 @@ class PieceCuts:
     openings : tuple of (K, 2) float
         Those of the piece first, clockwise; then notches that the beam cannot enter by their mouths.
     number : tuple of (P, 2) float
-        Open strokes; none where the number has no room.
+        Open strokes; none where the number has no room, and the piece no marks.
     """
 
     piece: Piece
@@ -88,9 +92,13 @@ class PieceCuts:
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
         rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
         area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
+        marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
+        lines = tuple(shapely.get_coordinates(line) for line in marks if isinstance(line, LineString) and line.length)
+        if piece.marks:  # the number keeps out of them
+            area = area.difference(shapely.union_all([Polygon(mark).buffer(CLEAR_OF_MARK_MM) for mark in piece.marks]))
         parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
         free = max(parts, key=lambda part: part.area, default=Polygon())
-        return cls(piece, outline, holes, openings, written_in(free, piece.id))
+        return cls(piece, outline, holes, openings, (*written_in(free, piece.id), *lines))
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
@@ -152,6 +160,11 @@ def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
     return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
+def bed_name(layer: int, number: int) -> str:
+    """Stem of the file of a bed of a layer, or of the drive's board, by its number from 1."""
+    return (BOARD if layer > LAYERS else f"layer-{layer}") + (f"-b{number}" if number > 1 else "")
+
+
 @dataclass(frozen=True, eq=False)
 class CutBed:
     """Pieces on one bed, which one file cuts.
@@ -180,8 +193,8 @@ class CutBed:
 
     @property
     def name(self) -> str:
-        """Stem of its file: ``layer-1``, ``layer-1-b2``."""
-        return f"layer-{self.layer}" + (f"-b{self.number}" if self.number > 1 else "")
+        """Stem of its file: ``layer-1``, ``layer-1-b2``, ``board``."""
+        return bed_name(self.layer, self.number)
 
     @property
     def size_mm(self) -> tuple[float, float]:
@@ -279,8 +292,10 @@ def _laid(
     pieces: tuple[Piece, ...], kerf_mm: float, bed: tuple[float, float], margin_mm: float, order: CutOrder
 ) -> tuple[CutBed, ...]:
     found = []
-    for layer in sorted({piece.layer for piece in pieces}):
-        cuts = [PieceCuts.of(piece, kerf_mm) for piece in pieces if piece.layer == layer]
+    # The parts of a drive lie together, whatever their layers.
+    sheets = [min(piece.layer, LAYERS + 1) for piece in pieces]
+    for layer in sorted(set(sheets)):
+        cuts = [PieceCuts.of(piece, kerf_mm) for piece, sheet in zip(pieces, sheets, strict=True) if sheet == layer]
         beds = nested([one.outline for one in cuts], bed, kerf_mm + WEB_MM, margin_mm)
         for number, places in enumerate(beds, start=1):
             here = tuple(cuts[place.shape] for place in places)
@@ -304,8 +319,3 @@ def board_bed(board: Board, kerf_mm: float, kiss: bool = False, order: CutOrder 
     low = cuts[-1].outline.min(axis=0)
     places = tuple(LaidShape(number, place - low, 0.0) for number, place in enumerate(board.places))
     return CutBed(board.pieces[0].layer, 1, cuts, places, order, board.pieces[-1].id, kiss)
-
-
-def too_large(bed: CutBed, room: tuple[float, float]) -> bool:
-    """Whether what is cut reaches beyond a bed (width, height; mm, 0 for a side without an end)."""
-    return any(0.0 < most < side - math.ulp(most) * 4 for side, most in zip(bed.size_mm, room, strict=True))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.assembly.solids import Printing
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -48,6 +49,7 @@ class ExportJob:
     verdict: str = ""  #: Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it
     #: How files of solids are made: the planned sheet, as thick as its material, unless given
     printing: Printing = field(default_factory=Printing)
+    pieces: PosedPieces | None = None  #: Shown in pictures of a design that is made of pieces, not its panels
 
     @classmethod
     def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:

@@ -13,6 +13,7 @@ from kirigami_studio.export.dxf_reading import MOST_PIECES
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.provenance import ONE_SHEET, PROGRAM, SLOT_KERF, VERDICT
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM
+from kirigami_studio.fabricate.fastener import Fastener
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import COPY_GAP_MM, TAB_MM, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
@@ -213,6 +214,10 @@ class PieceRecord:
     clearance_mm: float
     lines: int  #: that are cut
     verdict: str  #: level of the verdict of the export, "" where there was none
+    #: width_mm, fastener, order: of the flat sheet, its pins and its cuts; 0 and "" in files of earlier versions.
+    width_mm: float = 0.0
+    fastener: str = ""
+    order: str = ""
 
     def to_json(self) -> dict[str, object]:
         """For the command line."""
@@ -248,4 +253,7 @@ def piece_record_of(facts: Mapping[str, str]) -> PieceRecord | None:
         clearance_mm=read.number("CLEARANCE_MM"),
         lines=read.count("LINES"),
         verdict=read.one_of(VERDICT, ("", "ready_to_cut", "cut_with_care", "will_not_work"), ""),
+        width_mm=read.number("WIDTH_MM", 0.0),
+        fastener=read.one_of("FASTENER", ("", *Fastener), ""),
+        order=read.one_of("ORDER", ("", *CutOrder), ""),
     )

@@ -18,6 +18,7 @@ from kirigami_studio.export.pdf_library import mm
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.words import tr
 
 RULER_MM = 50.0
 LINE_MM = 0.1
@@ -50,8 +51,18 @@ def draw_pages(canvas: Any, tiling: Tiling, size: Size, about: str, draw_part: C
         if count > 1:
             _draw_joints(canvas, part)
         low_x, low_y, high_x, high_y = part.window
-        place = f"Page {number} of {count}: row {part.row + 1}, column {part.column + 1}, "
-        place += f"x {low_x:.2f} to {high_x:.2f} mm, y {low_y:.2f} to {high_y:.2f} mm"
+        place = tr(
+            "Page {number} of {count}: row {row}, column {column}, x {low_x:.2f} to {high_x:.2f} mm, y {low_y:.2f} to "
+            "{high_y:.2f} mm",
+            number=number,
+            count=count,
+            row=part.row + 1,
+            column=part.column + 1,
+            low_x=low_x,
+            high_x=high_x,
+            low_y=low_y,
+            high_y=high_y,
+        )
         draw_ruler(canvas, about, place if count > 1 else "")
         canvas.showPage()
 
@@ -119,8 +130,13 @@ def _draw_map(canvas: Any, size: Size, tiling: Tiling, about: str) -> None:
         draw_line(canvas, np.array([[ax, ay], [bx, ay], [bx, by], [ax, by]]), closed=True)
         canvas.drawCentredString(0.5 * (ax + bx) * mm, 0.5 * (ay + by) * mm, str(number))
     canvas.setFont("Helvetica", 9)
-    text = f"Map of {len(tiling.tiles)} pages, {tiling.rows} x {tiling.columns}: cut along the dashed lines, lay cross"
-    canvas.drawString(MARGIN_MM * mm, (page[1] - MARGIN_MM) * mm, f"{text} upon cross, and tape.")
+    text = tr(
+        "Map of {count} pages, {rows} x {columns}: cut along the dashed lines, lay cross upon cross, and tape.",
+        count=len(tiling.tiles),
+        rows=tiling.rows,
+        columns=tiling.columns,
+    )
+    canvas.drawString(MARGIN_MM * mm, (page[1] - MARGIN_MM) * mm, text)
     draw_ruler(canvas, about, "")
 
 
@@ -132,9 +148,8 @@ def draw_ruler(canvas: Any, about: str, place: str) -> None:
     for tick in range(0, int(RULER_MM) + 1, 10):
         canvas.line((left + tick) * mm, base * mm, (left + tick) * mm, (base + 2.0) * mm)
     canvas.setFont("Helvetica", 7)
-    canvas.drawString(
-        left * mm, (base + 7.0) * mm, f"Print at 100 %. This ruler is {RULER_MM:g} mm long. {place}".strip()
-    )
+    ruler = tr("Print at 100 %. This ruler is {length:g} mm long.", length=RULER_MM)
+    canvas.drawString(left * mm, (base + 7.0) * mm, f"{ruler} {place}".strip())
     canvas.drawString(left * mm, (base + 3.5) * mm, about)
 
 

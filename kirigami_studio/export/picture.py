@@ -15,9 +15,10 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageChops, ImageDraw, ImageFilter
 from PIL.PngImagePlugin import PngInfo, putchunk
 
+from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, PosedPieces, shaded
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.fabricate.cut_plan import Layer
@@ -49,6 +50,10 @@ SUPERSAMPLING = 3
 LONGEST_SIDE = 900
 #: Room around what a picture shows, share of its longer side.
 MARGIN = 0.05
+#: Shadows are so dark (of 255) and so soft, in their own lengths.
+DARKNESS, SOFTNESS = 90, 0.6
+#: A head's spot of light is so large and lies so far from the middle, in radii of the head.
+SPOT, SPOT_AT = 0.5, 0.2
 #: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
 SAME_DPI = 0.02
 
@@ -140,7 +145,10 @@ def png_of_bands(size: tuple[int, int], bands: Iterable[NDArray[np.uint8]], fact
 
 
 def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
-    """Draw the layout at the job's angle over the target, as cut if there is such a motion."""
+    """Draw the layout at the job's angle over the target: pieces, or panels as cut or ideal."""
+    if job.pieces is not None:
+        frame = PictureFrame.around(shown_points(job.pieces, (job.shown_phi,), job.target), longest)
+        return draw_pieces(job.pieces, job.shown_phi, frame, job.target)
     panels, edges = drawn_panels(job, job.shown_phi)
     clouds = panels if job.target is None else [*panels, job.target]
     return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target, edges)
@@ -181,6 +189,66 @@ def draw_polygons(
         loop = frame.pixel(target, factor)
         draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
     return image.resize(frame.pixels, Image.Resampling.BOX)
+
+
+def shown_points(pieces: PosedPieces, angles: Iterable[float], target: FloatArray | None) -> list[FloatArray]:
+    """Points of pieces at some angles (radians), and of their target."""
+    clouds = [pieces.points(phi) for phi in angles]
+    return clouds if target is None else [*clouds, target]
+
+
+def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
+    """Draw pieces layer by layer, with shadows and heads, over a target outline (L, 2).
+
+    The target's outline is repeated on top.
+    """
+    factor, look = SUPERSAMPLING, pieces.look
+    size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
+    image = Image.new("RGB", size, PAPER)
+    if target is not None:
+        ImageDraw.Draw(image).polygon(frame.pixel(target, factor), fill=TARGET_FILL)
+    fall = max(pieces.shadow * frame.scale, 1.0) * factor
+    shown = [[frame.pixel(ring, factor) for ring in rings] for rings in pieces.rings(phi)]
+    for place, layer in enumerate(pieces.layers):
+        mask = Image.new("L", size, 0)
+        draw = ImageDraw.Draw(mask)
+        for number in layer:
+            for depth, ring in enumerate(shown[number]):  # openings and holes follow the outline
+                draw.polygon(ring, fill=0 if depth else 255)
+        _paste(image, mask, look.layer(place, len(pieces.layers)), fall)
+        draw = ImageDraw.Draw(image)
+        for ring in (ring for number in layer for ring in shown[number]):
+            draw.line([*ring, ring[0]], fill=look.line, width=factor)
+    heads = frame.pixel(pieces.heads(phi), factor)
+    radius = max(0.5 * pieces.head_mm / pieces.mm_per_world * frame.scale, 0.7) * factor
+    if heads:
+        mask = Image.new("L", size, 0)
+        _dots(mask, heads, radius, 255)
+        _paste(image, mask, shaded(look.head, HEAD_RIM), 0.5 * fall)
+        _dots(image, heads, 0.8 * radius, look.head)
+        spots = [(x - SPOT_AT * radius, y - SPOT_AT * radius) for x, y in heads]
+        _dots(image, spots, 0.5 * SPOT * radius, shaded(look.head, GLINT))
+    if target is not None:
+        loop = frame.pixel(target, factor)
+        ImageDraw.Draw(image).line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
+    return image.resize(frame.pixels, Image.Resampling.BOX)
+
+
+def _paste(image: Image.Image, mask: Image.Image, colour: Colour, fall: float) -> None:
+    """Lay an area of a colour on a picture; its shadow falls so many pixels to the lower right."""
+    small = mask.reduce(SUPERSAMPLING)  # soft edges need no fine pixels
+    length = fall / SUPERSAMPLING
+    shadow = ImageChops.offset(small, round(0.5 * length), round(length))
+    shadow = shadow.filter(ImageFilter.GaussianBlur(SOFTNESS * length))
+    shadow = shadow.point([value * DARKNESS // 255 for value in range(256)]).resize(mask.size)
+    image.paste(INK, (0, 0), shadow)
+    image.paste(colour, (0, 0), mask)
+
+
+def _dots(image: Image.Image, places: Sequence[tuple[float, float]], radius: float, colour: Colour | int) -> None:
+    draw = ImageDraw.Draw(image)
+    for x, y in places:
+        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
 
 
 @dataclass(frozen=True, slots=True)

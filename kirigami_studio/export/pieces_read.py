@@ -30,6 +30,8 @@ from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
 OUTLINE_MM, HOLE_MM, OVERLAP_MM2 = 2e-3, 1e-3, 0.01
+#: Share of its circle that a round hole fills, however coarse its chords are; squares fill less.
+ROUND_SHARE = 0.9
 #: Corners of outlines that agree within this (mm) are the same.
 SAME_MM = 1e-7
 #: Outlines are those of a piece if their middles, and the roots of their areas, are nearer than this (mm).
@@ -177,7 +179,13 @@ def _holes_and_openings(
         points = place.taken(stroke.points)
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
-        if float(np.ptp(radius)) <= HOLE_MM and len(openings) + len(inside) - len(holes) > len(cuts.openings):
+        # Corners of a square lie on a circle, too.
+        filled = Polygon(stroke.travelled()).area > ROUND_SHARE * math.pi * float(radius.mean()) ** 2
+        if (
+            filled
+            and float(np.ptp(radius)) <= HOLE_MM
+            and len(openings) + len(inside) - len(holes) > len(cuts.openings)
+        ):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
             openings.append(number)

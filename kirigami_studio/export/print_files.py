@@ -17,7 +17,8 @@ import numpy as np
 
 from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.assembly.pieces import Assembly, Piece
-from kirigami_studio.assembly.printed import PinJoint, pinned_solids
+from kirigami_studio.assembly.plates import flat_bounds, parts_for, seams, size_of
+from kirigami_studio.assembly.printed import PinJoint, cap_solids, pinned_solids
 from kirigami_studio.assembly.solids import LAYER_MM, Plate, at_origin
 from kirigami_studio.export import assembly_files
 from kirigami_studio.export.assembly_files import AssemblyFiles, pieces_json
@@ -29,25 +30,41 @@ from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import PrintedPins
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Kinds of files that are written, the one for slicers first.
 KINDS = (".3mf", ".stl", ".obj")
 PIECES, SHEET = assembly_files.PIECES, assembly_files.SHEET
-OWN_NAME = re.compile(rf"plate-[1-9]\d*\.(3mf|stl|obj)|{assembly_files.OWN_NAME.pattern}")
+OWN_NAME = re.compile(rf"(plate-[1-9]\d*|caps)\.(3mf|stl|obj)|{assembly_files.OWN_NAME.pattern}")
 STEPS = (
-    "Open the .3mf of a plate in the slicer (or its .stl): it is in mm, and lies on the plate as it is printed. Do not "
-    "turn, split or arrange its parts, for they are hooked into each other.",
-    "Print without support, in layers of {layer_mm:g} mm with a nozzle of 0.4 mm, the first layer no wider than the "
-    "others: switch on the compensation of the elephant's foot. A brim must not reach into joints.",
-    "Let the plate cool down before the print is taken off, flat and in one piece.",
-    "Free the joints from the rim inwards: hold one piece and turn its neighbour to and fro by a few degrees until it "
-    "clicks. Where the first layer has fused, cut along the ring with a thin blade from below.",
-    "Open the whole sheet slowly, a few times to and fro. Where joints stay stiff, print with more clearance.",
+    mark(
+        "Open the .3mf of a plate in the slicer (or its .stl): it is in mm, and lies on the plate as it is printed. "
+        "Do not turn, split or arrange its parts, for they are hooked into each other."
+    ),
+    mark(
+        "Print without support, in layers of {layer_mm:g} mm with a nozzle of 0.4 mm, the first layer no wider than "
+        "the others: switch on the compensation of the elephant's foot. A brim must not reach into joints."
+    ),
+    mark("Let the plate cool down before the print is taken off, flat and in one piece."),
+    mark(
+        "Free the joints from the rim inwards: hold one piece and turn its neighbour to and fro by a few degrees "
+        "until it clicks. Where the first layer has fused, cut along the ring with a thin blade from below."
+    ),
+    mark("Open the whole sheet slowly, a few times to and fro. Where joints stay stiff, print with more clearance."),
 )
-LEGEND = {1: "pieces with pins", 2: "pieces with rings"}
+JOINING = (
+    mark(
+        "Lay the plates side by side as in the flat picture, from the lower right to the upper left. Each part lowers "
+        "its pins into the rings of those right of it and below it; press a cap on each from below with a drop of glue "
+        "on the pin alone, and turn the joint while it sets."
+    ),
+)
+#: Stem of the files of caps.
+CAPS = "caps"
+LEGEND = {1: mark("pieces with pins"), 2: mark("pieces with rings")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,13 +131,29 @@ class PrintJob:
         return PinJoint.usual_mm(self.pins, self.material.thickness_mm)
 
     @cached_property
+    def parts(self) -> tuple[IntArray, ...]:
+        """Indices of the pieces on each plate; all on one where no division fits on the printer."""
+        found = parts_for(self.assembly, self.machine.reach_mm)
+        return (np.arange(len(self.assembly.pieces)),) if found is None else found
+
+    @cached_property
+    def seams(self) -> frozenset[int]:
+        """Nodes of the pins that join pieces of different plates."""
+        return seams(self.assembly, self.parts)
+
+    @cached_property
     def plates(self) -> tuple[PrintedPlate, ...]:
         """Pieces on the plates of the printer, as they lie in the flat sheet."""
-        pieces, shifts = self.assembly.pieces, self.assembly.poses(np.pi)[:, :2]
-        points = np.concatenate([piece.outline + shift for piece, shift in zip(pieces, shifts, strict=True)])
-        low, (width, depth) = points.min(axis=0), np.ptp(points, axis=0).tolist()
-        places = [LaidShape(index, shift - low, 0.0) for index, shift in enumerate(shifts)]
-        return (PrintedPlate(1, tuple(zip(pieces, places, strict=True)), (width, depth)),)
+        bounds, shifts = flat_bounds(self.assembly), self.assembly.poses(np.pi)[:, :2]
+        found = []
+        for number, part in enumerate(self.parts, start=1):
+            low = bounds[part, :2].min(axis=0)
+            placed = tuple(
+                (self.assembly.pieces[index], LaidShape(place, shifts[index] - low, 0.0))
+                for place, index in enumerate(part.tolist())
+            )
+            found.append(PrintedPlate(number, placed, size_of(bounds[part])))
+        return tuple(found)
 
     @cached_property
     def solids(self) -> tuple[Plate, ...]:
@@ -131,8 +164,13 @@ class PrintJob:
         FabricationError
             A piece whose surface does not close.
         """
-        found = {solid.name: solid for solid in pinned_solids(self.assembly, self.thickness_mm, self.pins)}
-        return tuple(at_origin([found[piece.id] for piece, _ in plate.placed]) for plate in self.plates)
+        solids = pinned_solids(self.assembly, self.thickness_mm, self.pins, self.seams)
+        return tuple(at_origin([solids[index] for index in part]) for part in self.parts)
+
+    @cached_property
+    def caps(self) -> Plate:
+        """Feet for the pins at seams, to be printed as well."""
+        return at_origin(cap_solids(len(self.seams), self.thickness_mm, self.pins)) if self.seams else ()
 
     @property
     def printed(self) -> tuple[tuple[PrintedPlate, Plate], ...]:
@@ -142,7 +180,7 @@ class PrintJob:
     @property
     def volume_mm3(self) -> float:
         """Of all plates, without what infill saves."""
-        return sum(solid.volume_mm3 for plate in self.solids for solid in plate)
+        return sum(solid.volume_mm3 for plate in (*self.solids, self.caps) for solid in plate)
 
     @property
     def about(self) -> str:
@@ -164,17 +202,46 @@ class PrintJob:
     def lines(self) -> tuple[str, ...]:
         """Figures of the print in sentences."""
         plates = [
-            f"{plate.name}: {plate.size_mm[0]:.1f} x {plate.size_mm[1]:.1f} mm on the plate, {len(plate.placed)} pieces"
+            tr_n(
+                "{plate}: {width:.1f} x {depth:.1f} mm on the plate, {count} piece",
+                "{plate}: {width:.1f} x {depth:.1f} mm on the plate, {count} pieces",
+                len(plate.placed),
+                plate=plate.name,
+                width=plate.size_mm[0],
+                depth=plate.size_mm[1],
+            )
             for plate in self.plates
         ]
-        pins = self.pins
+        if self.seams:
+            plates.append(
+                tr_n(
+                    "caps: {count} foot for the pins at the seams between plates",
+                    "caps: {count} feet for the pins at the seams between plates",
+                    len(self.seams),
+                )
+            )
+        pins, layers = self.pins, round(self.thickness_mm / LAYER_MM)
         return (
             *plates,
-            f"{self.thickness_mm:g} mm thick, {round(self.thickness_mm / LAYER_MM)} layers of {LAYER_MM:g} mm",
-            f"{len(self.assembly.hinges)} joints: ears {pins.ear_mm:g} mm, pins {pins.pin_mm:g} mm, clearance "
-            f"{pins.clearance_mm:g} mm",
-            f"{self.material.name}: {self.volume_mm3 / 1000.0:.1f} cm3 where it is solid; weight and time are told by "
-            "the slicer",
+            tr(
+                "{thickness:g} mm thick, {layers} layers of {layer:g} mm",
+                thickness=self.thickness_mm,
+                layers=layers,
+                layer=LAYER_MM,
+            ),
+            tr_n(
+                "{count} joint: ears {ear:g} mm, pins {pin:g} mm, clearance {clearance:g} mm",
+                "{count} joints: ears {ear:g} mm, pins {pin:g} mm, clearance {clearance:g} mm",
+                len(self.assembly.hinges),
+                ear=pins.ear_mm,
+                pin=pins.pin_mm,
+                clearance=pins.clearance_mm,
+            ),
+            tr(
+                "{material}: {volume:.1f} cm3 where it is solid; weight and time are told by the slicer",
+                material=tr(self.material.name),
+                volume=self.volume_mm3 / 1000.0,
+            ),
         )
 
 
@@ -198,9 +265,12 @@ def write_print(
             for kind in kinds:
                 write_plate(bodies, fresh / f"{plate.name}{kind}", job.about)
                 verified.append(_verification(plate, bodies, home, kind))
+        for kind in kinds if job.caps else ():
+            write_plate(job.caps, fresh / f"{CAPS}{kind}", job.about)
         write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
-        steps = tuple(step.format(layer_mm=LAYER_MM) for step in STEPS)
-        about = {"title": job.name or "Printed kirigami", "subject": job.about}
+        joining = JOINING if job.seams else ()
+        steps = tuple(tr(step, layer_mm=LAYER_MM) for step in (*STEPS[:-1], *joining, STEPS[-1]))
+        about = {"title": job.name or tr("Printed kirigami"), "subject": job.about}
         sheet = AssemblySheet(job.assembly, (), about, job.lines, job.target, steps, LEGEND, pins_are_put_in=False)
         write_assembly_pdf(sheet, fresh / SHEET, job.paper)
         names = sorted(entry.name for entry in fresh.iterdir())

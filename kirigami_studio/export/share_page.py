@@ -14,6 +14,7 @@ import io
 import json
 import math
 import string
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +28,14 @@ from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.artwork_patches import PrintedSheet, printed_patches
 from kirigami_studio.export.artwork_raster import BitmapFrame, paint
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.foundation.arrays import ComplexArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import language, tr
 
+#: Outlines (P, 2) of all parts at an angle (radians), world.
+Outlines = Callable[[float], list[FloatArray]]
 #: Decimals of coordinates in mm.
 DECIMALS = 3
 #: Angles at which the box around the motion is looked for, and room around it, share of its longer side.
@@ -81,11 +84,13 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
 
     ``stem`` is the name, without extension, of the project that a reader saves from it.
     """
-    posed = job.posed
-    scale = posed.mm_per_world(job.width_mm)
+    pieces = None if job.pieces is None else job.pieces.small
+    posed = job.posed if pieces is None else pieces.design
+    outlines = posed.parts if pieces is None else pieces.outlines
+    scale = posed.mm_per_world(job.width_mm) if pieces is None else pieces.mm_per_world
     known = (job.provenance.get("target"), job.provenance.get("name"))
     name = " \N{MIDDLE DOT} ".join(text for text in known if text) or tr("Kirigami design")
-    parts = _moving_parts(posed, scale)
+    parts = _moving_parts(posed, outlines, scale)
     box = _box(parts, posed)
     data: dict[str, Any] = {
         "phi": posed.phi_target,
@@ -96,7 +101,7 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         "parts": [[odd, _numbers(np.array([carried])), _numbers(own)] for odd, carried, own in parts],
     }
     picture = ""
-    if job.artwork is not None:
+    if job.artwork is not None and pieces is None:
         picture, data["print"] = _print_of(job.artwork, posed, job, scale)
     target = None if job.target is None else (as_plane(job.target) - _middle(posed)) * scale
     (left, bottom), (right, top) = box.tolist()
@@ -106,7 +111,7 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         "language": language(),
         "generator": f"Kirigami Studio {__version__}",
         "title": name,
-        "subtitle": _subtitle(job, posed),
+        "subtitle": _subtitle(job, posed, outlines),
         "noscript": tr("This page moves by its own script. Allow scripts to see it."),
         "play": tr("Play"),
         "pause": tr("Pause"),
@@ -145,14 +150,18 @@ def _digest(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
 
 
-def _subtitle(job: ExportJob, posed: PosedDesign) -> str:
+def _subtitle(job: ExportJob, posed: PosedDesign, outlines: Outlines) -> str:
     """Match, grid and width."""
     rows, columns = job.deployment.sheet.grid
     grid = tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns)
     size = tr("{width:g} mm wide when flat", width=job.width_mm)
-    match = None if job.trim is None else job.trim.iou
+    match = None if job.trim is None or job.pieces is not None else job.trim.iou
     if match is None and job.target is not None:
-        shape = shapely.make_valid(shapely.Polygon(posed.outline(posed.nodes(posed.phi_target), posed.phi_target)))
+        if job.pieces is None:
+            shape = shapely.make_valid(shapely.Polygon(posed.outline(posed.nodes(posed.phi_target), posed.phi_target)))
+        else:  # the silhouette of both layers
+            whole = shapely.union_all(shapely.make_valid(list(map(shapely.Polygon, outlines(posed.phi_target)))))
+            shape = shapely.union_all(shapely.polygons([part.exterior for part in shapely.get_parts(whole)]))
         target = shapely.Polygon(job.target)
         match = shape.intersection(target).area / shape.union(target).area
     shown = [] if match is None else [tr("Match {percent:.1f} %", percent=100.0 * match)]
@@ -169,15 +178,15 @@ def _turn(posed: PosedDesign) -> float:
     return posed.turn if posed.phi_target < math.pi else 0.0
 
 
-def _moving_parts(posed: PosedDesign, scale: float) -> list[tuple[int, complex, ComplexArray]]:
+def _moving_parts(posed: PosedDesign, outlines: Outlines, scale: float) -> list[tuple[int, complex, ComplexArray]]:
     """For every part, mm: whether it turns by +a, the vector that carries it, its own corners.
 
     Two angles tell both: without the pose's turn a corner is ``exp(-i a) U + exp(i a) V`` with 2 a = pi - phi, and one
     of U and V is the same for all corners of a part, that of its neighbours.
     """
     middle, back = _middle(posed), np.exp(-1j * _turn(posed))
-    flat = [(as_plane(part) - middle) * back for part in posed.parts(math.pi)]
-    shut = [as_plane(part) - middle for part in posed.parts(0.0)]
+    flat = [(as_plane(part) - middle) * back for part in outlines(math.pi)]
+    shut = [as_plane(part) - middle for part in outlines(0.0)]
     found = []
     for z_flat, z_shut in zip(flat, shut, strict=True):
         both = 0.5 * (z_flat + 1j * z_shut) * scale, 0.5 * (z_flat - 1j * z_shut) * scale

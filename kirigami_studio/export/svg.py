@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.posed_pieces import FINE, HEAD_RIM, PosedPieces, shaded
 from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
@@ -139,6 +140,9 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     ExportError
         The place cannot be written, or the file did not read back.
     """
+    if job.pieces is not None:
+        _write_pieces_svg(job, job.pieces, Path(path))
+        return
     design, phi = job.posed, job.shown_phi
     tables, scale = design.deployment.topology, design.mm_per_world(width_mm)
     drawn, edges = drawn_panels(job, phi)
@@ -150,9 +154,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     everything = np.concatenate([*panels, *voids, *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
-    root = root_element(width, height, f"Picture of a kirigami layout at {np.degrees(phi):g} degrees, {NO_CUT_FILE}")
-    root.set("id", "PICTURE")
-    _describe(root, {PROGRAM: __version__, "PURPOSE": f"picture, {NO_CUT_FILE}", **origin_facts(job.provenance)})
+    caption = "" if job.motion is None else job.motion.caption
     rims = [np.concatenate([loop, loop[:1]]) for loop in target]
     groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
         ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target]),
@@ -161,6 +163,60 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
         ("EDGES", picture.PANEL_EDGE, [_band(line, EDGE_MM) for line in lines]),
         ("TARGET", picture.TARGET_EDGE, [_band(rim, TARGET_MM) for rim in rims]),
     ]
+    _write_shapes(job, Path(path), groups, low, (width, height), caption)
+
+
+def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
+    """Draw pieces layer by layer over the target, at their own size."""
+    phi, scale, look = job.shown_phi, pieces.mm_per_world, pieces.look
+    rings = [[ring * scale for ring in shape] for shape in pieces.simplified(FINE).rings(phi)]
+    target = [] if job.target is None else [np.asarray(job.target, dtype=np.float64) * scale]
+    everything = np.concatenate([*(shape[0] for shape in rings), *target])
+    low = everything.min(axis=0) - LAYOUT_MARGIN_MM
+    width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
+    groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
+        ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target])
+    ]
+    for place, layer in enumerate(pieces.layers, start=1):
+        shapes = [rings[number] for number in layer]
+        edges = [_band(np.concatenate([ring, ring[:1]]), EDGE_MM) for shape in shapes for ring in shape]
+        groups.append((f"LAYER_{place}", look.layer(place - 1, len(pieces.layers)), shapes))
+        groups.append((f"EDGES_{place}", look.line, edges))
+    heads = pieces.heads(phi) * scale
+    for name, colour, share in (("HEAD_RIMS", shaded(look.head, HEAD_RIM), 1.0), ("HEADS", look.head, 0.8)):
+        discs = [shapely.Point(head).buffer(0.5 * share * pieces.head_mm, quad_segs=6) for head in heads]
+        groups.append((name, colour, [[shapely.get_coordinates(disc)[:-1]] for disc in discs]))
+    rims = [_band(np.concatenate([loop, loop[:1]]), TARGET_MM) for loop in target]
+    groups.append(("TARGET", picture.TARGET_EDGE, rims))
+    _write_shapes(job, path, groups, low, (width, height))
+
+
+def _write_shapes(
+    job: ExportJob,
+    path: Path,
+    groups: Sequence[tuple[str, picture.Colour, list[list[FloatArray]]]],
+    low: FloatArray,
+    size: tuple[float, float],
+    caption: str = "",
+) -> None:
+    """Write filled shapes, group by group, as a picture that says so of itself.
+
+    Parameters
+    ----------
+    groups : sequence of (name, colour, shapes)
+        Each shape as its rings (L, 2), mm.
+    low : (2,) float, mm
+        Lower left corner of the picture.
+    size : (width, height), mm
+    caption : str
+        Follows the note below the picture.
+    """
+    width, height = size
+    root = root_element(
+        width, height, f"Picture of a kirigami layout at {np.degrees(job.shown_phi):g} degrees, {NO_CUT_FILE}"
+    )
+    root.set("id", "PICTURE")
+    _describe(root, {PROGRAM: __version__, "PURPOSE": f"picture, {NO_CUT_FILE}", **origin_facts(job.provenance)})
     count = 0
     for name, colour, shapes in groups:
         look = {"fill": hexadecimal(colour), "fill-rule": "evenodd", "stroke": "none"}
@@ -170,14 +226,14 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
             ElementTree.SubElement(group, "path", {"d": data, **look})
             count += 1
     place = {"x": decimals(0.5 * width), "y": decimals(height - NOTE_UP_MM), "text-anchor": "middle"}
-    said = f"Picture, {NO_CUT_FILE}" + ("" if job.motion is None else f". {job.motion.caption}")
+    said = f"Picture, {NO_CUT_FILE}" + (f". {caption}" if caption else "")
     look = {
         "font-family": "sans-serif",
         "font-size": decimals(min(NOTE_MM, width / NOTE_LETTERS)),
         "fill": hexadecimal(picture.INK),
     }
     ElementTree.SubElement(root, "text", {**place, **look}).text = said
-    write_svg(root, Path(path), count, (width, height))
+    write_svg(root, path, count, size)
 
 
 def _band(line: FloatArray, width_mm: float) -> list[FloatArray]:

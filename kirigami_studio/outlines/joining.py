@@ -29,6 +29,10 @@ MOST_VERTICES = 200_000
 SAMPLED = 400
 
 
+#: Gaps of an open contour are looked for up to this share of the drawing's size.
+WIDEST_OPENING = 0.2
+
+
 class Gap(NamedTuple):
     """Two loose ends: their distance and the point midway, in source units."""
 
@@ -42,16 +46,12 @@ class Joined:
     """Lines after their ends were joined."""
 
     lines: BaseGeometry  #: all of them, bridges too, cut where they meet; source units
-    faces: list[Polygon]  #: what they enclose, each face of the net
-    open_lines: list[LineString]  #: what encloses nothing
-    #: bridged, wide: gaps that were closed, and those that were too wide.
-    bridged: list[Gap]
-    wide: list[Gap]
+    bridged: list[Gap]  #: gaps that were closed
     size: float  #: source units; the longer side of all lines
 
 
 def joined(chains: Sequence[FloatArray], widest_gap: float) -> Joined:
-    """Join the ends of lines, close small gaps and find what they enclose, as :func:`join` does.
+    """Join the ends of lines and close small gaps.
 
     Raises
     ------
@@ -67,65 +67,37 @@ def joined(chains: Sequence[FloatArray], widest_gap: float) -> Joined:
     gaps = _gaps(loose)
     bridged = [gap for gap in gaps if gap.length <= widest_gap * size]
     lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridged])
-    faces, cuts, dangles, invalid = shapely.polygonize_full([lines])
-    left_over = shapely.line_merge(shapely.unary_union([cuts, dangles, invalid]))
-    return Joined(
-        lines,
-        list(shapely.get_parts(faces)),
-        [line for line in shapely.get_parts(left_over) if line.length > SAME_END * size],
-        [_described(gap) for gap in bridged],
-        [_described(gap) for gap in gaps if gap.length > widest_gap * size],
-        size,
-    )
+    return Joined(lines, [_described(gap) for gap in bridged], size)
 
 
-def join(chains: Sequence[FloatArray], widest_gap: float, unit: str = "") -> tuple[BaseGeometry, tuple[str, ...]]:
-    """Return the regions that lines enclose together.
+def opening(chains: Sequence[FloatArray], size: float) -> Gap:
+    """The widest gap between ends of lines (P, 2) that meet no other; of no width without one."""
+    _, loose = _meeting([chain for chain in chains if np.ptp(chain, axis=0).any()], SAME_END * size)
+    gaps = _gaps(loose)
+    return _described(max(gaps, key=lambda gap: float(gap.length))) if gaps else Gap(0.0, 0.0, 0.0)
+
+
+def held(chains: Sequence[FloatArray], inside: BaseGeometry, size: float) -> Gap | None:
+    """The widest gap of lines that surround something once their nearest ends are joined.
 
     Parameters
     ----------
     chains : sequence of (P, 2) float, source units
-        Lines in any order and direction; a closed one repeats its first vertex at the end.
-    widest_gap : float
-        Gaps between loose ends up to this share of the drawing's size are bridged by a straight line.
-    unit : str
-        Of the coordinates, for messages.
-
-    Returns
-    -------
-    region : shapely geometry
-        Union of all faces, faces inside faces left as they are.
-    notes : tuple of str
-        Bridged gaps and lines left out.
-
-    Raises
-    ------
-    TargetError
-        The lines enclose nothing, or an open contour surrounds what they enclose; the
-        problem names the widest gap that keeps it open.
+    inside : shapely geometry, source units
+        All of this has to lie in the contour.
+    size : float, source units
+        Of the drawing.
     """
-    net = joined(chains, widest_gap)
-    region = shapely.unary_union(net.faces)
-    if region.is_empty or _surrounds(net.open_lines, region):
-        raise _open_contour(net.wide, widest_gap * net.size, unit)
-    notes = closed_gaps(net, unit)
-    if inner := sum(len(face.interiors) for face in net.faces):
-        notes.append(
-            tr_n(
-                "{count} contour inside the outer one was left out.",
-                "{count} contours inside the outer one were left out.",
-                inner,
-            )
-        )
-    if net.open_lines:
-        notes.append(
-            tr_n(
-                "{count} open line that encloses nothing was left out.",
-                "{count} open lines that enclose nothing were left out.",
-                len(net.open_lines),
-            )
-        )
-    return region, tuple(notes)
+    chains, loose = _meeting([chain for chain in chains if np.ptp(chain, axis=0).any()], SAME_END * size)
+    bridges = [gap for gap in _gaps(loose) if gap.length <= WIDEST_OPENING * size]
+    if not bridges:
+        return None
+    lines = shapely.unary_union([*(LineString(chain) for chain in chains), *bridges])
+    contour = shapely.unary_union(shapely.get_parts(shapely.polygonize([lines])))
+    shells = [Polygon(piece.exterior) for piece in shapely.get_parts(contour) if isinstance(piece, Polygon)]
+    around = [piece for piece in shells if piece.contains_properly(inside)]
+    gaps = [gap for gap in bridges if any(piece.boundary.intersects(gap) for piece in around)]
+    return _described(max(gaps, key=lambda gap: float(gap.length))) if gaps else None
 
 
 def closed_gaps(net: Joined, unit: str) -> list[str]:
@@ -209,13 +181,8 @@ def _described(bridge: LineString) -> Gap:
     return Gap(bridge.length, middle.x, middle.y)
 
 
-def _surrounds(open_lines: Sequence[BaseGeometry], region: BaseGeometry) -> bool:
-    """Whether the box of one open line contains everything that is closed: then the contour itself is open."""
-    closed = shapely.box(*region.bounds)
-    return any(shapely.box(*line.bounds).contains_properly(closed) for line in open_lines)
-
-
-def _open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError:
+def open_contour(gaps: Sequence[Gap], bridged: float, unit: str) -> TargetError:
+    """The problem of an open contour: its widest gap, and the width up to which gaps are closed."""
     if not gaps:
         return TargetError("lines.not_closed")
     gap = max(gaps)

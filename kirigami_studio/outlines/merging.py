@@ -1,23 +1,26 @@
-"""Chosen parts of a source -> one outline: united, bridged, or their hull; lines by what they enclose or as painted."""
+"""Chosen parts of a source -> one outline: united, bridged, or their hull."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 import shapely
 from scipy.sparse.csgraph import minimum_spanning_tree
-from shapely.geometry import LineString, MultiLineString, Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.contour import thinned
+from kirigami_studio.outlines.crossings import CLEARLY_MEANT
+from kirigami_studio.outlines.joining import open_contour
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import Part, SourceParts
-from kirigami_studio.outlines.pieces import enclosed, largest_piece
+from kirigami_studio.outlines.parts import QUARTER, Part, SourceParts, text_left_out
+from kirigami_studio.outlines.pieces import enclosed, largest_piece, united
 
 #: Widths of bridges and of strokes, shares of the size of the chosen parts: the usual one, the least and the most.
 USUAL_BRIDGE, USUAL_STROKE = 0.04, 0.02
@@ -32,14 +35,12 @@ HULL_STEP = 0.01
 NAMED = 6
 #: Places that are farther than the nearest by this share of a bridge's width are as near.
 NEAR = 0.02
-#: Vertices of a quarter circle at the ends and corners of strokes.
-QUARTER = 16
 #: Deviation of simplified parts, share of the size: hulls and bridges need no more.
 FLATNESS = 1.0 / 8000.0
 
 
 class Join(Enum):
-    """What makes one outline of several parts."""
+    """Ways to make one outline of several parts."""
 
     UNION = "union"  #: parts that overlap or touch; of several pieces the largest
     BRIDGE = "bridge"  #: pieces are held together by bridges between their nearest places
@@ -61,7 +62,7 @@ class Merging:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Merged:
-    """What came of it."""
+    """The outline of merged parts."""
 
     outline: Outline
     shape: Polygon  #: source units, y up; the outline in its place among the parts
@@ -86,7 +87,7 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
     boxes = np.array([part.bounds for part in parts])
     size = float(np.max(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)))
     notes = [*source.left_out, *_rest(source, parts)]
-    regions = [region for part in parts if not (region := _region(part, merging, size)).is_empty]
+    regions = [region for part in parts if not (region := _region(part, merging, size, source.size)).is_empty]
     if not regions and merging.join not in (Join.HULL, Join.TIGHT):
         raise TargetError("parts.no_area")
     bridges: tuple[Polygon, ...] = ()
@@ -102,7 +103,7 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                     open_lines,
                 )
             )
-        region = shapely.union_all(regions)
+        region = united(regions, size)
         if merging.join is Join.BRIDGE:
             region, bridges = bridged(region, merging, size)
             if bridges:
@@ -113,11 +114,81 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                         len(bridges),
                     )
                 )
-    ring, dropped = largest_piece(region)
     alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
-    name = parts[0].name if alone else source.name
-    outline = Outline.from_points(thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit)
-    return Merged(outline, Polygon(ring), bridges)
+    outline, shape = _outline(source, region, notes, parts[0].name if alone else source.name)
+    return Merged(outline, shape, bridges)
+
+
+def usual_outline(source: SourceParts) -> Outline:
+    """The silhouette that is taken of a source without asking; its notes name the rest.
+
+    Raises
+    ------
+    TargetError
+        Nothing is closed, an open contour surrounds the rest, or there are only letters apart from each other.
+    """
+    choice, notes = source.choice, list(source.left_out)
+    if choice.open_at is not None:
+        way = -1.0 if source.is_turned else 1.0
+        gaps = [choice.open_at._replace(y=way * choice.open_at.y)] if choice.open_at.width else []
+        raise open_contour(gaps, source.bridged, source.unit)
+    parts = source.of(choice.considered)
+    if all(part.is_letter for part in parts) and not choice.is_plain:
+        raise TargetError("parts.letters", letters=len(parts))
+    if choice.inner:
+        notes.append(
+            tr_n(
+                "{count} contour inside the outer one was left out.",
+                "{count} contours inside the outer one were left out.",
+                choice.inner,
+            )
+        )
+    if choice.unfilled:
+        notes.append(tr("Shapes without filling were left out."))
+    elif choice.open_lines:
+        notes.append(
+            tr_n(
+                "{count} open line that encloses nothing was left out.",
+                "{count} open lines that enclose nothing were left out.",
+                choice.open_lines,
+            )
+        )
+    if choice.has_letters_apart:
+        notes.append(text_left_out())
+    if not choice.is_plain:
+        names = ", ".join(part.name for part in source.of(choice.numbers)[:NAMED])
+        notes.append(
+            tr(
+                "More than one shape may be meant. Taken: {names}. 'kirigami-studio parts FILE' lists all, --parts "
+                "takes others.",
+                names=names,
+            )
+        )
+    rings = {b"" if part.ring is None else part.ring.tobytes(): part.ring for part in parts}
+    ring = next(iter(rings.values())) if len(rings) == 1 and not choice.as_painted else None
+    areas = [part.region.area for part in parts]
+    if ring is not None and not any(part.lines for part in parts) and max(areas) > CLEARLY_MEANT * sum(areas):
+        # Left as it is, so that crossings are judged and named.
+        return _outline(source, ring, notes, source.name)[0]
+    merging = Merging(as_painted=choice.as_painted)
+    region = united([part.seen(source.size, merging.as_painted) for part in parts], source.size)
+    return _outline(source, region, notes, source.name)[0]
+
+
+def _outline(
+    source: SourceParts, region: BaseGeometry | FloatArray, notes: Sequence[str], name: str
+) -> tuple[Outline, Polygon]:
+    """The outline of a region or a ring, judged with y as in the source; and its polygon."""
+    way = np.array([1.0, -1.0]) if source.is_turned else np.ones(2)
+    dropped: tuple[str, ...] = ()
+    if isinstance(region, np.ndarray):
+        ring = region * way
+    else:
+        ring, dropped = largest_piece(shapely.transform(region, lambda points: points * way))
+    found = Outline.from_points(thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit)
+    if source.is_turned:
+        found = Outline((found.points * way)[::-1], found.name, found.notes, found.size, found.unit)
+    return found, Polygon(ring * way)
 
 
 def _rest(source: SourceParts, parts: Sequence[Part]) -> list[str]:
@@ -132,22 +203,13 @@ def _rest(source: SourceParts, parts: Sequence[Part]) -> list[str]:
     ]
 
 
-def _region(part: Part, merging: Merging, size: float) -> BaseGeometry:
-    """The area of a part."""
+def _region(part: Part, merging: Merging, size: float, whole: float) -> BaseGeometry:
+    """The area of a part; ``whole`` is the size of the drawing."""
     if not merging.as_painted or not part.lines:
-        return part.region
+        return part.seen(whole)
     width = part.pen.width or (USUAL_STROKE * size if merging.stroke is None else merging.stroke)
     _check_width("parts.stroke_width", width, size)
-    lines = MultiLineString([LineString(line) for line in part.lines]).simplify(FLATNESS * size)
-    painted = lines.buffer(
-        0.5 * width,
-        quad_segs=QUARTER,
-        cap_style=part.pen.cap,
-        join_style=part.pen.join,
-        mitre_limit=max(part.pen.mitre_limit, 1.0),
-    )
-    # The outer edge is what is meant: what lines surround belongs to the shape.
-    return painted.union(part.region)
+    return replace(part, pen=replace(part.pen, width=width)).seen(0.0, with_lines=True)
 
 
 def _check_width(code: str, width: float, size: float) -> None:

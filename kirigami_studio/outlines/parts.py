@@ -1,7 +1,14 @@
-"""What a file holds, part by part: shapes and lines with layer, colour and size, of which a target is made.
+"""Parts of a file: shapes and lines with layer, colour and size, of which a target is made.
 
 A part is a connected filled region, a closed contour of lines, or a connected open line.  Its geometry is in the units
 of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline of chosen parts.
+
+One rule says which of them are the silhouette that is seen, for all kinds of files (:class:`UsualChoice`):
+
+- What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they run round
+  filled shapes or show more than what they enclose; thin lines count by what they enclose.
+- Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
+- Thin lines that would surround all of it, were they closed, are an open contour, and nothing is taken.
 """
 
 from __future__ import annotations
@@ -15,7 +22,7 @@ import numpy as np
 import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
@@ -23,11 +30,11 @@ from kirigami_studio.foundation.errors import TargetError, UsageError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.outlines.joining import Gap, Joined, closed_gaps, held, joined, opening
+from kirigami_studio.outlines.pieces import ROUNDING, enclosed, united
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from kirigami_studio.outlines.joining import Joined
 
 #: Larger numbers of parts are not told apart any more: the smallest are left out.
 MOST_PARTS = 500
@@ -37,6 +44,19 @@ SPECK = 0.01
 RECTANGLE = 0.99
 #: A part inside a frame is one to be asked about from this share of the frame's area on.
 WORTH_ASKING = 0.02
+#: Pens from this share of the lines' size on are painted; from the second on, where they show more than the lines
+#: enclose; the stroke of a filled shape counts from the third on.
+BROAD, MIDDLING, SEEN = 0.05, 0.015, 0.005
+#: This share of a silhouette is more; lines run round filled shapes that fill this share of what they enclose.
+SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
+#: An area counts as larger from this share on: less is rounding.
+LARGER = 1e-6
+#: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
+FRAME = 0.05
+#: Cosine of the turn of a line below which it has a corner.
+STRAIGHT = 0.996
+#: Vertices of a quarter circle at the ends and corners of strokes, and deviation of stroked lines, share of the size.
+QUARTER, STROKED_FLATNESS = 16, 1.0 / 8000.0
 #: Digits of the areas by which it is told which part lies around which; a fill and a stroke of one outline differ by
 #: rounding, and then the first counts.
 SAME_AREA = 9
@@ -46,7 +66,7 @@ ALL, LARGEST = "all", "largest"
 
 
 class DrawnPartKind(Enum):
-    """What makes a part."""
+    """Kinds of parts."""
 
     FILLED = "filled"
     CLOSED = "closed"  #: lines around an area
@@ -78,6 +98,10 @@ class Part:
     lines: tuple[FloatArray, ...] = ()
     pen: StrokeStyle = field(default_factory=StrokeStyle)
     is_named: bool = True  #: whether the name is the source's own
+    is_letter: bool = False  #: whether it is a letter of a text
+    is_aside: bool = False  #: whether it is a measure or a construction line: it counts where nothing else is closed
+    #: (L, 2) float, source units; of a shape with one subpath that subpath, crossings and all.
+    ring: FloatArray | None = None
 
     def __post_init__(self) -> None:
         for name in ("name", "layer", "colour"):
@@ -109,6 +133,24 @@ class Part:
         width, height = self.size
         return float(self.region.area) if self.is_closed else max(width * height, 1e-3 * max(width, height) ** 2)
 
+    def seen(self, size: float, with_lines: bool = False) -> BaseGeometry:
+        """The region that is painted; lines that fill nothing count only ``with_lines``.
+
+        Parameters
+        ----------
+        size : float, source units
+            Of the drawing, by which it is told whether a stroke is seen.
+        """
+        is_filled = self.kind is DrawnPartKind.FILLED
+        if not self.lines or self.pen.width <= 0.0 or not (with_lines or is_filled):
+            return self.region
+        if is_filled and self.pen.width < SEEN * size:
+            return self.region
+        lines = [shapely.get_coordinates(LineString(line).simplify(STROKED_FLATNESS * size)) for line in self.lines]
+        painted = stroked(lines, self.pen, self.pen.width)
+        # What lines surround belongs to the shape.
+        return painted if self.region.is_empty else painted.union(self.region)
+
     def to_json(self, unit: str) -> dict[str, object]:
         """The entry of ``kirigami-studio parts``."""
         return {
@@ -124,6 +166,33 @@ class Part:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class Strokes:
+    """Places on a picture by which an object is told, (x, y) in source pixels from the upper left corner, y down."""
+
+    taken: tuple[tuple[float, float], ...] = ()  #: on the object
+    left: tuple[tuple[float, float], ...] = ()  #: beside it
+
+
+@dataclass(frozen=True, slots=True)
+class UsualChoice:
+    """Which parts are the silhouette that is seen."""
+
+    numbers: tuple[int, ...]  #: of the parts that make its edge
+    considered: tuple[int, ...]  #: of these and others of their kind, of which these are the largest together
+    as_painted: bool  #: whether lines count as they are painted
+    is_plain: bool  #: whether nothing else may be meant
+    #: the widest gap of an open contour around the rest, x and y of its middle; no width where it is not known; None
+    #: where the silhouette is closed.
+    open_at: Gap | None = None
+    #: open_lines, inner: lines that were not taken because they enclose nothing; contours inside the one taken;
+    #: unfilled: other contours of lines, where filled shapes were taken.
+    open_lines: int = 0
+    inner: int = 0
+    unfilled: int = 0
+    has_letters_apart: bool = False  #: whether texts stand beside what was taken
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SourceParts:
     """All parts of a source.
@@ -137,6 +206,11 @@ class SourceParts:
     unit: str = ""  #: "mm", "px", or "" when the source has none
     #: What the file says about how it was made, if this program made it.
     facts: Mapping[str, str] = field(default_factory=FrozenMapping)
+    #: (left, bottom, right, top) of a white page that was left out, source units; None without one.
+    paper: tuple[float, float, float, float] | None = None
+    bridged: float = 0.0  #: source units; gaps of lines up to this width were closed
+    is_turned: bool = False  #: whether y runs down in the source: then it does so in sentences that name a place
+    _choice: UsualChoice | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         facts = {plain_line(name): plain_line(text, LONGEST_NOTE) for name, text in self.facts.items()}
@@ -156,51 +230,22 @@ class SourceParts:
         return float(np.max(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)))
 
     @property
+    def choice(self) -> UsualChoice:
+        """The parts that are taken without asking."""
+        if self._choice is None:
+            object.__setattr__(self, "_choice", _usual(self))
+        assert self._choice is not None
+        return self._choice
+
+    @property
     def usual(self) -> tuple[int, ...]:
-        """Numbers of the parts that are taken without asking: the largest connected region; else the largest line."""
-        outer = self._outer()
-        if not outer:
-            return (max(self.parts, key=lambda part: part.worth).number,)
-        largest = max(_groups(outer), key=lambda group: float(shapely.union_all([p.region for p in group]).area))
-        return tuple(part.number for part in largest)
+        """Numbers of the parts that are taken without asking."""
+        return self.choice.numbers
 
     @property
     def is_ambiguous(self) -> bool:
-        """Whether there is something to ask: separate parts, lines without an area, or parts on a page."""
-        closed = [part for part in self.parts if part.is_closed]
-        if not closed:
-            return True
-        outer = self._outer()
-        if len(_groups(self._usable(outer))) > 1:
-            return True
-        inside = [part for part in closed if part not in outer]
-        for frame in outer:
-            width, height = frame.size
-            if Polygon(shell(frame.region)).area > RECTANGLE * width * height and any(
-                part.region.area > WORTH_ASKING * width * height and frame.region.envelope.contains(part.region)
-                for part in inside
-            ):
-                return True
-        everything = shapely.box(*shapely.union_all([part.region for part in closed]).bounds)
-        return any(shapely.box(*part.bounds).contains_properly(everything) for part in self.parts if not part.is_closed)
-
-    def _usable(self, parts: Sequence[Part]) -> list[Part]:
-        largest = max(part.worth for part in parts)
-        return [part for part in parts if part.worth >= SPECK * largest]
-
-    def _outer(self) -> list[Part]:
-        """Closed parts that do not lie inside another one."""
-        closed = [part for part in self.parts if part.is_closed]
-        shells = [Polygon(shell(part.region)) for part in closed]
-        # Hundreds of copies are not compared with each other.
-        first = {each.wkb: index for index, each in reversed([*enumerate(shells)])}
-        several = sorted(first.values(), key=lambda index: (-float(f"{shells[index].area:.{SAME_AREA}g}"), index))
-        ranked = np.array([shells[index] for index in several], dtype=object)
-        inner, around = shapely.STRtree(ranked).query(ranked, predicate="covered_by")
-        # One rank for all: of parts that cover each other, the first of the largest is never hidden.
-        hidden = set(inner[around < inner].tolist())
-        outer = {index for rank, index in enumerate(several) if rank not in hidden}
-        return [part for index, part in enumerate(closed) if index in outer]
+        """Whether there is something to ask: what is taken is not the only thing that may be meant."""
+        return not self.choice.is_plain
 
     def chosen(self, words: str) -> tuple[Part, ...]:
         """The parts that words name: ``all``, ``largest``, or names, numbers and layers, joined by commas.
@@ -249,17 +294,232 @@ def shell(region: BaseGeometry) -> FloatArray:
     return shapely.get_coordinates(shapely.get_exterior_ring(region))
 
 
-def _groups(parts: Sequence[Part]) -> list[list[Part]]:
-    """Parts that touch each other, together."""
-    regions = [part.region for part in parts]
-    one, other = shapely.STRtree(regions).query(regions, predicate="intersects")
+def stroked(lines: Sequence[FloatArray], pen: StrokeStyle, width: float) -> BaseGeometry:
+    """The region of lines (P, 2) that are painted with a pen of some width."""
+    join = "bevel" if pen.join == "mitre" else pen.join
+    painted = MultiLineString([LineString(line) for line in lines]).buffer(
+        0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join
+    )
+    tips = [tip for line in lines for tip in _mitres(line, 0.5 * width, pen.mitre_limit)] if pen.join == "mitre" else []
+    return shapely.union_all([painted, *tips]) if tips else painted
+
+
+def _mitres(line: FloatArray, half: float, limit: float) -> list[Polygon]:
+    """The tips of a line's corners; one that is longer than ``limit`` widths stays cut off."""
+    if np.array_equal(line[0], line[-1]):
+        line = np.concatenate([line, line[1:2]])
+    along = np.diff(line, axis=0)
+    length = np.linalg.norm(along, axis=1)
+    line, along = line[np.append(True, length > 0.0)], along[length > 0.0] / length[length > 0.0, None]
+    before, after = along[:-1], along[1:]
+    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    straight = np.clip(np.sum(before * after, axis=1), -1.0, 1.0)
+    half_angle = np.sqrt(0.5 * (1.0 + straight))  # the sine of half the angle between the two lines
+    tips = []
+    for index in np.flatnonzero((straight < STRAIGHT) & (half_angle * limit >= 1.0)).tolist():
+        corner, side = line[index + 1], -np.sign(turn[index]) * half
+        sides = [side * np.array([-way[1], way[0]]) for way in (before[index], after[index])]
+        tip = (sides[0] + sides[1]) / (1.0 + straight[index])
+        tips.append(Polygon([corner, corner + sides[0], corner + tip, corner + sides[1]]))
+    return tips
+
+
+def _usual(source: SourceParts) -> UsualChoice:
+    """The one rule; see the module."""
+    parts, size = source.parts, source.size
+    if any(part.is_closed and not part.is_aside for part in parts):
+        parts = tuple(part for part in parts if not part.is_aside)
+    shapes = [part for part in parts if part.kind is DrawnPartKind.FILLED and not part.is_letter]
+    lines = [part for part in parts if part.kind is not DrawnPartKind.FILLED]
+    letters = [part for part in parts if part.is_letter]
+    if not shapes and not lines:
+        numbers = tuple(part.number for part in letters)
+        return UsualChoice(numbers, numbers, False, len(_groups(letters, [part.region for part in letters], size)) == 1)
+    lines = _without_frame(lines, source.paper) if len(parts) > 1 else lines
+    extent = _extent(lines)
+    broad = [part for part in lines if part.pen.width >= BROAD * extent]
+    thin = [part for part in lines if part.pen.width < BROAD * extent]
+    solid = {part.number: part.seen(size) for part in shapes}
+    solid.update((part.number, part.seen(size, True)) for part in broad)
+    open_at = _open_contour(thin, solid, size)
+    middling = [part for part in thin if part.pen.width >= MIDDLING * extent]
+    shown = {part.number: part.seen(size, True) for part in middling} if open_at is None else {}
+    is_round = bool(shown) and _is_round(middling, solid)
+    shown = shown if is_round or _shows_more(middling, shown, solid, size) else {}
+    solid.update(shown)
+    thin = [part for part in thin if part.number not in shown]
+    solid.update((part.number, part.region) for part in letters)
+    ring = {part.number: Polygon(shell(part.region)) for part in thin if part.is_closed}
+    of_solid, solid_area = _largest([part for part in parts if part.number in solid], solid, size)
+    of_rings, ring_area = _largest([part for part in parts if part.number in ring], ring, size)
+    takes_rings = ring_area > (1.0 + LARGER) * solid_area
+    taken, kinds = (of_rings, ring) if takes_rings else (of_solid, solid)
+    if not taken:  # open thin lines only
+        number = max(lines, key=lambda part: part.worth).number
+        return UsualChoice((number,), (number,), False, False, open_at or opening(_all_lines(lines), size), len(lines))
+    silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
+    numbers = tuple(part.number for part in _outer(taken, kinds))
+    others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
+    plain = (
+        open_at is None
+        and bool(closed)
+        and (is_round or not shown)
+        and not _stands_apart(closed, {**solid, **ring}, size)
+        and not _is_framed(_outer(closed, {**solid, **ring}), closed)
+        and all(_outside(one, silhouette) <= SHOWS_MORE * silhouette.area for one in others)
+    )
+    return UsualChoice(
+        numbers,
+        tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken)),
+        any(part.number in solid for part in lines) and not takes_rings,
+        plain,
+        open_at,
+        sum(not part.is_closed for part in thin),
+        sum(number in ring for number in ring if number not in numbers) if takes_rings else 0,
+        0 if takes_rings else len(ring) + sum(not part.is_closed for part in thin),
+        any(part not in taken and _outside(part.region, silhouette) > 0.0 for part in letters),
+    )
+
+
+def _is_letter_apart(source: SourceParts, number: int, taken: Sequence[Part]) -> bool:
+    """Whether a part is a letter that stands beside the shape."""
+    return source.parts[number - 1].is_letter and all(part.number != number for part in taken)
+
+
+def _all_lines(parts: Iterable[Part]) -> list[FloatArray]:
+    return [line for part in parts for line in part.lines]
+
+
+def _extent(parts: Sequence[Part]) -> float:
+    """The longer side of some parts together, source units."""
+    if not parts:
+        return 0.0
+    boxes = np.array([part.bounds for part in parts])
+    return float(np.max(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)))
+
+
+def _without_frame(lines: list[Part], paper: tuple[float, float, float, float] | None) -> list[Part]:
+    """Leave out a rectangle of lines that follows the edges of the paper."""
+    if paper is None:
+        return lines
+    page, slack = np.array(paper), FRAME * max(paper[2] - paper[0], paper[3] - paper[1])
+    return [
+        part
+        for part in lines
+        if not part.is_closed
+        or np.max(np.abs(np.array(part.bounds) - page)) > slack
+        or Polygon(shell(part.region)).area < RECTANGLE * part.size[0] * part.size[1]
+    ]
+
+
+def _is_round(lines: Sequence[Part], solid: Mapping[int, BaseGeometry]) -> bool:
+    """Whether lines run round filled shapes."""
+    inside = shapely.union_all([part.region for part in lines])
+    return bool(shapely.union_all(list(solid.values())).intersection(inside).area > ROUND_FILLED * inside.area)
+
+
+def _shows_more(
+    lines: Sequence[Part], inked: Mapping[int, BaseGeometry], solid: Mapping[int, BaseGeometry], size: float
+) -> bool:
+    """Whether lines as they are painted show more of the silhouette than what they enclose."""
+    if not any(part.is_closed for part in lines) and not solid:
+        return False
+    grown = [part.region.buffer(0.5 * part.pen.width, join_style="mitre") for part in lines if part.is_closed]
+    fewer, more = (_filled([*solid.values(), *some], size) for some in (grown, inked.values()))
+    return bool(more.difference(fewer).area > SHOWS_MORE * more.area)
+
+
+def _filled(regions: Iterable[BaseGeometry], size: float) -> BaseGeometry:
+    """The largest silhouette of some regions, holes filled."""
+    pieces = enclosed(united(list(regions), size))
+    return pieces[0] if pieces else Polygon()
+
+
+def _outside(region: BaseGeometry, silhouette: Polygon) -> float:
+    return float(region.difference(silhouette).area)
+
+
+def _open_contour(thin: Sequence[Part], solid: Mapping[int, BaseGeometry], size: float) -> Gap | None:
+    """The gap of thin open lines around everything closed: one by its box, or all joined."""
+    lines = _all_lines(part for part in thin if not part.is_closed)
+    closed = [*solid.values(), *(part.region for part in thin if part.is_closed)]
+    if not lines or not closed:
+        return None
+    inside = shapely.box(*shapely.total_bounds(np.array(closed, dtype=object)))
+    gap = held(lines, inside, size)
+    if gap is None and any(shapely.box(*LineString(line).bounds).contains_properly(inside) for line in lines):
+        gap = opening(lines, size)
+    return gap
+
+
+def _groups(parts: Sequence[Part], regions: Sequence[BaseGeometry], size: float) -> list[list[Part]]:
+    """Parts whose regions touch each other, together."""
+    shapes = np.array(regions, dtype=object)
+    one, other = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=ROUNDING * size)
     links = coo_array((np.ones(len(one)), (one, other)), shape=(len(parts), len(parts)))
     count, group = connected_components(links, directed=False)
     return [[part for part, of in zip(parts, group.tolist(), strict=True) if of == index] for index in range(count)]
 
 
+def _largest(parts: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> tuple[list[Part], float]:
+    """The parts that make the largest silhouette together, and its area."""
+    parts = [part for part in parts if not regions[part.number].is_empty]
+    if not parts:
+        return [], 0.0
+    shells = {part.number: _shells(regions[part.number]) for part in parts}
+    groups = _groups(parts, [shells[part.number] for part in parts], size)
+    groups = [group for group in groups if not all(part.is_letter for part in group)]
+    if not groups:
+        return [], 0.0
+    found = [(float(shapely.union_all([shells[part.number] for part in group]).area), group) for group in groups]
+    area, group = max(found, key=lambda one: one[0])
+    return group, area
+
+
+def _shells(region: BaseGeometry) -> BaseGeometry:
+    """A region with its holes filled."""
+    return shapely.union_all([Polygon(piece.exterior) for piece in shapely.get_parts(region) if piece.area > 0])
+
+
+def _outer(parts: Sequence[Part], regions: Mapping[int, BaseGeometry]) -> list[Part]:
+    """Parts that do not lie inside another one."""
+    parts = [part for part in parts if part.number in regions]
+    shells = [_shells(regions[part.number]) for part in parts]
+    # Hundreds of copies are not compared with each other.
+    first = {each.wkb: index for index, each in reversed([*enumerate(shells)])}
+    several = sorted(first.values(), key=lambda index: (-float(f"{shells[index].area:.{SAME_AREA}g}"), index))
+    ranked = np.array([shells[index] for index in several], dtype=object)
+    inner, around = shapely.STRtree(ranked).query(ranked, predicate="covered_by")
+    # One rank for all: of parts that cover each other, the first of the largest is never hidden.
+    hidden = set(inner[around < inner].tolist())
+    outer = {index for rank, index in enumerate(several) if rank not in hidden}
+    return [part for index, part in enumerate(parts) if index in outer]
+
+
+def _stands_apart(closed: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> bool:
+    """Whether several parts of some worth do not touch."""
+    outer = _outer(closed, regions)
+    largest = max(regions[part.number].area for part in outer)
+    usable = [part for part in outer if regions[part.number].area >= SPECK * largest]
+    return len(_groups(usable, [regions[part.number] for part in usable], size)) > 1
+
+
+def _is_framed(outer: Sequence[Part], closed: Sequence[Part]) -> bool:
+    """Whether one is a rectangle around another one of some size: a page or a frame."""
+    inside = [part for part in closed if part not in outer]
+    for frame in outer:
+        width, height = frame.size
+        if Polygon(shell(frame.region)).area > RECTANGLE * width * height and any(
+            part.region.area > WORTH_ASKING * width * height and frame.region.envelope.contains(part.region)
+            for part in inside
+        ):
+            return True
+    return False
+
+
 def parts_of_region(region: BaseGeometry, like: Part) -> list[Part]:
-    """The connected pieces of a filled region, each as a part; lines and pen are those of the whole."""
+    """The connected pieces of a filled region as parts, with lines and pen of the whole."""
     pieces = [piece for piece in shapely.get_parts(region) if isinstance(piece, Polygon) and piece.area > 0]
     if len(pieces) == 1:
         return [replace(like, region=pieces[0])]
@@ -274,6 +534,54 @@ def _near(lines: tuple[FloatArray, ...], piece: Polygon) -> tuple[FloatArray, ..
     """Of the lines around several pieces, those around this one."""
     box = shapely.box(*piece.bounds)
     return tuple(line for line in lines if box.intersects(LineString(line)))
+
+
+def _shared(lines: Sequence[FloatArray], regions: Sequence[Polygon]) -> list[tuple[FloatArray, ...]]:
+    """Lines of each region: those that touch it, or are nearest to it where they touch none."""
+    tree = shapely.STRtree(regions)
+    found: list[list[FloatArray]] = [[] for _ in regions]
+    for line in lines:
+        shape = LineString(line)
+        touched = tree.query(shape, predicate="intersects").tolist() or [int(tree.nearest(shape))]
+        for index in touched:
+            found[index].append(line)
+    return [tuple(some) for some in found]
+
+
+def parts_of_groups(
+    groups: Sequence[tuple[Sequence[FloatArray], Part]], widest_gap: float, unit: str
+) -> tuple[list[Part], list[str], float]:
+    """The parts that groups of lines make, such as those of each layer, one like a part each.
+
+    Open lines of different groups that enclose something together are parts of their own.
+
+    Returns
+    -------
+    parts : list of Part
+    gaps : list of str
+        A sentence on those that were closed.
+    bridged : float, source units
+        The width up to which gaps were closed.
+    """
+    parts: list[Part] = []
+    gaps: list[str] = []
+    bridged = 0.0
+    for chains, like in groups:
+        net = joined(chains, widest_gap)
+        gaps += closed_gaps(net, unit)
+        bridged = max(bridged, widest_gap * net.size)
+        parts += parts_of_lines(net, like)
+    loose = [part for part in parts if not part.is_closed]
+    if len(groups) > 1 and len(loose) > 1:
+        net = joined(_all_lines(loose), widest_gap)
+        broadest = max(loose, key=lambda part: part.pen.width)
+        layers, colours = ({getattr(part, name) for part in loose} for name in ("layer", "colour"))
+        layer, colour = (one.pop() if len(one) == 1 else "" for one in (layers, colours))
+        found = parts_of_lines(net, replace(broadest, name="", layer=layer, colour=colour))
+        if any(part.is_closed for part in found):
+            gaps += closed_gaps(net, unit)
+            parts = [part for part in parts if part.is_closed] + found
+    return parts, gaps, bridged
 
 
 def parts_of_lines(net: Joined, like: Part) -> list[Part]:
@@ -300,8 +608,9 @@ def parts_of_lines(net: Joined, like: Part) -> list[Part]:
         regions = [piece for piece in shapely.get_parts(area) if isinstance(piece, Polygon)]
         if not regions:
             found.append(replace(like, kind=DrawnPartKind.STROKED, region=Polygon(), lines=chains))
-        for region in regions:
-            near = chains if len(regions) == 1 else _near(chains, region)
+        lines_of = _shared(chains, regions) if len(regions) > 1 else []
+        for index, region in enumerate(regions):
+            near = chains if len(regions) == 1 else lines_of[index]
             found.append(replace(like, kind=DrawnPartKind.CLOSED, region=region, lines=near))
     return found
 
@@ -342,3 +651,8 @@ def numbered(parts: Sequence[Part], size: float) -> tuple[tuple[Part, ...], tupl
         for number, part in enumerate(kept, start=1)
     ]
     return tuple(named), notes
+
+
+def text_left_out() -> str:
+    """The sentence where texts are not read."""
+    return tr("Text was left out. Convert it to paths if it belongs to the shape.")

@@ -1,15 +1,20 @@
-"""Read a target from any source: a file by its extension, or the name of a library silhouette."""
+"""Read a target from any source: a file by its content, or the name of a library silhouette.
+
+``KINDS`` is the one table of what is read: readers, file dialogs and sentences follow it.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NoReturn
 
 from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.foundation.files import opened_file
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import SourceParts
@@ -18,8 +23,10 @@ from kirigami_studio.outlines.source_file import decoding, read_bytes
 #: Keys under which an object may hold its vertices, the first present one counts.
 VERTEX_KEYS = ("outline", "points")
 UNITS = ("mm", "px")
-#: Extensions of pictures, which are traced at a threshold.
-PICTURES = (".png", ".jpg", ".jpeg", ".bmp")
+#: Bytes at the beginning of a file by which its kind is told.
+BEGINNING = 4096
+#: Larger files (bytes) are not opened.
+LARGEST = 2**40
 
 
 def read_target(source: str | Path) -> Outline:
@@ -28,7 +35,7 @@ def read_target(source: str | Path) -> Outline:
     Parameters
     ----------
     source : str or Path
-        A file with one of the extensions in ``READERS`` (any case), or a name from the library.
+        A file of one of ``KINDS``, or a name from the library.
 
     Raises
     ------
@@ -47,9 +54,9 @@ def read_target(source: str | Path) -> Outline:
         exists = path.exists()
     except (OSError, ValueError) as error:
         raise TargetError("target.not_a_file_name", name=str(source)) from error
-    reader = READERS.get(path.suffix.lower())
-    if reader is not None:
-        return reader(path)
+    kind = kind_of_source(path)
+    if kind is not None:
+        return kind.read(path)
     if exists:
         raise TargetError("target.unknown_kind", name=path.name, kinds=kinds)
     return silhouettes.load(str(source))
@@ -61,7 +68,7 @@ def read_parts(source: str | Path) -> SourceParts:
     Parameters
     ----------
     source : str or Path
-        A file with one of the extensions in ``PART_READERS`` (any case).
+        A file of a kind that can hold several parts.
 
     Raises
     ------
@@ -69,10 +76,10 @@ def read_parts(source: str | Path) -> SourceParts:
         Of another kind, missing, damaged or empty.
     """
     path = Path(source).expanduser()
-    reader = PART_READERS.get(path.suffix.lower())
-    if reader is None:
+    kind = kind_of_source(path)
+    if kind is None or kind.parts is None:
         raise TargetError("parts.not_a_drawing", source=str(source), kinds=", ".join(PART_READERS))
-    return reader(path)
+    return kind.parts(path)
 
 
 def target_files(folder: Path) -> list[Path]:
@@ -147,20 +154,77 @@ def _late(module: str, function: str) -> Callable[[Path], Any]:
     return read
 
 
-#: Reader by lower-case extension.
-READERS: Mapping[str, Callable[[Path], Outline]] = MappingProxyType(
-    {
-        **dict.fromkeys(PICTURES, _late("read_image", "read_image")),
-        ".svg": _late("read_svg", "read_svg"),
-        ".dxf": _late("read_dxf", "read_dxf"),
-        ".json": read_json,
-    }
+@dataclass(frozen=True, slots=True)
+class SourceKind:
+    """A kind of file that holds a target."""
+
+    extensions: tuple[str, ...]  #: lower case, with the dot
+    begins: Callable[[bytes], bool]  #: whether a file that begins so is of this kind
+    read: Callable[[Path], Outline]
+    parts: Callable[[Path], SourceParts] | None = None  #: where it can hold several
+    is_picture: bool = False  #: traced at a threshold
+
+
+def _picture(*extensions: str, begins: Callable[[bytes], bool]) -> SourceKind:
+    reader, parts = _late("read_image", "read_image"), _late("read_image", "image_parts")
+    return SourceKind(extensions, begins, reader, parts, True)
+
+
+def _is_svg(content: bytes) -> bool:
+    return content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") and b"<svg" in content
+
+
+def _is_dxf(content: bytes) -> bool:
+    """Whether a file begins with a section, maybe after a comment."""
+    words = content[:400].split()
+    return content.startswith(b"AutoCAD Binary DXF") or words[:2] == [b"0", b"SECTION"]
+
+
+def _is_pdf(content: bytes) -> bool:
+    return b"%PDF-" in content[:1024]
+
+
+KINDS = (
+    _picture(".png", begins=lambda content: content.startswith(b"\x89PNG")),
+    _picture(".jpg", ".jpeg", begins=lambda content: content.startswith(b"\xff\xd8\xff")),
+    _picture(".bmp", begins=lambda content: content.startswith(b"BM") and content[6:10] == bytes(4)),
+    _picture(".webp", begins=lambda content: content.startswith(b"RIFF") and content[8:12] == b"WEBP"),
+    _picture(".tif", ".tiff", begins=lambda content: content[:4] in (b"II*\0", b"MM\0*")),
+    _picture(".gif", begins=lambda content: content[:6] in (b"GIF87a", b"GIF89a")),
+    _picture(".avif", begins=lambda content: content[4:12] in (b"ftypavif", b"ftypavis")),
+    SourceKind((".svg",), _is_svg, _late("read_svg", "read_svg"), _late("read_svg", "svg_parts")),
+    SourceKind((".dxf",), _is_dxf, _late("read_dxf", "read_dxf"), _late("read_dxf", "dxf_parts")),
+    SourceKind((".pdf", ".ai"), _is_pdf, _late("read_pdf", "read_pdf"), _late("read_pdf", "pdf_parts")),
+    SourceKind((".json",), lambda content: False, read_json),
 )
-#: Readers of files that can hold several parts.
-PART_READERS: Mapping[str, Callable[[Path], SourceParts]] = MappingProxyType(
-    {
-        ".svg": _late("read_svg", "svg_parts"),
-        ".dxf": _late("read_dxf", "dxf_parts"),
-        **dict.fromkeys(PICTURES, _late("read_image", "image_parts")),
-    }
+#: Kinds by extension; those that can hold several parts; extensions of pictures.
+READERS: Mapping[str, SourceKind] = MappingProxyType(
+    {extension: kind for kind in KINDS for extension in kind.extensions}
 )
+PART_READERS: Mapping[str, SourceKind] = MappingProxyType(
+    {extension: kind for extension, kind in READERS.items() if kind.parts is not None}
+)
+PICTURES = tuple(extension for extension, kind in READERS.items() if kind.is_picture)
+
+
+def kind_of_source(path: Path) -> SourceKind | None:
+    """The kind of a file by how it begins, or else by its extension; None for others."""
+    by_name = READERS.get(path.suffix.lower())
+    try:
+        with opened_file(path, LARGEST) as stream:
+            content = stream.read(BEGINNING)
+    except (OSError, ValueError):  # its reader says what is wrong with it
+        return by_name
+    return next((kind for kind in KINDS if kind.begins(content)), by_name)
+
+
+def is_picture(path: Path) -> bool:
+    """Whether a file is a picture, which is traced at a threshold."""
+    kind = kind_of_source(path)
+    return kind is not None and kind.is_picture
+
+
+def has_parts(path: Path) -> bool:
+    """Whether a file is of a kind that can hold several parts."""
+    kind = kind_of_source(path)
+    return kind is not None and kind.parts is not None

@@ -1,13 +1,19 @@
-"""DXF drawings -> Outline: the largest closed contour in model space; or -> their parts."""
+"""DXF drawings -> Outline: the silhouette that is seen in model space; or -> their parts.
+
+Lines of a layer and colour are joined with each other, fills of a layer are united.  Layers of measures, texts, centre
+and construction lines are read, but count only where nothing else is closed (``Part.is_aside``).
+"""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+import shapely
 from ezdxf import colors, recover, units
 from ezdxf.document import Drawing
 from ezdxf.entities.dxfentity import DXFEntity
@@ -15,28 +21,67 @@ from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.insert import Insert
 from ezdxf.entities.layer import Layer
 from ezdxf.entities.mtext import MText
+from ezdxf.entities.polygon import DXFPolygon
+from ezdxf.entities.polyline import Polyline
+from ezdxf.entities.solid import Face3d, Solid
 from ezdxf.entities.text import Text as DXFText
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import dxf_stream_info, read, readfile
 from ezdxf.lldxf.const import DXFError
-from ezdxf.path import Command, make_path
+from ezdxf.math import Vec3
+from ezdxf.path import Command, from_hatch_boundary_path, from_vertices, make_path
 from ezdxf.path import Path as Curve
+from ezdxf.xclip import XClip
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.bezier import flattened_curve
-from kirigami_studio.outlines.contour import thinned
-from kirigami_studio.outlines.joining import closed_gaps, join, joined, refuse_scribbles
+from kirigami_studio.outlines.joining import refuse_scribbles
+from kirigami_studio.outlines.merging import usual_outline
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, StrokeStyle, numbered, parts_of_lines
-from kirigami_studio.outlines.pieces import largest_piece
+from kirigami_studio.outlines.parts import (
+    DrawnPartKind,
+    Part,
+    SourceParts,
+    StrokeStyle,
+    numbered,
+    parts_of_groups,
+    parts_of_region,
+)
+from kirigami_studio.outlines.pieces import united
 from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
 from kirigami_studio.outlines.text_curves import MOST_LETTERS, Text, scaled, text_parts
 
-#: Entities that are lines of a contour; everything else in a drawing is text, measures and decoration.
+#: Entities that are lines of a contour, and those that are filled; all else is text, measures and decoration.
 CURVES = frozenset({"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "CIRCLE", "ELLIPSE", "HELIX"})
+HATCHES, FACES = frozenset({"HATCH", "MPOLYGON"}), frozenset({"SOLID", "TRACE", "3DFACE"})
+FILLS = HATCHES | FACES
+#: Solids of a modelling kernel, which say nothing of their lines.
+KERNEL = frozenset({"REGION", "BODY", "3DSOLID", "SURFACE"})
+#: Words of layers that hold the shape, whatever else their names say, and of those that hold what is beside it or
+#: engraved on it, in several languages.
+CUT_WORDS = re.compile(
+    r"cut|outline|contou?r|kontur|umriss|schnitt|schneid|d[eé]coupe|coupe|corte|taglio|profile?|laser|mill|fr[aä]s"
+)
+ASIDE_WORDS = re.compile(
+    r"dims?|te?xte?s?|text[oi]s?|test[oi]|tekst|notes?|anno|aux|ax[ei]s?|ass[ei]|ejes?|achsen?|cot[ae]s?|"
+    r"quot[ae]s?|"
+    r"ma(?:ss|ß)e?|maate?n?|cent(?:re|er|ro)|cl|guides?|hidden|hilf|sketch|skizze|titles?|labels?|leaders?|vports?|"
+    r"dimension\w*|(?:be|ver)ma(?:ss|ß)\w*|cotation\w*|quotatur\w*|acota\w*|maatvoer\w*|wymiar\w*|размер\w*|"
+    r"annot\w*|beschrift\w*|schrift[fk]\w*|cente?re?l\w*|mittel[lp]\w*|hartlijn\w*|symmetr\w*|constr\w*|konstruk\w*|"
+    r"hilfs\w*|costruzion\w*|auxilia\w*|defpoint\w*|viewport\w*|ansichtsf\w*|titleb\w*|cartouche\w*|cajet\w*|"
+    r"cartigl\w*|zeichnungsr\w*|blattrahm\w*|verdeckt\w*|phantom\w*|helper\w*|guidel\w*|referen[cz]\w*|вспомог\w*|"
+    r"e?n?gra[vb]\w*|incisi\w*|etch\w*|标注\w*|尺寸\w*|寸法\w*|文字\w*|中心线\w*|辅助\w*"
+)
+#: Layers of AutoCAD Mechanical with hidden lines, measures, texts, centre lines, and hatches.
+MECHANICAL = re.compile(r"am_(3|5|6|7|8|10|11)n?")
+#: Line types of centre lines, hidden edges and construction.
+ASIDE_LINES = re.compile(r"center|centre|phantom|hidden|dash|dot|divide|border|mitte|strich|trait|iso0[2-9]|iso1")
+#: Layer whose lines have that of their block's insertion, and that which is never plotted.
+LAYER_0, NEVER_PLOTTED = "0", "defpoints"
 
 TEXTS = frozenset({"TEXT", "MTEXT", "ATTRIB", "ATTDEF"})
 
@@ -62,7 +107,7 @@ MOST_BINARY_MEGABYTES = 4
 #: Attributes with the width of a line in drawing units.
 WIDTHS = {"LWPOLYLINE": "const_width", "POLYLINE": "default_start_width"}
 #: Line widths on paper are in hundredths of a millimetre; these mean the layer's, and ordinary.
-BY_LAYER, MICRONS = -1, 0.01
+BY_LAYER, BY_LAYER_NAME, MICRONS = -1, "BYLAYER", 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +119,29 @@ class Line:
     colour: str
     width: float  #: drawing units, 0 where it has none
     thickness_mm: float  #: of the line on paper, 0 where it has none
+    is_aside: bool = False  #: whether it is a measure, a text, a centre or construction line
+
+
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """One visible filled entity: its region in drawing units, and where it belongs."""
+
+    region: BaseGeometry
+    layer: str
+    colour: str
+    is_aside: bool
+
+
+@dataclass(slots=True)
+class Seen:
+    """What is visible in a drawing, each entity with the layer that it shows as; and what is not."""
+
+    curves: list[tuple[DXFGraphic, str]] = field(default_factory=list)
+    fills: list[tuple[DXFGraphic, str]] = field(default_factory=list)
+    texts: list[tuple[DXFGraphic, str]] = field(default_factory=list)
+    hidden: set[str] = field(default_factory=set)  #: layers with lines or fills that are off, frozen or not plotted
+    clipped: set[str] = field(default_factory=set)  #: blocks of which only a part is to be seen
+    kernel: int = 0  #: regions and solids that cannot be read
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,13 +154,15 @@ class DxfDrawing:
     unit: str
     facts: dict[str, str]
     texts: tuple[Text, ...] = ()
+    fills: tuple[Fill, ...] = ()
 
 
 def read_dxf(path: str | Path) -> Outline:
-    """Outline of the largest closed contour of a DXF file.
+    """Outline of the silhouette that is seen in a DXF file.
 
-    LINE, ARC, LWPOLYLINE, POLYLINE, SPLINE, CIRCLE and ELLIPSE entities on visible layers of model
-    space, blocks included, are joined where their ends meet; gaps up to 0.5 % of the size are closed.
+    LINE, ARC, LWPOLYLINE, POLYLINE, SPLINE, CIRCLE and ELLIPSE entities on visible, plotted layers of model space,
+    blocks included, are joined where their ends meet; gaps up to 0.5 % of the size are closed.  HATCH, SOLID, TRACE
+    and 3DFACE are filled.
 
     Returns
     -------
@@ -107,11 +177,7 @@ def read_dxf(path: str | Path) -> Outline:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path, content)
-        region, joints = join([line.chain * found.to_mm for line in found.lines], WIDEST_GAP, found.unit)
-        ring, dropped = largest_piece(region)
-        notes = (*found.notes, *joints, *dropped)
-        return Outline.from_points(thinned(ring), name=path.stem, notes=notes, unit=found.unit)
+        return usual_outline(_parts(path, content))
 
 
 def dxf_parts(path: str | Path) -> SourceParts:
@@ -125,50 +191,95 @@ def dxf_parts(path: str | Path) -> SourceParts:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.dxf_damaged"):
-        found = _read(path, content, with_texts=True)
-        lines_of: dict[str, list[Line]] = {}
-        for line in found.lines:
-            lines_of.setdefault(line.layer, []).append(line)
-        parts: list[Part] = []
-        gaps: list[str] = []
-        for layer, lines in lines_of.items():
-            net = joined([line.chain * found.to_mm for line in lines], WIDEST_GAP)
-            gaps += closed_gaps(net, found.unit)
-            thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
-            pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
-            colours = {line.colour for line in lines}
-            like = Part(
-                0, "", layer, colours.pop() if len(colours) == 1 else "", DrawnPartKind.STROKED, Polygon(), (), pen
-            )
-            parts += parts_of_lines(net, like)
-        written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
-        parts += written
-        if not parts:
-            raise TargetError("dxf.no_lines_but_text")
-        kept, too_many = numbered(parts, max(max(part.size) for part in parts))
-        left_out = (*found.notes, *fonts, *gaps, *too_many)
-        return SourceParts(path.stem, kept, left_out, found.unit, found.facts)
+        return _parts(path, content)
 
 
-def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
-    """Everything visible in model space, flattened; texts only where they are wanted."""
+def _parts(path: Path, content: bytes) -> SourceParts:
+    found = _read(path, content)
+    groups: dict[tuple[bool, str, str], list[Line]] = {}
+    for line in found.lines:
+        groups.setdefault((line.is_aside, line.layer, line.colour), []).append(line)
+    parts, gaps, bridged = _filled(found), [], 0.0
+    for is_aside in (False, True):
+        some = [(key, lines) for key, lines in groups.items() if key[0] is is_aside]
+        more, closed, width = parts_of_groups(
+            [_group(found, key, lines) for key, lines in some], WIDEST_GAP, found.unit
+        )
+        parts += more
+        gaps += closed
+        bridged = max(bridged, width)
+    written, fonts = text_parts([scaled(text, found.to_mm) for text in found.texts])
+    parts += [replace(part, is_aside=is_aside_layer(part.layer)) for part in written]
+    if not parts:
+        raise TargetError("dxf.no_lines_but_text")
+    beside = dict.fromkeys(part.layer for part in parts if part.is_aside and not part.is_letter)
+    notes: tuple[str, ...] = found.notes
+    if beside and any(part.is_closed and not part.is_aside for part in parts):
+        notes += (
+            tr("Measures, texts, engraving and construction lines were left out: {names}.", names=", ".join(beside)),
+        )
+    kept, too_many = numbered(parts, max(max(part.size) for part in parts))
+    return SourceParts(path.stem, kept, (*notes, *fonts, *gaps, *too_many), found.unit, found.facts, bridged=bridged)
+
+
+def _group(found: DxfDrawing, key: tuple[bool, str, str], lines: Sequence[Line]) -> tuple[list[FloatArray], Part]:
+    """Lines of a layer and colour, source units, and the part that all of them are like."""
+    is_aside, layer, colour = key
+    thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
+    pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
+    like = Part(0, "", layer, colour, DrawnPartKind.STROKED, Polygon(), (), pen, is_aside=is_aside)
+    return [line.chain * found.to_mm for line in lines], like
+
+
+def _filled(found: DxfDrawing) -> list[Part]:
+    """What is filled on each layer, united, because faces of a mesh abut."""
+    fills_of: dict[tuple[bool, str, str], list[BaseGeometry]] = {}
+    for fill in found.fills:
+        fills_of.setdefault((fill.is_aside, fill.layer, fill.colour), []).append(fill.region)
+    parts = []
+    for (is_aside, layer, colour), regions in fills_of.items():
+        size = float(np.max(np.ptp(shapely.total_bounds(np.array(regions, dtype=object)).reshape(2, 2), axis=0)))
+        region = shapely.transform(united(regions, size), lambda points: points * found.to_mm)
+        like = Part(0, "", layer, colour, DrawnPartKind.FILLED, Polygon(), is_aside=is_aside)
+        parts += parts_of_region(region, like)
+    return parts
+
+
+def is_aside_layer(name: str) -> bool:
+    """Whether a layer by its name holds measures, texts, centre or construction lines, not the shape."""
+    name = name.casefold()
+    if CUT_WORDS.search(name):
+        return False
+    words = re.findall(r"[^\W\d_]+", name)
+    return any(map(ASIDE_WORDS.fullmatch, words)) or MECHANICAL.fullmatch(name) is not None
+
+
+def _read(path: Path, content: bytes) -> DxfDrawing:
+    """Everything visible in model space, flattened."""
     budget = TimeBudget()
     drawing, repaired = opened_dxf(path, content, budget)
     notes: tuple[str, ...] = ()
     if repaired:
         notes = (tr("The file was damaged and was repaired while reading. Check the shape."),)
-    curves, texts, hidden = _visible(drawing, budget)
-    written = [text for entity in texts[:MOST_LETTERS] for text in _texts(entity)] if with_texts else []
-    if not curves and not written:
-        raise TargetError("dxf.no_lines_but_text" if texts else "dxf.no_lines")
-    if texts and not written:
+    seen = _visible(drawing, budget)
+    written = [text for entity, layer in seen.texts[:MOST_LETTERS] for text in _texts(entity, layer)]
+    if not seen.curves and not seen.fills and not written:
+        if seen.kernel:
+            raise TargetError("dxf.only_regions")
+        raise TargetError("dxf.no_lines_but_text" if seen.texts else "dxf.no_lines")
+    if seen.texts and not written:
         notes += (tr("Text was left out. Convert it to lines if it belongs to the shape."),)
-    if hidden:
-        notes += (tr("Hidden layers were left out: {names}.", names=", ".join(sorted(hidden))),)
+    if seen.hidden:
+        notes += (tr("Hidden layers were left out: {names}.", names=", ".join(sorted(seen.hidden))),)
+    if seen.clipped:
+        names = ", ".join(sorted(seen.clipped))
+        notes += (tr("Blocks that are clipped in the drawing (XCLIP) were taken whole: {names}.", names=names),)
+    if seen.kernel:
+        notes += (tr("Regions and solids were left out. Explode them into lines if they belong to the shape."),)
     # A file that does not state its unit is given metres by ezdxf; here it stays without unit.
     has_unit = b"$INSUNITS" in content and drawing.units != InsertUnits.Unitless
     to_mm = units.conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if has_unit else 1.0
-    lines, unread = _flattened(curves, drawing, budget) if curves else ([], 0)
+    lines, fills, unread = _flattened(seen, drawing, budget) if seen.curves or seen.fills else ([], [], 0)
     refuse_scribbles([line.chain for line in lines])
     if unread:
         notes += (
@@ -179,7 +290,7 @@ def _read(path: Path, content: bytes, with_texts: bool = False) -> DxfDrawing:
             ),
         )
     facts = {str(name): str(text) for name, text in drawing.header.custom_vars.properties}
-    return DxfDrawing(lines, notes, to_mm, "mm" if has_unit else "", facts, tuple(written))
+    return DxfDrawing(lines, notes, to_mm, "mm" if has_unit else "", facts, tuple(written), tuple(fills))
 
 
 class _TimedBytes(io.BytesIO):
@@ -224,29 +335,31 @@ def opened_dxf(
         return drawing, True
 
 
-def _visible(drawing: Drawing, budget: TimeBudget) -> tuple[list[DXFGraphic], list[DXFGraphic], set[str]]:
-    """Curves on visible layers of model space, blocks unfolded; texts; hidden layers with curves."""
-    off = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
-    curves: list[DXFGraphic] = []
-    hidden: set[str] = set()
-    texts: list[DXFGraphic] = []
+def _visible(drawing: Drawing, budget: TimeBudget) -> Seen:
+    """All that is on visible, plotted layers of model space, blocks unfolded."""
+    layers = {layer.dxf.name.lower(): layer for layer in drawing.layers}
+    frozen = {name for name, layer in layers.items() if layer.is_frozen()}
+    hidden = frozen | {name for name, layer in layers.items() if layer.is_off() or not layer.dxf.get("plot", 1)}
+    seen = Seen()
     _refuse_bombs(drawing)
-    for count, entity in enumerate(_unfolded(drawing.modelspace(), 0, budget)):
+    for count, (entity, layer) in enumerate(_unfolded(drawing.modelspace(), 0, budget, frozen, seen)):
         if count >= MOST_ENTITIES:
             raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
-        if not isinstance(entity, DXFGraphic) or entity.dxf.invisible:
-            continue
-        if entity.dxf.layer.lower() in off:
-            hidden |= {entity.dxf.layer} if entity.dxftype() in CURVES else set()
-            continue
-        if entity.dxftype() in TEXTS:
-            texts.append(entity)
-        if entity.dxftype() in CURVES:
-            curves.append(entity)
-    return curves, texts, hidden
+        kind = entity.dxftype()
+        if layer.lower() in hidden or layer.lower() == NEVER_PLOTTED:
+            seen.hidden |= {layer} if kind in CURVES or kind in FILLS else set()
+        elif kind in TEXTS:
+            seen.texts.append((entity, layer))
+        elif kind in FILLS:
+            seen.fills.append((entity, layer))
+        elif kind in CURVES:
+            seen.curves.append((entity, layer))
+        elif kind in KERNEL:
+            seen.kernel += 1
+    return seen
 
 
-def _texts(entity: DXFGraphic) -> Iterator[Text]:
+def _texts(entity: DXFGraphic, layer: str) -> Iterator[Text]:
     """The lines of a text, in drawing units."""
     if isinstance(entity, MText):
         height, at, angle = float(entity.dxf.char_height), entity.dxf.insert, float(entity.get_rotation())
@@ -271,7 +384,7 @@ def _texts(entity: DXFGraphic) -> Iterator[Text]:
     for number, text in enumerate(rows):
         up = first - number * LINE
         matrix = ((cos, -sin, at.x - sin * up), (sin, cos, at.y + cos * up))
-        yield Text(text, matrix, anchor, layer=entity.dxf.layer, is_cap_height=True)
+        yield Text(text, matrix, anchor, layer=layer, is_cap_height=True)
 
 
 def _refuse_bombs(drawing: Drawing) -> None:
@@ -297,47 +410,90 @@ def _refuse_bombs(drawing: Drawing) -> None:
         raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
 
 
-def _unfolded(entities: Iterable[DXFEntity], depth: int, budget: TimeBudget) -> Iterator[DXFEntity]:
+def _unfolded(
+    entities: Iterable[DXFEntity], depth: int, budget: TimeBudget, frozen: set[str], seen: Seen, outer: str = LAYER_0
+) -> Iterator[tuple[DXFGraphic, str]]:
+    """Entities with the layers that they show as: in blocks, those on layer 0 show as their insertion's.
+
+    What is inserted on a frozen layer is hidden with all of its layers; on one that is off, only what shows as it.
+    """
     if depth > DEEPEST_BLOCK:
         raise TargetError("dxf.blocks_too_deep", limit=DEEPEST_BLOCK)
     for entity in entities:
         budget.check()
-        if not isinstance(entity, Insert):
-            yield entity
+        if not isinstance(entity, DXFGraphic) or entity.dxf.invisible:
             continue
-        for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
-            yield from _unfolded(single.virtual_entities(), depth + 1, budget)
+        layer = outer if entity.dxf.layer == LAYER_0 else entity.dxf.layer
+        if isinstance(entity, Polyline) and (entity.is_poly_face_mesh or entity.is_polygon_mesh):
+            yield from _unfolded(entity.virtual_entities(), depth + 1, budget, frozen, seen, layer)
+        elif not isinstance(entity, Insert):
+            yield entity, layer
+        elif layer.lower() in frozen:
+            seen.hidden.add(layer)
+        else:
+            if entity.has_extension_dict and (clip := XClip(entity)).has_clipping_path and clip.is_clipping_enabled:
+                seen.clipped.add(entity.dxf.name)
+            for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
+                yield from _unfolded(single.virtual_entities(), depth + 1, budget, frozen, seen, layer)
 
 
-def _flattened(curves: Iterable[DXFGraphic], drawing: Drawing, budget: TimeBudget) -> tuple[list[Line], int]:
-    """Curves as lines, drawing units; z is dropped.  And the number of those that could not be read."""
-    found: list[tuple[DXFGraphic, Curve]] = []
+def _flattened(seen: Seen, drawing: Drawing, budget: TimeBudget) -> tuple[list[Line], list[Fill], int]:
+    """Lines and fills, drawing units; z is dropped.  And the number of those that could not be read."""
+    found: list[tuple[DXFGraphic, str, list[Curve]]] = []
     damaged: list[Exception] = []
-    for entity in curves:
+    for entity, layer in (*seen.curves, *seen.fills):
         budget.check()
         try:
-            curve = make_path(entity)
-        except (DXFError, ValueError, TypeError, ArithmeticError, LookupError) as error:
+            curves = _edges(entity) if entity.dxftype() in FILLS else [make_path(entity)]
+        except (DXFError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             damaged.append(error)
         else:
-            found += [(entity, curve)] if len(curve) > 0 else []
+            curves = [curve for curve in curves if len(curve) > 0]
+            found += [(entity, layer, curves)] if curves else []
     if not found:
         if damaged:
             raise damaged[0]
         raise TargetError("dxf.no_length")
-    corners = [np.array([(corner.x, corner.y) for corner in curve.control_vertices()]) for _, curve in found]
-    everything = np.concatenate(corners)
+    corners = [[(corner.x, corner.y) for corner in curve.control_vertices()] for _, _, all_ in found for curve in all_]
+    everything = np.array([corner for some in corners for corner in some])
     if not np.isfinite(everything).all():
         raise TargetError("drawing.not_finite")
     distance = float(np.max(np.ptp(everything, axis=0))) * FLATNESS
     if distance == 0.0:
         raise TargetError("dxf.one_point")
     layers = {layer.dxf.name.lower(): layer for layer in drawing.layers}
-    lines = []
-    for entity, curve in found:
+    lines: list[Line] = []
+    fills: list[Fill] = []
+    for entity, name, curves in found:
         budget.check()
-        lines.append(_line(entity, _vertices(curve, distance), layers.get(entity.dxf.layer.lower())))
-    return lines, len(damaged)
+        chains = [_vertices(curve, distance) for curve in curves]
+        line = _line(entity, chains[0], name, layers.get(name.lower()))
+        if entity.dxftype() in FILLS:
+            region = _inside(chains)
+            fills += [] if region.is_empty else [Fill(region, name, line.colour, line.is_aside)]
+        else:
+            lines.append(line)
+    return lines, fills, len(damaged)
+
+
+def _edges(entity: DXFGraphic) -> list[Curve]:
+    """The closed edges of a filled entity."""
+    if isinstance(entity, DXFPolygon):
+        ocs, raised = entity.ocs(), Vec3(entity.dxf.elevation).z
+        paths = entity.paths.rendering_paths(entity.dxf.hatch_style)
+        return [from_hatch_boundary_path(path, ocs, raised) for path in paths]
+    assert isinstance(entity, Solid | Face3d)
+    return [from_vertices(entity.wcs_vertices(close=True))]
+
+
+def _inside(rings: Sequence[FloatArray]) -> BaseGeometry:
+    """What lies inside an odd number of rings (L, 2)."""
+    region: BaseGeometry = Polygon()
+    for ring in rings:
+        if len(ring) > 2:
+            region = region.symmetric_difference(shapely.make_valid(Polygon(ring)))
+    pieces = [piece for piece in shapely.get_parts(region) if isinstance(piece, Polygon)]
+    return shapely.union_all(pieces)
 
 
 def _vertices(curve: Curve, distance: float) -> FloatArray:
@@ -356,17 +512,24 @@ def _vertices(curve: Curve, distance: float) -> FloatArray:
     return np.concatenate(vertices)
 
 
-def _line(entity: DXFGraphic, chain: FloatArray, layer: Layer | None) -> Line:
-    """An entity with the colour and width that are its own, or its layer's."""
+def _line(entity: DXFGraphic, chain: FloatArray, name: str, layer: Layer | None) -> Line:
+    """An entity with the colour, width and line type that are its own, or its layer's."""
     number = entity.dxf.get("color", colors.BYLAYER)
     true = entity.dxf.get("true_color") if entity.dxf.hasattr("true_color") else None
     weight = entity.dxf.get("lineweight", BY_LAYER)
+    pattern = str(entity.dxf.get("linetype", BY_LAYER_NAME))
     if layer is not None and true is None and number == colors.BYLAYER:
         number = abs(layer.dxf.get("color", colors.BLACK))
         true = layer.dxf.get("true_color") if layer.dxf.hasattr("true_color") else None
     if layer is not None and weight == BY_LAYER:
         weight = layer.dxf.get("lineweight", BY_LAYER)
+    if layer is not None and pattern.upper() == BY_LAYER_NAME:
+        pattern = str(layer.dxf.get("linetype", ""))
     red, green, blue = colors.int2rgb(true) if true is not None else colors.aci2rgb(number if 0 < number < 256 else 7)
     named = WIDTHS.get(entity.dxftype())
     width = max(float(entity.dxf.get(named, 0.0)), 0.0) if named else 0.0
-    return Line(chain, entity.dxf.layer, f"#{red:02x}{green:02x}{blue:02x}", width, max(weight, 0) * MICRONS)
+    colour = f"#{red:02x}{green:02x}{blue:02x}"
+    is_aside = is_aside_layer(name) or (
+        ASIDE_LINES.search(pattern.casefold()) is not None and not CUT_WORDS.search(name.casefold())
+    )
+    return Line(chain, name, colour, width, max(weight, 0) * MICRONS, is_aside)

@@ -1,11 +1,12 @@
-"""Pictures -> Outline: threshold, largest piece, sub-pixel contour."""
+"""Pictures -> Outline: what differs from the colour of the border, largest piece, sub-pixel contour."""
 
 from __future__ import annotations
 
 import io
 import math
 import warnings
-from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,11 +14,11 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 from scipy import ndimage
 from shapely.geometry import Polygon
-from skimage import filters
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.outlines.background import middle_of, opacity_level, separated
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, numbered, parts_of_region
 from kirigami_studio.outlines.source_file import decoding, read_bytes
@@ -31,9 +32,8 @@ WORKING_SIDE = 2048
 
 #: Grey range (of 0..1) below which a picture is blank; JPEG noise on white paper stays below.
 LEAST_CONTRAST = 0.06
-
-#: scikit-image carries no types; the annotation states what is used of it.
-threshold_otsu: Callable[[FloatArray], float] = filters.threshold_otsu
+#: Shorter side of a picture whose border tells its background, pixels, and opacity (of 255) that is none.
+LEAST_SIDE, CLEAR = 8, 12
 
 #: Regions of a picture: the least share of it, those that are offered at most, and pixels around one that is traced.
 LEAST_SHARE, MOST_REGIONS, MARGIN = 2e-4, 200, 6
@@ -41,19 +41,30 @@ LEAST_SHARE, MOST_REGIONS, MARGIN = 2e-4, 200, 6
 #: its channels that makes a colour.
 MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
 MOST_PIXELS_IN_COLOUR = 25_000_000
-#: A picture of more regions is noise.
-MOST_SPECKS = 10_000
+#: A picture of more regions is noise; a colour of more specks is texture.
+MOST_SPECKS, TEXTURE = 10_000, 200
 
-FORMATS = ("PNG", "JPEG", "BMP")
+#: As Pillow calls them; of an animation the first picture is read.
+FORMATS = ("PNG", "JPEG", "BMP", "WEBP", "TIFF", "GIF", "AVIF")
 MOST_MEGABYTES = 200
+#: Range of channels (of 255) up to which a picture is in grey, but for a share of its pixels.
+MOST_OF_GREY, TINTED = 24, 1e-3
+#: Share of the shape, below which what is on the other side of the background's grey level is dirt.
+OTHER_SIDE = 0.02
+#: Larger files are decoded again for every threshold.
+KEPT_MEGABYTES = 24
 
 
 class Levels(NamedTuple):
     """A picture reduced to one number a pixel."""
 
-    grey: FloatArray  #: (H, W), 0 black or transparent .. 1 white or opaque
+    #: (H, W); 0 black, transparent or far from the background .. 1 white, opaque or like the background
+    grey: FloatArray
     reduction: int  #: source pixels along the side of one pixel of ``grey``
-    is_alpha: bool  #: ``grey`` is the alpha channel: the shape is where it is high, whatever the border says
+    ground: float  #: level of the background
+    automatic: float  #: level that divides it from the shape
+    is_plain: bool  #: whether the shape is meant without doubt
+    notes: tuple[str, ...]
     #: (width, height); of the source, turned upright; pixels at its lower and right edge may share a pixel of ``grey``
     #: with nothing.
     size: tuple[int, int]
@@ -75,14 +86,15 @@ def read_image(path: str | Path, threshold: float | None = None) -> Outline:
 
 
 def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
-    """Outline of the largest dark shape on light paper, light one on dark, or opaque shape.
+    """Outline of the largest shape that differs from the colour of the border, or that is opaque.
 
     Parameters
     ----------
     path : str or Path
-        PNG, JPG or BMP with 1 to 100 million pixels, any colour mode.
+        A picture of one of ``FORMATS`` with 1 to 100 million pixels, any colour mode.
     threshold : float, optional
-        Grey level 0 (black) .. 1 (white) that separates shape and ground; default ``automatic_threshold``.
+        Level 0 .. 1 that separates shape and background; default ``automatic_threshold``.  Pictures in grey have their
+        grey levels, 0 black .. 1 white; others 1 where they are like their background .. 0 where they differ most.
 
     Returns
     -------
@@ -100,16 +112,16 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
         levels = _levels(content)
         ink = _ink(levels, threshold)
         ring, notes = trace(ink)
-        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=notes, unit="px")
+        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
     """Connected regions of a picture as parts: dark or light ones, and those of each colour.
 
-    A coloured picture has a layer for each of its main colours but the one of its border.  A picture in grey has
-    regions by its threshold alone, as have all where ``in_colour`` is not asked for.  Regions below ``LEAST_SHARE`` of
-    the picture are specks.
+    A coloured picture has a layer for each of its main colours but the one of its border, which nobody takes without
+    asking.  A picture in grey has regions by its threshold alone, as have all where ``in_colour`` is not asked for.
+    Regions below ``LEAST_SHARE`` of the picture are specks.
 
     Raises
     ------
@@ -124,11 +136,14 @@ def image_parts(path: str | Path, threshold: float | None = None, in_colour: boo
         found, specks = _regions(ink, levels.reduction, "", "")
         for colour, field, reduction in _colours(content) if in_colour else ():
             more, dust = _regions(field, reduction, colour, colour)
-            found, specks = found + more, specks + dust
+            if dust > TEXTURE:
+                continue
+            found += [replace(part, is_aside=True) for part in more]
+            specks += dust
         if not found:
             raise TargetError("trace.specks", specks=specks)
         parts, too_many = numbered(found, float(max(levels.size)))
-        notes = too_many
+        notes = (*levels.notes, *too_many)
         if specks:
             notes = (tr_n("{count} speck was left out.", "{count} specks were left out.", specks), *notes)
         return SourceParts(path.stem, parts, notes, "px")
@@ -166,9 +181,8 @@ def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
     if image.width * image.height > MOST_PIXELS_IN_COLOUR:
         return []
     reduction = math.ceil(max(image.size) / COLOUR_SIDE)
-    coloured = image.convert("RGBA")
-    flat = Image.alpha_composite(Image.new("RGBA", coloured.size, "white"), coloured)
-    small = flat.convert("RGB").reduce(reduction) if reduction > 1 else flat.convert("RGB")
+    flat = on_paper(image)
+    small = flat.reduce(reduction) if reduction > 1 else flat
     few = small.quantize(MOST_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     table, places = few.getpalette() or [], np.asarray(few)
     colours = [tuple(table[3 * k : 3 * k + 3]) for k in range(len(table) // 3)]
@@ -192,8 +206,8 @@ def _in_picture(outline: Outline, ring: FloatArray, levels: Levels) -> Traced:
     return Traced(outline, scale, (x, y - below), levels.size)
 
 
-def automatic_threshold(path: str | Path) -> float:
-    """Grey level in 0..1 of ``read_image``: Otsu's, moved midway between the class means.
+def picture_size(path: str | Path) -> tuple[int, int]:
+    """Width and height of a picture, turned upright, pixels.
 
     Raises
     ------
@@ -203,7 +217,35 @@ def automatic_threshold(path: str | Path) -> float:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.image_damaged"):
-        return _automatic(_levels(content).grey)
+        return _levels(content).size
+
+
+def is_plain_picture(path: str | Path) -> bool:
+    """Whether the shape of a picture is meant without doubt: sharp edges on a background of one colour.
+
+    Raises
+    ------
+    TargetError
+        Not a picture, or blank.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "source.image_damaged"):
+        return _levels(content).is_plain
+
+
+def automatic_threshold(path: str | Path) -> float:
+    """Level in 0..1 of ``read_image``: midway between background and shape at its edge.
+
+    Raises
+    ------
+    TargetError
+        Not a picture, or blank.
+    """
+    path = Path(path)
+    content = read_bytes(path, MOST_MEGABYTES)
+    with decoding(path, "source.image_damaged"):
+        return _levels(content).automatic
 
 
 def outline_of_mask(mask: BoolArray, name: str) -> Outline:
@@ -244,8 +286,8 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
         Whatever Pillow raises on damaged files.
     """
     with warnings.catch_warnings():
-        # Pillow warns from 89 Mpixel on; the limit here is the sentence below.
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        # Pillow warns from 89 Mpixel on, where the limit here is the sentence below; and of oddities in TIFF.
+        warnings.simplefilter("ignore")
         try:
             image = Image.open(io.BytesIO(content), formats=formats)
         except Image.DecompressionBombError:
@@ -262,14 +304,64 @@ def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels
 
 
 def _levels(content: bytes) -> Levels:
-    """Decode a picture, pick the channel that holds the shape and reduce it to the working size."""
-    image = opened_image(content)
-    channel, is_alpha = _channel(ImageOps.exif_transpose(image))
+    """Decode a picture and reduce it to the level of each pixel; the last one is kept while its threshold is moved."""
+    return (_kept_levels if len(content) <= KEPT_MEGABYTES * 1_000_000 else _decoded_levels)(content)
+
+
+def _decoded_levels(content: bytes) -> Levels:
+    image = ImageOps.exif_transpose(opened_image(content))
     reduction = math.ceil(max(image.size) / WORKING_SIDE)
-    grey = np.asarray(channel.reduce(reduction) if reduction > 1 else channel, dtype=np.float64)
-    if channel.mode == "L":
-        return Levels(grey / 255.0, reduction, is_alpha, channel.size)
-    return Levels(stretched(grey), reduction, is_alpha, channel.size)
+    coloured = None
+    if image.mode.startswith(("I", "F")):
+        grey = stretched(_array(image.convert("F"), reduction))
+    elif (alpha := alpha_of(image)) is not None:
+        return _opaque(_array(alpha, reduction) / 255.0, reduction, image.size)
+    else:
+        flat = image.convert("L") if image.mode in ("1", "L") else on_paper(image)
+        grey = _array(flat.convert("L"), reduction) / 255.0
+        if flat.mode != "L":
+            seen = _array(flat, reduction, np.float32)
+            if np.mean(np.ptp(seen, axis=2) > MOST_OF_GREY) > TINTED:
+                coloured = seen / np.float32(255.0)
+    if min(grey.shape) < LEAST_SIDE:
+        return _divided_by_grey(grey, reduction, image.size)
+    found = separated(grey[..., None] if coloured is None else coloured)
+    if found is None or (coloured is None and float(np.ptp(grey)) < LEAST_CONTRAST):
+        return _divided_by_grey(grey, reduction, image.size)
+    notes = (tr("The page around the shape was left out."),) if found.is_on_page else ()
+    if coloured is None and found.ground is not None and not found.is_on_page:
+        darker, lighter = (
+            float(np.mean(side > 0.01 * found.level)) for side in (found.ground - grey, grey - found.ground)
+        )
+        if min(darker, lighter) <= OTHER_SIDE * max(darker, lighter):
+            level = found.ground + (0.01 if lighter > darker else -0.01) * found.level
+            return Levels(grey, reduction, found.ground, level, found.is_plain, notes, image.size)
+    highest = float(np.max(found.distance))
+    alike = 1.0 - found.distance / highest
+    return Levels(alike, reduction, 1.0, 1.0 - found.level / highest, found.is_plain, notes, image.size)
+
+
+_kept_levels = lru_cache(maxsize=1)(_decoded_levels)
+
+
+def _array(image: Image.Image, reduction: int, kind: type = np.float64) -> FloatArray:
+    """Values of a picture, averaged over squares of pixels."""
+    return np.asarray(image.reduce(reduction) if reduction > 1 else image, dtype=kind)
+
+
+def _opaque(opacity: FloatArray, reduction: int, size: tuple[int, int]) -> Levels:
+    """Levels of a transparent picture."""
+    if min(opacity.shape) < LEAST_SIDE or float(np.ptp(opacity)) < LEAST_CONTRAST:
+        return Levels(opacity, reduction, 0.0, _automatic(opacity), True, (), size)
+    found = opacity_level(opacity)
+    return Levels(opacity, reduction, 0.0, 0.01 * found.level, found.is_plain, (), size)
+
+
+def _divided_by_grey(grey: FloatArray, reduction: int, size: tuple[int, int]) -> Levels:
+    """Levels of a picture that shows nothing on the colour of its border, divided by Otsu's level."""
+    level = _automatic(grey)
+    ground = float(np.mean(_border(grey) > level) >= 0.5)
+    return Levels(grey, reduction, ground, level, False, (), size)
 
 
 def stretched(deep: FloatArray) -> FloatArray:
@@ -278,19 +370,26 @@ def stretched(deep: FloatArray) -> FloatArray:
     return (deep - lowest) / max(highest - lowest, 1e-12)
 
 
-def _channel(image: Image.Image) -> tuple[Image.Image, bool]:
-    """The channel that holds the shape (mode L, or F for deep ones), and whether it is alpha."""
-    if image.mode.startswith(("I", "F")):
-        return image.convert("F"), False
+def alpha_of(image: Image.Image) -> Image.Image | None:
+    """The opacity of a picture whose border is transparent."""
     if not image.has_transparency_data:
-        return image.convert("L"), False
-    coloured = image.convert("RGBA")
-    alpha = coloured.getchannel("A")
+        return None
+    alpha = image.convert("RGBA").getchannel("A")
     opacity = np.asarray(alpha, dtype=np.float64)
-    if np.mean(_border(opacity) < 128) > 0.5 and np.any(opacity >= 128):
-        return alpha, True
-    paper = Image.new("RGBA", coloured.size, "white")
-    return Image.alpha_composite(paper, coloured).convert("L"), False
+    is_border_clear = np.mean(_border(opacity) < 128) > 0.5 or np.mean(_corners_of(opacity) < 128) > 0.5
+    return alpha if is_border_clear and float(np.max(opacity)) > CLEAR else None
+
+
+def on_paper(image: Image.Image) -> Image.Image:
+    """The colours of a picture, white where it is transparent."""
+    if not image.has_transparency_data:
+        return image.convert("RGB")
+    coloured = image.convert("RGBA")
+    return Image.alpha_composite(Image.new("RGBA", coloured.size, "white"), coloured).convert("RGB")
+
+
+def _corners_of(values: FloatArray) -> FloatArray:
+    return values[[0, 0, -1, -1], [0, -1, 0, -1]]
 
 
 def _border(grey: FloatArray) -> FloatArray:
@@ -298,25 +397,17 @@ def _border(grey: FloatArray) -> FloatArray:
     return np.concatenate([grey[0], grey[-1], grey[1:-1, 0], grey[1:-1, -1]])
 
 
-def _shape_is_high(levels: Levels, level: float) -> bool:
-    """The border is background: where most of it is above the level, the shape is what is below."""
-    return levels.is_alpha or bool(np.mean(_border(levels.grey) > level) < 0.5)
-
-
 def _automatic(grey: FloatArray) -> float:
     contrast = float(np.ptp(grey))
     if contrast < LEAST_CONTRAST:
         raise TargetError("image.blank", percent=100 * contrast)
-    otsu = float(threshold_otsu(grey))
-    above = grey > otsu
-    # On clean two-level pictures Otsu sits on one of the levels; midway, sub-pixel contours are unbiased.
-    return (float(np.mean(grey[above])) + float(np.mean(grey[~above]))) / 2.0
+    return middle_of(grey)
 
 
 def _ink(levels: Levels, threshold: float | None) -> FloatArray:
     """How much each pixel belongs to the shape: above 0 inside, 0 at the threshold."""
-    level = _automatic(levels.grey) if threshold is None else _checked(threshold)
-    ink = levels.grey - level if _shape_is_high(levels, level) else level - levels.grey
+    level = levels.automatic if threshold is None else _checked(threshold)
+    ink = levels.grey - level if levels.ground < level else level - levels.grey
     if not np.any(ink > 0) or np.all(ink > 0):
         raise TargetError("image.one_colour", threshold=level)
     return ink

@@ -13,19 +13,19 @@ from kirigami_studio.foundation.files import read_at_most
 
 MEGABYTE = 1_000_000
 
-#: Seconds of processor time that one source may take to be read, and how many times as long by the clock.
-MOST_SECONDS, WAITING = 3.5, 2.3
+#: Seconds of processor time that one source may take to be read.
+MOST_SECONDS = 3.5
 
 
 class TimeBudget:
     """What is left of the time that reading may take: a drawing can be small and unfold without end.
 
-    Counted in the processor time of the thread first, so that a busy machine refuses no ordinary file.
+    Counted in the processor time of the thread, so that a busy machine refuses nothing that an idle one reads.
     """
 
     def __init__(self, seconds: float = MOST_SECONDS) -> None:
         self._seconds = seconds
-        self._begun = time.thread_time(), time.monotonic()
+        self._begun = time.thread_time()
 
     def check(self, share: float = 1.0) -> None:
         """Refuse to go on when more than a share of the time is used.
@@ -35,8 +35,7 @@ class TimeBudget:
         TargetError
             It is.
         """
-        used, waited = time.thread_time() - self._begun[0], time.monotonic() - self._begun[1]
-        if used > share * self._seconds or waited > share * WAITING * self._seconds:
+        if time.thread_time() - self._begun > share * self._seconds:
             raise TargetError("source.too_slow", seconds=self._seconds)
 
 

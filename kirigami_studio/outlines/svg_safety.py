@@ -1,21 +1,24 @@
-"""Checks on an SVG document before it is unfolded: no entities, no bombs, no parts that are never painted."""
+"""Checks on an SVG before it is unfolded: no bombs, no entities but short plain texts."""
 
 from __future__ import annotations
 
 import base64
+import contextlib
 import re
 import xml.etree.ElementTree as ElementTree
 from xml.etree.ElementTree import Element
+from xml.parsers import expat
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.units import MM_PER_INCH
-from kirigami_studio.foundation.words import tr
 
 #: ``use`` elements repeat others; a drawing that unfolds to more elements than this is no outline.
 MOST_ELEMENTS = 20_000
 #: Numbers of all paths together, and digits of one: decoders take a long time for more.
 MOST_NUMBERS = 300_000
 MOST_DIGITS = 64
+#: Plain entities of a document, letters of one, and letters that all references to them may stand for.
+MOST_ENTITIES, LONGEST_ENTITY, MOST_ENTITY_LETTERS = 200, 1_000, 1_000_000
 DIGITS = re.compile(rb"\d{%d}" % (MOST_DIGITS + 1))
 NUMBER = re.compile(r"\d+(?:\.\d*)?|\.\d+")
 
@@ -24,48 +27,67 @@ PICTURES = frozenset({"image", "feImage"})
 #: What files of pixels begin with: PNG, JPEG, GIF, BMP, WebP.
 PIXELS = (b"\x89PNG", b"\xff\xd8", b"GIF8", b"BM", b"RIFF")
 INSTRUCTION = re.compile(r"<\?.*?\?>", re.DOTALL)
-#: Parts that paint nothing by themselves; svgelements would draw the shapes inside some of them.
-UNPAINTED = frozenset({"mask", "marker", "pattern", "clipPath", "foreignObject", "script", "metadata", "filter"})
-
 REAL_LENGTH = re.compile(r"\s*\+?(\d+\.?\d*|\.\d+)(mm|cm|in|pt|pc)\s*", re.IGNORECASE)
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": MM_PER_INCH, "pt": MM_PER_INCH / 72.0, "pc": MM_PER_INCH / 6.0}
 
 
-def checked_svg(content: bytes) -> tuple[bytes, float | None, tuple[str, ...]]:
+class _PrologueEndError(Exception):
+    """Everything before the first element was read."""
+
+
+def checked_svg(content: bytes) -> tuple[Element, float | None]:
     """Return a document that is safe to unfold.
 
     Returns
     -------
-    content : bytes
-        The document without unpainted parts, symbols moved into definitions.
+    root : Element
     width_mm : float or None
         Width of the page, when it is stated in mm, cm, in, pt or pc.
-    notes : tuple of str
 
     Raises
     ------
     TargetError
-        Compressed, with entity declarations, not well-formed, not SVG, or unfolding without end.
+        Compressed, with entities that are no short plain texts, not well-formed, not SVG, or unfolding without end.
     """
     if content.startswith(b"\x1f\x8b"):
         raise TargetError("svg.compressed")
-    # Without the zero bytes UTF-16 text is searched as well.
-    if b"<!entity" in content.replace(b"\0", b"").lower():
-        raise TargetError("svg.entities")
     refuse_long_numbers(content)
     try:
+        _check_entities(content)
         root = ElementTree.fromstring(content)
-    except ElementTree.ParseError as error:
+    except (ElementTree.ParseError, expat.ExpatError) as error:
         raise TargetError("svg.not_well_formed", reason=str(error)) from error
-    if _tag(root) != "svg":
-        raise TargetError("svg.other_root", tag=_tag(root))
+    if tag_of(root) != "svg":
+        raise TargetError("svg.other_root", tag=tag_of(root))
     _refuse_bombs(root)
-    clipped = any(element.get("clip-path") or element.get("mask") for element in root.iter())
-    _drop_unpainted(root)
-    notes = (tr("Clip paths and masks are ignored. Cut the shape itself if it looks different."),) if clipped else ()
     width = REAL_LENGTH.fullmatch(root.get("width", ""))
-    width_mm = float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
-    return ElementTree.tostring(root), width_mm, notes
+    return root, float(width[1]) * MM_PER_UNIT[width[2].lower()] if width else None
+
+
+def _check_entities(content: bytes) -> None:
+    """Refuse entities that lead to other files or to each other, or stand for a lot."""
+    # Without the zero bytes UTF-16 text is searched as well.
+    plain = content.replace(b"\0", b"")
+    if b"<!entity" not in plain.lower():
+        return
+    found: dict[str, str] = {}
+
+    def declared(name: str, is_parameter: bool, value: str | None, *_: object) -> None:
+        if is_parameter or value is None or "&" in value or "<" in value or len(value) > LONGEST_ENTITY:
+            raise TargetError("svg.entities")
+        found[name] = value
+
+    def begun(*_: object) -> None:
+        raise _PrologueEndError
+
+    parser = expat.ParserCreate()
+    parser.EntityDeclHandler = declared
+    parser.StartElementHandler = begun
+    with contextlib.suppress(_PrologueEndError):
+        parser.Parse(content, True)
+    letters = sum(plain.count(b"&%s;" % name.encode()) * len(value) for name, value in found.items())
+    if len(found) > MOST_ENTITIES or letters > MOST_ENTITY_LETTERS:
+        raise TargetError("svg.entities")
 
 
 def self_contained_svg(content: bytes) -> bytes:
@@ -76,11 +98,10 @@ def self_contained_svg(content: bytes) -> bytes:
     TargetError
         It shows pictures from other files; or as :func:`checked_svg`.
     """
-    checked_svg(content)
-    root = ElementTree.fromstring(content)
+    root, _ = checked_svg(content)
     for element in root.iter():
         reference = next((value for key, value in element.items() if key.rsplit("}", 1)[-1] == "href"), "").strip()
-        if _tag(element) in PICTURES and reference and not reference.startswith("#"):
+        if tag_of(element) in PICTURES and reference and not reference.startswith("#"):
             _refuse_link(reference)
     # Written canonically, "<?" begins nothing but an instruction, such as one for the style sheet of another file.
     return INSTRUCTION.sub("", ElementTree.canonicalize(content)).encode()
@@ -112,12 +133,13 @@ def refuse_long_numbers(content: bytes) -> None:
         raise TargetError("svg.number_too_long", limit=MOST_DIGITS)
 
 
-def _tag(element: Element) -> str:
+def tag_of(element: Element) -> str:
     """Tag without its namespace; comments and instructions have none."""
     return element.tag.rsplit("}", 1)[-1] if isinstance(element.tag, str) else ""
 
 
-def _reference(element: Element) -> str:
+def reference_of(element: Element) -> str:
+    """Id of the element that another one links to; "" without a link."""
     return (element.get("href") or element.get("{http://www.w3.org/1999/xlink}href") or "").removeprefix("#")
 
 
@@ -132,10 +154,10 @@ def _refuse_bombs(root: Element) -> None:
         if element in counted:
             return counted[element]
         if element in inside:
-            raise TargetError("svg.inside_itself", tag=_tag(element))
+            raise TargetError("svg.inside_itself", tag=tag_of(element))
         inside.add(element)
         below = [count(child) for child in element]
-        if _tag(element) == "use" and (target := named.get(_reference(element))) is not None:
+        if tag_of(element) == "use" and (target := named.get(reference_of(element))) is not None:
             below.append(count(target))
         own = sum(1 for _ in NUMBER.finditer(element.get("d", "") or element.get("points", "")))
         inside.discard(element)
@@ -147,17 +169,3 @@ def _refuse_bombs(root: Element) -> None:
         raise TargetError("svg.too_many_elements", elements=elements, limit=MOST_ELEMENTS)
     if numbers > MOST_NUMBERS:
         raise TargetError("svg.too_many_numbers", limit=MOST_NUMBERS)
-
-
-def _drop_unpainted(root: Element) -> None:
-    """Remove what paints nothing; a symbol becomes a group in definitions, drawn only where it is used."""
-    for parent in list(root.iter()):
-        namespace = parent.tag[: parent.tag.index("}") + 1] if isinstance(parent.tag, str) and "}" in parent.tag else ""
-        for child in list(parent):
-            if _tag(child) in UNPAINTED:
-                parent.remove(child)
-            elif _tag(child) == "symbol":
-                child.tag = f"{namespace}g"
-                definitions = Element(f"{namespace}defs")
-                definitions.append(child)
-                parent[list(parent).index(child)] = definitions

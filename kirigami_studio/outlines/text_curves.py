@@ -20,7 +20,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.bezier import flattened_curve
-from kirigami_studio.outlines.parts import DrawnPartKind, Part, parts_of_region
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, parts_of_region, text_left_out
 
 #: Folders of a system's fonts.
 FOLDERS = {
@@ -217,15 +217,11 @@ def text_parts(texts: Sequence[Text]) -> tuple[list[Part], tuple[str, ...]]:
         if found.other_font and text.family:
             others[text.family.split(",")[0].strip(" '\"")[:40]] = found.other_font
         for letter, region in found.letters:
-            like = Part(0, letter, " ".join(text.text.split())[:40], "", DrawnPartKind.FILLED, Polygon())
+            layer = " ".join(text.text.split())[:40]
+            like = Part(0, letter, layer, "", DrawnPartKind.FILLED, Polygon(), is_letter=True)
             parts += parts_of_region(region, like)
     notes = [
         tr("The font {family} is not at hand: its text is in {other}.", family=family, other=other)
         for family, other in others.items()
     ]
     return parts, tuple(notes if is_whole else [*notes, text_left_out()])
-
-
-def text_left_out() -> str:
-    """What is said where texts are not read."""
-    return tr("Text was left out. Convert it to paths if it belongs to the shape.")

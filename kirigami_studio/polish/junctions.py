@@ -48,7 +48,10 @@ class JunctionAngles:
 
     def shallower(self, sine: float) -> JunctionAngles:
         """Those whose sine is below ``sine``."""
-        chosen: BoolArray = self.sine < sine
+        return self.some(self.sine < sine)
+
+    def some(self, chosen: BoolArray) -> JunctionAngles:
+        """Those that are chosen."""
         return JunctionAngles(
             self.node[chosen], self.before[chosen], self.after[chosen], self.sine[chosen], self.slope[chosen]
         )
@@ -66,7 +69,18 @@ class JunctionAngles:
 
 def junctions(nodes: FloatArray, rows: int, columns: int) -> JunctionAngles:
     """Measure all 2 m n junctions inside an m x n grid with compact ``nodes`` (N, 2), unit cells."""
-    node, before, after = _corners(rows, columns)
+    return _measured(nodes, _corners(rows, columns))
+
+
+def pin_corners(nodes: FloatArray, rows: int, columns: int) -> JunctionAngles:
+    """Measure the corners of all panels at their pins; those that are not acute are left out."""
+    found = _measured(nodes, _pin_corners(rows, columns))
+    first, second = nodes[found.before] - nodes[found.node], nodes[found.after] - nodes[found.node]
+    return found.some((first * second).sum(axis=1) > 0.0)
+
+
+def _measured(nodes: FloatArray, corners: tuple[IntArray, IntArray, IntArray]) -> JunctionAngles:
+    node, before, after = corners
     first, second = nodes[before] - nodes[node], nodes[after] - nodes[node]
     squared = [np.maximum(np.square(way).sum(axis=1), 1e-24)[:, None] for way in (first, second)]
     scale = 1.0 / np.sqrt(squared[0] * squared[1])
@@ -85,6 +99,18 @@ def _corners(rows: int, columns: int) -> tuple[IntArray, IntArray, IntArray]:
     corner, first = np.unique(panels, return_index=True)
     panel, place = np.divmod(first[~tables.fixed[corner]], 4)
     found = tuple(panels[panel, (place + turn) % 4] for turn in (0, -1, 1))
+    for table in found:
+        table.setflags(write=False)
+    return found[0], found[1], found[2]
+
+
+@lru_cache(maxsize=64)
+def _pin_corners(rows: int, columns: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Every corner of a panel with a pin, and its neighbours in the panel."""
+    tables = topology(rows, columns)
+    panels = tables.panel_nodes.reshape(-1, 4)
+    pinned = np.isin(panels, tables.void_nodes).ravel()
+    found = tuple(np.roll(panels, turn, axis=1).ravel()[pinned] for turn in (0, 1, -1))
     for table in found:
         table.setflags(write=False)
     return found[0], found[1], found[2]

@@ -9,10 +9,14 @@ with g, H and J the derivatives of the other cost and of the sizes, and the limi
 conditions (sequential quadratic programming: Nocedal and Wright, Numerical Optimization, 2nd ed., ch. 18), solved in
 ``foundation.shortest_step``.  A step counts if it lowers the cost plus the missing sizes, weighted above every
 multiplier.  Where that does not end with all sizes kept, the nearest sheet that keeps them is looked for.
+
+Of pinned sheets, necks beside notches and corners at pins are kept as well, see ``pin_room``: where no sheet near by
+keeps these, those of the pins are.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -20,12 +24,12 @@ import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.normal_equations import FLOOR
 from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
+from kirigami_studio.polish.pin_room import PinRoom, pin_room
 
 #: How far above the least size (unit cells) steps aim, and what counts as kept: rounding a sheet takes less.
 AIM, KEPT = 2e-6, 5e-7
@@ -93,6 +97,9 @@ def with_kept_sizes(
     descent.run(max(steps, LEAST_STEPS), cancel, sizes_alone=False)
     if not descent.is_kept:
         descent.run(SIZE_STEPS, cancel, sizes_alone=True)
+    if not descent.is_kept and gap:
+        descent.pins_alone = True
+        descent.run(SIZE_STEPS, cancel, sizes_alone=True)
     return Sized(descent.here if descent.is_kept else first, descent.is_kept, descent.steps, descent.evaluations)
 
 
@@ -109,6 +116,7 @@ class _SizeDescent:
     ) -> None:
         self.objective, self.bounds = objective, bounds
         self.least, self.gap = least
+        self.pins_alone = False
         self.here, self._stiffness = objective.look(state), stiffness
         self.steps, self.evaluations = 0, 1
         self._guarded = self._is_clear(self.here)
@@ -170,15 +178,20 @@ class _SizeDescent:
         sizes = panel_sizes(look.decoded.nodes, model.rows, model.columns).size
         if not self.gap:
             return sizes
-        pins = pin_distances(look.decoded.nodes, model.rows, model.columns).size
-        return np.concatenate([sizes, pins - self.gap + self.least])
+        return np.concatenate([sizes, self._room(look.decoded.nodes).spare + self.least])
 
-    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes | PinDistances, float]]:
-        """Sizes near the least one, and the least one: of panels, then of gaps between pins."""
+    def _room(self, nodes: FloatArray, spare: float = math.inf) -> PinRoom:
+        model = self.objective.model
+        return pin_room(nodes, model.rows, model.columns, self.gap, spare, pins_alone=self.pins_alone)
+
+    def near(self, nodes: FloatArray) -> Iterator[tuple[PanelSizes | PinRoom, FloatArray]]:
+        """Sizes near the least one, and how far above it they are: of panels, then of room for pins."""
         rows, columns = self.objective.model.rows, self.objective.model.columns
-        yield panel_sizes(nodes, rows, columns).distinct().below(self.least + NEAR), self.least
+        sizes = panel_sizes(nodes, rows, columns).distinct().below(self.least + NEAR)
+        yield sizes, sizes.size - self.least
         if self.gap:
-            yield pin_distances(nodes, rows, columns).below(self.gap + NEAR), self.gap
+            room = self._room(nodes, NEAR)
+            yield room, room.spare
 
     def _moved(self, step: FloatArray) -> Look:
         state = self.here.state.copy()
@@ -215,7 +228,7 @@ class _SizeProblem:
         along_x, along_y = (np.concatenate([reach[axis] for reach in reaches]) for axis in (0, 1))
         slopes = np.zeros((len(along_x), basis.size + poses))
         slopes[:, :-poses] = motion.slopes(along_x, along_y, basis)
-        added = np.concatenate([np.minimum(least + AIM - sizes.size, MOST_ADDED) for sizes, least in near])
+        added = np.concatenate([np.minimum(AIM - spare, MOST_ADDED) for _, spare in near])
         shape = here.state[:-poses]
         if derivatives is None:
             count = basis.size + poses

@@ -22,7 +22,6 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
-from kirigami_studio.evaluate.pins import PinDistances, pin_distances
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.topology import topology
@@ -35,6 +34,7 @@ from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
+from kirigami_studio.polish.pin_room import PinRoom, pin_room
 from kirigami_studio.polish.preferences import FieldPreferenceTerms
 from kirigami_studio.polish.sensitivity import CompactLayout, NodeMotion, OutlineModel
 from kirigami_studio.polish.transport_map import TransportTerm
@@ -51,7 +51,7 @@ CONVERGED, SETTLED = 1e-4, 2e-3
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
-ALL_APART = pin_distances(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
+ALL_APART = pin_room(topology(2, 2).uniform_nodes, 2, 2, 0.0, 0.0, pins_alone=True)
 NO_JUNCTIONS = junctions(topology(2, 2).uniform_nodes, 2, 2).shallower(0.0)
 NO_AREAS = panel_areas(topology(2, 2).uniform_nodes, 2, 2).larger(LARGE)
 
@@ -175,8 +175,8 @@ class Objective:
             cost += shortage(small, self.least)
         close = ALL_APART
         if self.gap:
-            close = pin_distances(nodes, self.model.rows, self.model.columns).below(self.gap)
-            cost += shortage(close, self.gap, self._gap_penalty)
+            close = pin_room(nodes, self.model.rows, self.model.columns, self.gap, 0.0)
+            cost += self._gap_penalty * float(np.square(close.spare).sum())
         shallow = NO_JUNCTIONS
         if self.phase.junctions:
             shallow = junctions(nodes, self.model.rows, self.model.columns).shallower(OPEN)
@@ -286,7 +286,7 @@ class Objective:
             (weight**0.5, beyond, reach(count))
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
-                (self._gap_penalty, look.close.size - self.gap, look.close.reach),
+                (self._gap_penalty, look.close.spare, look.close.reach),
                 (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
@@ -331,7 +331,7 @@ class Look:
     matching: Matching
     second: SecondLook | None
     small: PanelSizes  #: Edges and necks below the least size
-    close: PinDistances  #: Distances between pins below the least one
+    close: PinRoom  #: Where pins have less room than they need
     shallow: JunctionAngles  #: Where cuts meet at shallow angles, if the phase asks for open junctions
     large: PanelAreas  #: Panels that are large, if the phase asks for even ones
     excess: float  #: Share of a round start's area that chords cut off beyond what is allowed

@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from kirigami_studio.evaluate.evenness import PanelSizes
-from kirigami_studio.evaluate.pins import PinDistances
 from kirigami_studio.foundation.errors import UsageError
 
 #: Cost of one size that is too small, per square of what is missing (unit cells): a twentieth of a cell missing then
@@ -42,6 +41,6 @@ def least_in_cells(least_mm: float, width_mm: float, width_cells: float) -> floa
     return cells if cells <= LARGEST_LEAST else 0.0
 
 
-def shortage(sizes: PanelSizes | PinDistances, least: float, penalty: float = PENALTY) -> float:
+def shortage(sizes: PanelSizes, least: float, penalty: float = PENALTY) -> float:
     """Penalty of all sizes below ``least`` (unit cells)."""
     return penalty * float(np.square(np.minimum(sizes.size - least, 0.0)).sum())

@@ -22,6 +22,7 @@ import numpy as np
 import scipy.linalg
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
+from kirigami_studio.evaluate.pins import GAP_ROUNDING, least_pin_distance
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
@@ -58,6 +59,8 @@ class VertexDrag:
         Number in ``Deployment.outline(phi)``.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
+    least_gap : float, unit cells
+        Distance that pins keep, or that of the start where they are nearer there; 0 for sheets without pins.
 
     Raises
     ------
@@ -67,7 +70,14 @@ class VertexDrag:
         ``phi`` is not in [0, pi): the flat sheet has its outline whatever the ratios.
     """
 
-    def __init__(self, design: Sheet | RatioField, phi: float, vertex: int, locked: BoolArray | None = None) -> None:
+    def __init__(
+        self,
+        design: Sheet | RatioField,
+        phi: float,
+        vertex: int,
+        locked: BoolArray | None = None,
+        least_gap: float = 0.0,
+    ) -> None:
         phi, sheet = check_fit(phi, 0, 1.0), Sheet.of(design)
         self._model = OutlineModel.of(sheet, phi)
         self._given = sheet
@@ -85,6 +95,9 @@ class VertexDrag:
         self._z, self._here = self._start, self._outline
         self._slopes: FloatArray | None = None
         self._dual: _Dual | None = None
+        self._least_gap = 0.0
+        if least_gap > 0.0:
+            self._least_gap = min(least_gap, least_pin_distance(self._deployment)) - GAP_ROUNDING
         self._guarded = self._is_physical(self._deployment)
 
     @property
@@ -190,7 +203,9 @@ class VertexDrag:
         return self._given.with_field(RatioField(np.where(table == start, given, np.power(10.0, table))))
 
     def _is_physical(self, deployment: Deployment) -> bool:
-        """Whether no quad is invalid at the angle, and the sheet opens that far without touching itself."""
+        """Whether no quad is invalid at the angle, the way there is free, and pins keep apart."""
+        if self._least_gap > 0.0 and least_pin_distance(deployment) < self._least_gap:
+            return False
         return not invalid_quads(deployment, self._model.phi) and path_contact(deployment, self._model.phi) is None
 
 

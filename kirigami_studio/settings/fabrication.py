@@ -8,6 +8,7 @@ from typing import Any, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.fastener import (
     CLEARANCE_MM,
     LEAST_WALL_MM,
@@ -17,6 +18,8 @@ from kirigami_studio.fabricate.fastener import (
     PrintedPins,
 )
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.fabricate.hold import LEAST_WALL_MM as LEAST_HOLD_WALL_MM
+from kirigami_studio.fabricate.hold import MOST_WALL_MM, HoldKind, HoldOptions, HoldWhen
 from kirigami_studio.fabricate.machine import (
     Machine,
     MachineKind,
@@ -90,6 +93,14 @@ class FabricationSettings:
         Key of the other sheet of backed designs: hinge layer or board; "" for the one that suits the material.
     board_cut : BoardCut
         How their tiles are cut.
+    held_by : HoldKind
+        What keeps the sheet in an end state.
+    held_when : HoldWhen
+        In which.
+    magnet_mm, magnet_height_mm : float
+        Diameter and height of magnets that hold it.
+    moved_by : DriveKind
+        What turns a pinned sheet from behind.
     connector_mm : float or None
         Finished width of a connector; None takes the material's own.
     kerf_mm : float or None
@@ -280,6 +291,66 @@ class FabricationSettings:
             option="--board-cut",
         ).metadata,
     )
+    held_by: HoldKind = field(
+        default=HoldKind.NONE,
+        metadata=Setting(
+            about=mark("What keeps the sheet open, or flat, where panels meet in that state alone."),
+            help="what keeps the sheet in its end state: holes or marks where panels meet in that state alone",
+            code="settings.no_such_choice",
+            undo=mark("Change what holds the sheet"),
+            label=mark("Held by"),
+            choices=(
+                Choice(HoldKind.NONE, mark("Nothing"), mark("The sheet stays as friction lets it.")),
+                Choice(HoldKind.MAGNETS, mark("Magnets"), mark("Discs in round holes; a list tells their poles.")),
+                Choice(HoldKind.EYELETS, mark("Eyelets"), mark("Holes for a spare pin, a ring or a cord.")),
+                Choice(HoldKind.STITCHES, mark("Stitches"), mark("Two small holes on either side of an edge.")),
+                Choice(HoldKind.TABS, mark("Adhesive tabs"), mark("Engraved marks where tape goes over an edge.")),
+            ),
+            option="--hold",
+        ).metadata,
+    )
+    held_when: HoldWhen = field(
+        default=HoldWhen.OPEN,
+        metadata=Setting(
+            about=mark("The state that magnets, eyelets, stitches or tabs keep."),
+            help="the state that --hold keeps",
+            code="settings.no_such_choice",
+            undo=mark("Change what holds the sheet"),
+            label=mark("Held when"),
+            choices=(
+                Choice(HoldWhen.OPEN, mark("Open"), mark("As the target.")),
+                Choice(HoldWhen.FLAT, mark("Flat"), mark("As it is cut.")),
+                Choice(HoldWhen.BOTH, mark("Open and flat"), mark("Places for either.")),
+            ),
+            option="--hold-when",
+        ).metadata,
+    )
+    magnet_mm: float = field(
+        default=5.0,
+        metadata=_millimetres(mark("Diameter of the disc magnets, mm."), mark("Magnet, mm"), "--magnet-mm", 1.0, 30.0),
+    )
+    magnet_height_mm: float = field(
+        default=2.0,
+        metadata=_millimetres(
+            mark("Height of the disc magnets, mm."), mark("Magnet height, mm"), "--magnet-height-mm", 0.5, 20.0
+        ),
+    )
+    moved_by: DriveKind = field(
+        default=DriveKind.NONE,
+        metadata=Setting(
+            about=mark("A board behind two layers on pins, with arms that open and close them."),
+            help="a board behind two layers on pins, with arms that open and close them",
+            code="settings.no_such_choice",
+            undo=mark("Change the drive"),
+            label=mark("Moved by"),
+            choices=(
+                Choice(DriveKind.NONE, mark("Hand"), mark("No board.")),
+                Choice(DriveKind.CRANK, mark("Crank"), mark("A handle behind the board turns an arm.")),
+                Choice(DriveKind.SERVO, mark("Servo"), mark("A small servo (SG90) in the board turns an arm.")),
+            ),
+            option="--drive",
+        ).metadata,
+    )
     connector_mm: float | None = field(
         default=None,
         metadata=Setting(
@@ -433,6 +504,11 @@ class SheetChange(TypedDict, total=False):
     gap_mm: float
     second_material: str
     board_cut: BoardCut | str
+    held_by: HoldKind | str
+    held_when: HoldWhen | str
+    magnet_mm: float
+    magnet_height_mm: float
+    moved_by: DriveKind | str
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
@@ -563,8 +639,8 @@ class PinSizes:
     def apart_mm(self) -> float:
         """Least distance of pins in the closed states.
 
-        Two ears of neighbours, and their clearance, leave a neck between them then, and one beside a corner of 60
-        degrees whose sides both have their notch.
+        Two ears of neighbours, and their clearance, leave a neck between them then.  Fits keep as much between the
+        notches in two sides of a panel.
         """
         return self.ear_mm + 2.0 * self.clearance_mm + self.neck_mm
 
@@ -602,6 +678,18 @@ def printed_pins(settings: FabricationSettings) -> PrintedPins:
         Sizes that make no sense.
     """
     return PrintedPins.of(settings.pin_mm, settings.ear_mm, settings.clearance_mm)
+
+
+def hold_options(settings: FabricationSettings) -> HoldOptions:
+    """Parts that hold the sheet, with the wall that its material needs round holes.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    wall = min(max(material_for(settings).min_ligament_mm, LEAST_HOLD_WALL_MM), MOST_WALL_MM)
+    return HoldOptions(settings.held_by, settings.held_when, settings.magnet_mm, settings.magnet_height_mm, wall)
 
 
 def pin_gap_mm(settings: FabricationSettings) -> float:

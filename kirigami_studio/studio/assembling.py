@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-import shapely
 from shapely.errors import GEOSException
 
-from kirigami_studio.assembly.checks import PinnedReport, body_of, check_pinned, placed_bodies
+from kirigami_studio.assembly.checks import PinnedReport, bed_problems, check_pinned
+from kirigami_studio.assembly.driving import DriveParts, driven
+from kirigami_studio.assembly.holding import HeldPlaces, held, with_places
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.assembly.plates import flat_bounds, parts_for, seams, size_of
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.fabricate.machine import Machine, MachineKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, machine_for, material_for, pin_sizes
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    hold_options,
+    is_printed,
+    machine_for,
+    material_for,
+    pin_sizes,
+)
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+from kirigami_studio.studio.cutting import kerf_mm
 
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
-MOST_KEPT = 16
+MOST_KEPT = 48
 
 
 def pin_options(settings: FabricationSettings) -> PinOptions:
@@ -58,6 +68,9 @@ class Assembled:
     plan: PinnedPlan
     report: PinnedReport
     as_cut: AsCut  #: Its motion: exact, on pins that bend nothing
+    #: Places that hold it in its end states; their holes are in the pieces.
+    held: HeldPlaces = field(default_factory=HeldPlaces)
+    drive: DriveParts | None = None  #: board and arms that move it
 
     @property
     def assembly(self) -> Assembly:
@@ -69,13 +82,15 @@ def print_problems(plan: PinnedPlan, material: Material, machine: Machine) -> tu
     """Problems of printing the pieces of a plan at once."""
     if MachineKind.of(material.machine) is not MachineKind.PRINTER:
         return (Problem.error("printed.material_is_cut", material=material.name),)
-    bodies = placed_bodies(plan.assembly, [body_of(piece) for piece in plan.assembly.pieces], math.pi)
-    left, bottom, right, top = shapely.total_bounds(bodies).tolist()
-    size, bed = (right - left, top - bottom), machine.reach_mm
-    if not any(0.0 < most < side for side, most in zip(size, bed, strict=True)):
+    parts = parts_for(plan.assembly, machine.reach_mm)
+    if parts is None:
+        size, bed = size_of(flat_bounds(plan.assembly)), machine.reach_mm
+        values = {"width_mm": size[0], "depth_mm": size[1], "bed_width_mm": bed[0], "bed_depth_mm": bed[1]}
+        return (Problem.error("printed.assembly_larger_than_bed", **values),)
+    if len(parts) == 1:
         return ()
-    values = {"width_mm": size[0], "depth_mm": size[1], "bed_width_mm": bed[0], "bed_depth_mm": bed[1]}
-    return (Problem.error("printed.assembly_larger_than_bed", **values),)
+    values = {"count": len(parts), "caps": len(seams(plan.assembly, parts))}
+    return (Problem.warning("printed.joined_by_hand", **values),)
 
 
 _KEPT: OrderedDict[tuple[object, ...], Assembled] = OrderedDict()
@@ -98,9 +113,9 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
     UsageError
         An ear that is no wider than its hole.
     """
-    options = pin_options(settings)
+    options, hold = pin_options(settings), hold_options(settings)
     machine = machine_for(settings) if options.in_one_plane else None
-    key = (candidate, target, settings.width_mm, options, machine)
+    key = (candidate, target, settings.width_mm, options, machine, hold, settings.moved_by)
     made = _KEPT.pop(key, None)
     if made is None:
         design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
@@ -110,10 +125,28 @@ def assembled(candidate: Candidate, settings: FabricationSettings, target: Outli
             if machine is not None:
                 more = print_problems(plan, material_for(settings), machine)
                 report = replace(report, problems=(*more, *report.problems))
+            places = held(plan, hold) if machine is None else HeldPlaces()
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
-        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match))
+        plan = replace(plan, assembly=with_places(plan.assembly, places.places))
+        drive, refused = driven(plan, settings.moved_by if machine is None else DriveKind.NONE)
+        report = replace(report, problems=(*report.problems, *places.problems, *refused))
+        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places, drive)
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)
     return made
+
+
+def beyond_the_bed(made: Assembled, settings: FabricationSettings) -> list[Problem]:
+    """Problems of cut pieces that are larger than the bed of the machine; printed ones have their own.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    if is_printed(settings):
+        return []
+    bed, kerf = machine_for(settings).reach_mm, kerf_mm(settings, material_for(settings))
+    return bed_problems(made.assembly, bed, kerf, settings.width_mm, pin_sizes(settings).ear_mm)

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.dxf_check import FileReport, check_file
-from kirigami_studio.export.file_record import FileRecord
+from kirigami_studio.export.file_record import FileRecord, PieceRecord
 from kirigami_studio.export.layer_files import layer_paths
 from kirigami_studio.export.provenance import ONE_SHEET
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.fabricate.cut_plan import design_hash
-from kirigami_studio.fabricate.findings import Problem
+from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.material import Construction, library
-from kirigami_studio.foundation.errors import ExportError, FabricationError, KirigamiError, ProjectError
+from kirigami_studio.fabricate.options import CutOrder
+from kirigami_studio.foundation.errors import ExportError, FabricationError, KirigamiError, ProjectError, UsageError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
@@ -26,8 +29,8 @@ from kirigami_studio.settings.fabrication import (
     stored_machine,
     stored_material,
 )
-from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, planned
-from kirigami_studio.studio.verdict import Level, Verdict, refused
+from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, pieces_of, planned
+from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled, refused
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +120,8 @@ class Checked:
             )
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
-        if self.verdict is None and record is not None and record.construction == ONE_SHEET:
+        one_sheet = record is not None and record.construction == ONE_SHEET
+        if self.verdict is None and (one_sheet or (pieces is not None and pieces.construction != Construction.BACKED)):
             found.append(
                 tr("not checked: whether the sheet closes and its material holds; name its project by --design")
             )
@@ -143,10 +147,12 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         The project has no chosen design.
     """
     report = check_file(path)
-    # The pieces of one bed, or one layer of two, say nothing about how all of it moves.
-    one_layer = report.of_pieces is not None or (report.record is not None and report.record.construction != ONE_SHEET)
-    if document is None or one_layer or not _is_cut_file(report):
+    # One layer of a backed design says nothing about how all of it moves.
+    backed = Construction.BACKED in {one.construction for one in (report.record, report.of_pieces) if one is not None}
+    if document is None or backed or not _is_cut_file(report):
         return Checked(report)
+    if report.of_pieces is not None:
+        return _checked_beds([report], document)[0]
     request, unlike = _request(report.record, path, document)
     try:
         made = planned(request)
@@ -160,6 +166,105 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         return Checked(report, None, refused(error))
     verdict = judged(request, made, as_cut, [found])
     return Checked(report, found, replace(verdict, problems=(*unlike, *verdict.problems)))
+
+
+def checked_together(paths: Sequence[Path], document: Document | None = None) -> tuple[Checked, ...]:
+    """The same of several files; those of the beds of one design are judged together.
+
+    Raises
+    ------
+    ExportError, ProjectError
+        As :func:`checked`.
+    """
+    reports = [check_file(path) for path in paths]
+    if document is not None and len(reports) > 1 and all(report.of_pieces is not None for report in reports):
+        return _checked_beds(reports, document)
+    return tuple(checked(path, document) for path in paths)
+
+
+def _checked_beds(reports: Sequence[FileReport], document: Document) -> tuple[Checked, ...]:
+    """Compare the files of beds with the pieces of their design, and put these together where all are there."""
+    from kirigami_studio.export.assembly_files import pieces_json, read_bed
+    from kirigami_studio.export.pieces_read import KnownOutlines, motion_findings
+
+    records = [report.of_pieces for report in reports if report.of_pieces is not None]
+    if any(record.construction != Construction.PINNED.value for record in records):
+        return tuple(Checked(report) for report in reports)
+    request, unlike = _request_of_pieces(records[0], document)
+    if any(_made_otherwise(record, records[0]) for record in records):
+        unlike = (*unlike, Problem.error("check.beds_of_several"))
+    try:
+        made = pieces_of(request)
+        job = made.cutting
+        assert job is not None  # pinned pieces are cut
+        beds = {bed.name: bed for bed in job.beds}
+        names = [_bed_name(record) for record in records]
+        unlike = (*unlike, *(Problem.error("check.bed_unknown", bed=name) for name in names if name not in beds))
+        unlike = (*unlike, *(Problem.error("check.bed_twice", bed=name) for name in beds if names.count(name) > 1))
+        known = KnownOutlines()
+        read = {
+            report.path: read_bed(job, beds[name], report.path, known)
+            for report, name in zip(reports, names, strict=True)
+            if name in beds
+        }
+    except (FabricationError, UsageError) as error:
+        return tuple(Checked(report, None, refused(error)) for report in reports)
+    pieces = {piece.id: piece for _, found in read.values() for piece in found}
+    verifications = {path: found for path, (found, _) in read.items()}
+    missing = sorted(set(beds) - set(names))
+    notes: tuple[Note, ...] = (Note.of("check.beds_missing", beds=", ".join(missing)),) if missing else ()
+    if set(pieces) == set(job.assembly.by_id):
+        moved = motion_findings(pieces, pieces_json(job.assembly), known)
+        last, found = next(reversed(verifications.items()))
+        verifications[last] = replace(
+            found, findings=(*found.findings, *moved), ok=found.ok and all(one.ok for one in moved)
+        )
+    verdict = judge_assembled(request.candidate, made.made, request.settings, tuple(verifications.values()))
+    verdict = replace(verdict, problems=(*unlike, *verdict.problems), notes=(*verdict.notes, *notes))
+    return tuple(Checked(report, verifications.get(report.path), verdict) for report in reports)
+
+
+def _bed_name(record: PieceRecord) -> str:
+    from kirigami_studio.export.cut_bed import bed_name
+
+    number = record.bed.partition(" ")[0]
+    return bed_name(record.layer, int(number)) if number.isascii() and number.isdecimal() else record.bed
+
+
+def _made_otherwise(one: PieceRecord, other: PieceRecord) -> bool:
+    """Whether two beds cannot belong to one export."""
+    same = {"layer": other.layer, "bed": other.bed, "pieces": other.pieces, "lines": other.lines}
+    return replace(one, **same, profile=other.profile) != other
+
+
+def _request_of_pieces(record: PieceRecord, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
+    """Design of a bed, made as its record says, and a problem where the project lacks it."""
+    saved = document.fabrication
+    wanted = replace(
+        saved,
+        material=record.material,
+        machine=record.machine,
+        construction=Construction.PINNED,
+        width_mm=record.width_mm or saved.width_mm,
+        pin_mm=record.pin_mm,
+        ear_mm=record.ear_mm,
+        clearance_mm=record.clearance_mm,
+        fastener=Fastener(record.fastener) if record.fastener else saved.fastener,
+        profile=record.profile.key,
+        kerf_mm=saved.kerf_mm if record.profile.slots else record.kerf_mm,
+        options=replace(saved.options, order=CutOrder(record.order)) if record.order else saved.options,
+    )
+    numbers = range(len(document.candidates))
+    own = (number for number in numbers if _identity_of_pieces(document.candidates[number]) == record.design)
+    first = document.chosen if document.chosen is not None else 0
+    found = sorted(own, key=lambda number: number != first)
+    if not found:
+        return CutRequest.of(document, wanted), (Problem.error("check.other_design", design=record.design),)
+    return CutRequest.of(replace(document, chosen=found[0]), wanted), ()
+
+
+def _identity_of_pieces(candidate: Candidate) -> str:
+    return design_hash(deploy(candidate.sheet), ())
 
 
 def _is_cut_file(report: FileReport) -> bool:

@@ -10,8 +10,10 @@ from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Note, Severity
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
@@ -94,6 +96,14 @@ def plan_sheet(
         machine=machine,
     )
     told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
+    told += [
+        Note.of(code)
+        for code, wanted in (
+            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
+            ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
+        )
+        if wanted
+    ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
     return replace(plan, notes=(*plan.notes, *told), tiles=tiles) if told or tiles is not None else plan
@@ -145,7 +155,7 @@ def least_feature_mm(settings: FabricationSettings) -> float:
     least = max(material.min_ligament_mm, material.min_panel_mm)
     if is_backed(settings):
         least = max(least, least_tile_mm(material_for(board_layer(settings))) + 2.0 * settings.gap_mm)
-    return least + _kerf_mm(cut, material)
+    return least + kerf_mm(cut, material)
 
 
 def least_tile_mm(board: Material) -> float:
@@ -164,8 +174,9 @@ def room_mm(settings: FabricationSettings) -> float:
     cut = hinge_layer(settings)
     material = material_for(cut)
     connector = material.connector_mm if cut.connector_mm is None else cut.connector_mm
-    return ROOM_IN_WIDTHS * connector + _kerf_mm(cut, material)
+    return ROOM_IN_WIDTHS * connector + kerf_mm(cut, material)
 
 
-def _kerf_mm(settings: FabricationSettings, material: Material) -> float:
+def kerf_mm(settings: FabricationSettings, material: Material) -> float:
+    """Width of the cut: of the settings, or of the material."""
     return material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm

@@ -11,16 +11,19 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import trimmed_parts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
-from kirigami_studio.foundation.errors import Cancelled, KirigamiError
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.steps import Cancel, never
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
@@ -30,6 +33,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import width_in_cells
+from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
@@ -324,6 +328,15 @@ def ranking_of(document: Document, known: KnownAsCut | None = None) -> Ranking:
     if known is None or known.sheet != one_sheet(cut):
         return ranking
     return replace(ranking, jam_phi=known.jam_phi, refusals=known.refusals, losses=known.losses)
+
+
+def least_gap_of(cut: FabricationSettings, sheet: Sheet) -> float:
+    """Distance (unit cells) that pins of a sheet have to keep; 0 without room for pins."""
+    try:
+        gap_mm = pin_gap_mm(cut)
+    except (FabricationError, UsageError):  # which planning explains
+        return 0.0
+    return gap_in_cells(gap_mm, cut.width_mm, float(np.ptp(deploy(sheet).compact[:, 0]))) if gap_mm else 0.0
 
 
 def one_sheet(cut: FabricationSettings) -> FabricationSettings:

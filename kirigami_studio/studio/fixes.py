@@ -15,13 +15,15 @@ from itertools import product
 from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.machine import cuttable
 from kirigami_studio.fabricate.material import Material, library
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.strain import StrainFigure
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.steps import never
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
@@ -30,12 +32,21 @@ from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import POLISH_STEPS
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, named_machine
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    PinSizes,
+    is_pinned,
+    is_printed,
+    machine_for,
+    named_machine,
+    pin_sizes,
+)
 from kirigami_studio.settings.layers import hinge_layer, sheet_material
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
+from kirigami_studio.studio.assembling import assembled
 from kirigami_studio.studio.backing import checked_plan
 from kirigami_studio.studio.cutting import plan_of
-from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge
+from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge, judge_assembled
 
 #: Fixes that are offered at most.
 MOST_FIXES = 3
@@ -47,6 +58,11 @@ MOST_JAMMING, MOST_MATERIALS = 6, 2
 MOST_DESIGNS = 4
 #: Connector and sheet widths that are tried, as multiples of the present ones.
 CONNECTORS, WIDTHS = (0.5, 0.75, 1.5, 2.0, 3.0), (1.25, 1.5, 2.0, 3.0)
+#: Changes of a pinned design whose pieces are made, at most; ears that are tried, as shares of their walls, the least
+#: wall (mm, both sides), and the least clearance (mm).
+MOST_ASSEMBLED, EARS, LEAST_EAR_MM, LEAST_CLEARANCE_MM = 12, (0.75, 0.5), 2.0, 0.3
+#: Larger sheets than a problem asks for, so that rounding spoils nothing.
+ROUNDED_UP = 1.02
 #: Problems of sheets whose panels leave connectors no room: a coarser grid has larger ones.
 CROWDED = frozenset({"slit.no_room", "edge_cut.no_room", "plan.connectors_narrowed"}) | TOO_SMALL
 #: Styles that are tried together with widths.
@@ -108,8 +124,17 @@ class Fix:
             "material": settings.material,
             "grid": list(self.candidate.sheet.grid),
             "max_strain": self.as_cut.strain,
+            **self._pins_json(),
             "solves": list(self.solves),
         }
+
+    def _pins_json(self) -> dict[str, object]:
+        """Pins and ears of a pinned design."""
+        if not is_pinned(self.settings):
+            return {}
+        sizes = _sizes(self.settings)
+        sized = {"ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm}
+        return {"fastener": self.settings.fastener.value, **sized}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -313,6 +338,134 @@ def _told(note: Note, verdict: Verdict, as_cut: AsCut) -> Note:
     if "as_cut.breaks" not in codes or note.code in ("fix.design", "fix.grid", "fix.material"):
         return note
     return Note.of("fix.strain", change=note.text.rstrip("."), strain_percent=100.0 * as_cut.strain)
+
+
+# pieces on pins -------------------------------------------------------------------------------------------------------
+
+
+def find_piece_fixes(
+    candidate: Candidate,
+    settings: FabricationSettings,
+    verdict: Verdict,
+    target: Outline,
+    others: Mapping[str, Candidate] = MappingProxyType({}),
+    coarser: Iterable[tuple[Candidate, ...]] = (),
+) -> Generator[None, None, Advice]:
+    """Look for changes that help a pinned design; takes what :func:`find_fixes` takes.
+
+    The pieces of every change are made and checked: its verdict is that of the stage.
+    """
+    found: list[Fix] = []
+    seen: list[tuple[Candidate, FabricationSettings]] = [(candidate, settings)]
+    helped: set[str] = set()  # kinds of change of which one works: no further one is tried
+    for changes in (
+        _piece_changes(candidate, settings, verdict),
+        _other_designs(candidate, settings, others),
+        _piece_combinations(candidate, settings),
+        _coarser_grids(candidate, settings, coarser),
+    ):
+        for change in changes:
+            if len(found) >= MOST_FIXES or len(seen) > MOST_ASSEMBLED:
+                break
+            if change.note.code in helped or (change.candidate, change.settings) in seen:
+                continue
+            seen.append((change.candidate, change.settings))
+            yield
+            try:
+                made = assembled(change.candidate, change.settings, target)
+            except KirigamiError:
+                continue
+            after = judge_assembled(change.candidate, made)
+            if not after.better_than(verdict):
+                continue
+            if after.ok:
+                helped.add(change.note.code)
+            left = {problem.code for problem in after.problems}
+            solves = tuple(problem.code for problem in verdict.problems if problem.code not in left)
+            found.append(
+                Fix(change.note, change.candidate, change.settings, after, made.as_cut, change.instead, solves)
+            )
+        if any(fix.verdict.ok for fix in found):
+            break
+    cuts = [cut for _, cut in seen[1:]] or [settings]
+    ears = [_sizes(cut).ear_mm for cut in cuts]
+    tried = Note.of(
+        "fix.none_of_pieces",
+        count=len(seen) - 1,
+        least_mm=min(cut.width_mm for cut in cuts),
+        largest_mm=max(cut.width_mm for cut in cuts),
+        smallest_ear_mm=min(ears),
+        largest_ear_mm=max(ears),
+    )
+    return Advice(tuple(sorted(found, key=lambda fix: not fix.verdict.ok)), tried)
+
+
+def _piece_changes(candidate: Candidate, settings: FabricationSettings, verdict: Verdict) -> Iterator[_Change]:
+    """Changes of one thing: smaller ears, other pins, less clearance, larger sheets."""
+    sizes = _sizes(settings)
+    if settings.ear_mm is not None and settings.ear_mm <= sizes.hole_mm:
+        yield _Change(Note.of("fix.ear", ear_mm=sizes.ear_mm), candidate, replace(settings, ear_mm=None))
+    for share in EARS:
+        ear = round(sizes.hole_mm + share * (sizes.ear_mm - sizes.hole_mm), 1)
+        if ear > max(sizes.neck_mm, sizes.hole_mm + LEAST_EAR_MM) and ear < sizes.ear_mm:
+            yield _Change(Note.of("fix.ear", ear_mm=ear), candidate, replace(settings, ear_mm=ear))
+    for fastener in _smaller_pins(settings):
+        note = Note.of("fix.fastener", fastener=tr(SIZES[fastener].name))
+        yield _Change(note, candidate, _with_pins(settings, fastener))
+    if sizes.clearance_mm > LEAST_CLEARANCE_MM:
+        note = Note.of("fix.clearance", clearance_mm=LEAST_CLEARANCE_MM)
+        yield _Change(note, candidate, replace(settings, clearance_mm=LEAST_CLEARANCE_MM))
+    for width in _needed_widths(verdict, settings):
+        if width <= WIDEST_MM:
+            yield _Change(Note.of("fix.width", width_mm=width), candidate, _with(settings, width_mm=width))
+
+
+def _sizes(settings: FabricationSettings) -> PinSizes:
+    """Measures of the pins; those of their fastener where the ear has no room for its hole."""
+    try:
+        return pin_sizes(settings)
+    except UsageError:
+        return pin_sizes(replace(settings, ear_mm=None))
+
+
+def _needed_widths(verdict: Verdict, settings: FabricationSettings) -> list[float]:
+    """Widths (mm) of larger sheets: as problems ask for them, then multiples of the present one."""
+    numbers = [
+        {name: float(value) for name, value in problem.fields.items() if isinstance(value, int | float)}
+        for problem in verdict.problems
+    ]
+    needs = [(one["needed_mm"], one["gap_mm"]) for one in numbers if {"needed_mm", "gap_mm"} <= one.keys()]
+    times = [needed / gap * ROUNDED_UP for needed, gap in needs if gap > 0.0]
+    return [math.ceil(settings.width_mm * one) for one in (*times, *WIDTHS) if one > 1.0]
+
+
+def _smaller_pins(settings: FabricationSettings) -> list[Fastener]:
+    """Other pins with smaller holes or heads, the largest first; none where pins are printed."""
+    if is_printed(settings):
+        return []
+    present = SIZES[settings.fastener]
+    smaller = [
+        fastener
+        for fastener, size in SIZES.items()
+        if size.hole_mm <= present.hole_mm and size.head_mm <= present.head_mm and size != present
+    ]
+    return sorted(smaller, key=lambda fastener: (-SIZES[fastener].hole_mm, -SIZES[fastener].head_mm))
+
+
+def _with_pins(settings: FabricationSettings, fastener: Fastener) -> FabricationSettings:
+    """The settings with other pins, whose holes and ears are their own."""
+    return replace(settings, fastener=fastener, pin_mm=None, ear_mm=None)
+
+
+def _piece_combinations(candidate: Candidate, settings: FabricationSettings) -> Iterator[_Change]:
+    """Larger sheets with the smallest pins."""
+    smaller = _smaller_pins(settings)
+    pins = smaller[-1] if smaller else settings.fastener
+    for times in WIDTHS:
+        width = math.ceil(settings.width_mm * times)
+        if smaller and width <= WIDEST_MM:
+            note = Note.of("fix.pins_combined", fastener=tr(SIZES[pins].name), width_mm=width)
+            yield _Change(note, candidate, _with(_with_pins(settings, pins), width_mm=width))
 
 
 # what is tried --------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -34,6 +35,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     is_pinned,
     is_printed,
     machine_for,
@@ -43,13 +45,14 @@ from kirigami_studio.settings.fabrication import (
 )
 from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed, sheet_material
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import refuse_errors
+from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.checks import PinnedReport
     from kirigami_studio.assembly.nesting import LaidShape
     from kirigami_studio.assembly.pieces import Piece
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.export.assembly_files import AssemblyFiles, AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
@@ -285,6 +288,16 @@ class MadePieces:
         """Findings of the check of the pieces."""
         return self.made.report
 
+    @cached_property
+    def posed(self) -> PosedPieces:
+        """The pieces over their target, for pictures."""
+        from kirigami_studio.assembly.posed_pieces import PosedPieces
+
+        cut = self.cutting
+        if cut is None:
+            return PosedPieces.of(self.made.plan, self.job.material)
+        return PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
+
     @property
     def printing(self) -> PrintJob | None:
         """The job of what is printed; None where pieces are cut."""
@@ -359,7 +372,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
         raise ProjectError("export.no_chosen_design")
     made = assembled(request.candidate, settings, target)
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
-    verdict = judge_assembled(request.candidate, made)
+    verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
     return MadePieces(made, job, verdict)
 
@@ -391,7 +404,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         material,
         machine_for(settings),
         settings.fastener,
-        material.kerf_mm if settings.kerf_mm is None else settings.kerf_mm,
+        kerf_mm(settings, material),
         sizes.hole_mm,
         sizes.ear_mm,
         sizes.clearance_mm,
@@ -401,10 +414,44 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
         paper=settings.paper,
         order=settings.options.order,
         target=shown,
+        hold=hold_options(settings),
+        holds=made.held.places,
+        drive=made.drive,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
         verdict=verdict.level.value,
+        width_mm=settings.width_mm,
     )
+
+
+def posed_pieces(request: CutRequest) -> PosedPieces | None:
+    """The pieces of a design over its target; None for one that is not made of pieces.
+
+    Raises
+    ------
+    FabricationError, UsageError
+        No such material, or sizes that do not go together.
+    """
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
+    from kirigami_studio.studio.assembling import assembled
+
+    if request.target is None or not request.is_pinned:
+        return None
+    made = assembled(request.candidate, request.settings, request.target)
+    return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener, made.held.places)
+
+
+def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[tuple[CutRequest, PosedPieces | None]]:
+    """Make the pieces of designs for thumbnails; None for designs without."""
+    importing.import_as_cut()
+    for request in requests:
+        try:
+            pieces = posed_pieces(request)
+        except (FabricationError, UsageError):  # which planning explains once the design is chosen
+            pieces = None
+        else:
+            _ = None if pieces is None else pieces.small  # worked out once and kept: here, so that the window need not
+        yield request, pieces
 
 
 def writes_layers(request: CutRequest, output: Output) -> bool:
@@ -444,13 +491,13 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     if output.name is None and kind and not kind_of(kind).cuts:
         from kirigami_studio.export.registry import export
 
-        place = export(replace(export_job(request, None), picture_phi=picture_phi), output.path)
+        place = export(replace(picture_job(request), picture_phi=picture_phi), output.path)
         made = pieces_of(request)
         return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
     pieces = pieces_of(request)
 
     def judge(verifications: Sequence[Verification]) -> Verdict:
-        return judge_assembled(request.candidate, pieces.made, verifications)
+        return judge_assembled(request.candidate, pieces.made, request.settings, verifications)
 
     folder, found = _layers_written(pieces.job, output, judge, pieces.report.problems)
     verified, verdict = found.verifications, judge(found.verifications)
@@ -622,6 +669,32 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     )
 
 
+def picture_job(request: CutRequest) -> ExportJob:
+    """Job of pictures and animations, with the pieces of a design that is made of them.
+
+    Raises
+    ------
+    FabricationError, UsageError
+        Pieces that cannot be made.
+    """
+    return replace(export_job(request, None), pieces=posed_pieces(request))
+
+
+def printed_job(request: CutRequest, cancel: Cancel = never) -> ExportJob:
+    """Job of the files of a printed sheet.
+
+    Raises
+    ------
+    ExportError
+        It is made of pieces: their faces lie elsewhere on the beds than on the sheet.
+    FabricationError
+        A plan that cannot be made.
+    """
+    if request.is_pinned:
+        raise ExportError("artwork.pieces")
+    return export_job(request, planned(request, cancel))
+
+
 def written(
     request: CutRequest,
     made: Planned,
@@ -711,7 +784,7 @@ def exporting(
     if output.name is None and not writes_layers(request, output):
         find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
-            yield ExportedFiles(export(export_job(request, None), path), None)
+            yield ExportedFiles(export(picture_job(request), path), None)
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
@@ -751,7 +824,7 @@ def exporting_artwork(
 
     if request.artwork is None:
         raise ProjectError("artwork.none")
-    work = ArtworkJob.usual(request.artwork, export_job(request, planned(request, cancel)))
+    work = ArtworkJob.usual(request.artwork, printed_job(request, cancel))
     if not many_pages and (many := _many_pages(work.page_mm, request.settings.paper)):
         yield many
         return
@@ -835,7 +908,7 @@ def animating(
     from kirigami_studio.export.registry import export
 
     why = ""
-    if motion is Motion.AS_CUT and sheet is None:
+    if motion is Motion.AS_CUT and sheet is None and not request.is_pinned:  # pieces close by their exact motion
         try:
             for found in simulating(request, planned(request, cancel), cancel):
                 sheet = found
@@ -845,7 +918,7 @@ def animating(
         except KirigamiError as error:
             why = str(error)
     shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
-    written = export(replace(export_job(request, None), motion=shown), path)
+    written = export(replace(picture_job(request), motion=shown), path)
     yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
 
@@ -872,16 +945,20 @@ def fixing(
     ``others`` are the designs by their names.  ``run`` is what designs on coarser grids are asked for by; without one
     there are none.
     """
-    from kirigami_studio.studio.fixes import coarser_designs, find_fixes
+    from kirigami_studio.studio.fixes import coarser_designs, find_fixes, find_piece_fixes
     from kirigami_studio.studio.verdict import refused
 
+    coarser = () if run is None else coarser_designs(request.candidate, run)
+    if request.is_pinned and request.target is not None:
+        steps = find_piece_fixes(request.candidate, request.settings, verdict, request.target, others, coarser)
+        yield from in_turns(steps, cancel)
+        return
     try:
         planned(request, cancel)
     except Cancelled:
         raise
     except KirigamiError as error:
         verdict = refused(error)  # with its numbers, which lead to the first changes
-    coarser = () if run is None else coarser_designs(request.candidate, run)
     steps = find_fixes(request.candidate, request.settings, verdict, others, coarser, request.target)
     yield from in_turns(steps, cancel)
 

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.outlines.merging import Merged, Merging, merged
-from kirigami_studio.outlines.parts import SourceParts
-from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
+from kirigami_studio.outlines.parts import SourceParts, Strokes
+from kirigami_studio.outlines.read import has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.project.document import Document
-from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
+from kirigami_studio.studio.targets import TargetRead, design_of, reading_target, reduced_picture, usual_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
@@ -35,6 +36,17 @@ class Purpose(Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Photo:
+    """A picture in which an object can be taken by clicks."""
+
+    path: Path
+    seen: NDArray[np.uint8]  #: (H, W, 4); red, green, blue, opacity, reduced for drawing
+    size: tuple[float, float]  #: (width, height), source pixels
+    found: SourceParts  #: the parts that it has by itself
+    strokes: Strokes = field(default_factory=Strokes)  #: where the object was taken; it is the last part then
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PartsRead:
     """A drawing that holds several parts, and how they are drawn."""
 
@@ -42,6 +54,7 @@ class PartsRead:
     #: tuple of tuple of (P, 2) float, source units; for each part its rings, or its lines where it encloses nothing;
     #: fewer vertices than the part itself.
     sketches: tuple[tuple[FloatArray, ...], ...]
+    photo: Photo | None = None  #: the picture that holds them; None for drawings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,22 +96,21 @@ def reading_start(source: str, cancel: Cancel) -> Iterator[StartShape | PartsRea
 
 def _reading_outline(source: str, cancel: Cancel) -> Iterator[TargetRead | PartsRead]:
     """Read an outline, or the parts of a drawing that has several to choose from."""
-    if Path(source).suffix.lower() in PART_READERS:
-        if Path(source).suffix.lower() in PICTURES:
-            if _has_islands(source):
-                yield sketched(read_parts(source))
-                return
-        elif (found := read_parts(source)).is_ambiguous:
-            yield sketched(found)
-            return
-    yield from reading_target(source, cancel)
+    path = Path(source)
+    if has_parts(path) and not is_picture(path):
+        found = read_parts(source)
+        yield sketched(found) if found.is_ambiguous else TargetRead(usual_target(path, found))
+    elif is_picture(path) and _asks(source):
+        yield photographed(path)
+    else:
+        yield from reading_target(source, cancel)
 
 
-def _has_islands(source: str) -> bool:
-    """Whether a picture has several large shapes; one of specks is refused by its reader."""
+def _asks(source: str) -> bool:
+    """Whether a picture has no plain shape, or several large ones; one of specks is refused by its reader."""
     from PIL import Image
 
-    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts
+    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts, is_plain_picture
 
     try:
         with Image.open(source) as picture:
@@ -109,6 +121,8 @@ def _has_islands(source: str) -> bool:
         return False  # it takes seconds to read
     try:
         parts = image_parts(source, in_colour=False).parts
+        if not is_plain_picture(source):
+            return True
     except KirigamiError:
         return False
     areas = sorted((part.worth for part in parts), reverse=True)
@@ -117,7 +131,37 @@ def _has_islands(source: str) -> bool:
 
 def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:
     """Read the parts of a drawing, whether there is a choice or not."""
-    yield sketched(read_parts(source))
+    yield photographed(Path(source)) if is_picture(Path(source)) else sketched(read_parts(source))
+
+
+def photographed(path: Path) -> PartsRead:
+    """The parts of a picture on the picture itself."""
+    from kirigami_studio.outlines.read_image import picture_size
+
+    source = read_parts(path)
+    seen = reduced_picture(path)
+    photo = None if seen is None else Photo(path, seen, picture_size(path), source)
+    return replace(sketched(source), photo=photo)
+
+
+def picking_object(read: PartsRead, strokes: Strokes, cancel: Cancel) -> Iterator[PartsRead]:
+    """Take the object at some places of a picture as another part, the last one; without places none."""
+    from kirigami_studio.outlines.picked import picked_part
+
+    photo = read.photo
+    assert photo is not None
+    parts = photo.found.parts
+    if strokes.taken:
+        parts += (replace(picked_part(photo.path, strokes), number=parts[-1].number + 1),)
+    yield replace(sketched(replace(photo.found, parts=parts)), photo=replace(photo, strokes=strokes))
+
+
+def places_in(read: PartsRead, numbers: frozenset[int]) -> tuple[tuple[float, float], ...]:
+    """A place well inside each of some parts of a picture, pixels from its upper left corner."""
+    assert read.photo is not None
+    height = read.photo.size[1]
+    inside = [part.region.representative_point() for part in read.source.parts if part.number in numbers]
+    return tuple((point.x, height - point.y) for point in inside)
 
 
 def sketched(source: SourceParts) -> PartsRead:
@@ -145,7 +189,9 @@ def part_at(read: PartsRead, place: tuple[float, float], reach: float) -> int:
     found = [
         part
         for part in read.source.parts
-        if (
+        # On a picture colours are not clicked on: they are where objects are taken.
+        if not (read.photo is not None and part.is_aside)
+        and (
             shapely.intersects_xy(part.region, *place)
             if part.is_closed
             else any(shapely.distance(shapely.linestrings(line), point) <= reach for line in part.lines)
@@ -155,7 +201,9 @@ def part_at(read: PartsRead, place: tuple[float, float], reach: float) -> int:
 
 
 def bounds_of(read: PartsRead) -> tuple[float, float, float, float]:
-    """Left, bottom, right, top of all parts with their strokes, source units."""
+    """Left, bottom, right, top of all parts with their strokes, or of the picture, source units."""
+    if read.photo is not None:
+        return 0.0, 0.0, *read.photo.size
     boxes = np.array([part.bounds for part in read.source.parts])
     pen = 0.5 * max(part.pen.width for part in read.source.parts)
     left, bottom = (boxes[:, :2].min(axis=0) - pen).tolist()

@@ -15,6 +15,7 @@ from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import PICTURES
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
@@ -144,7 +145,8 @@ def stored(picture: Picture | None) -> TracedPicture | None:
     except OSError as error:
         raise ProjectError("photo.not_read", name=path.name, reason=error.strerror or error) from error
     levels = (picture.automatic, picture.threshold)
-    return TracedPicture(path.name, content, *levels, traced.scale, traced.centre, traced.picture)
+    name = path.name if path.suffix.lower() in PICTURES else f"{path.name}.png"  # its content says what it is
+    return TracedPicture(name, content, *levels, traced.scale, traced.centre, traced.picture)
 
 
 def extracted_picture(opened: Opened, folder: Path) -> Picture | None:

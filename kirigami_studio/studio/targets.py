@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import reprlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,11 +19,12 @@ from kirigami_studio.foundation.errors import KirigamiError, TargetError, UsageE
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.merging import Join, Merging, merged
+from kirigami_studio.outlines.merging import Join, Merging, merged, usual_outline
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import ALL, LARGEST
+from kirigami_studio.outlines.parts import ALL, LARGEST, SourceParts, Strokes
 from kirigami_studio.outlines.pieces import largest_piece
-from kirigami_studio.outlines.read import PART_READERS, PICTURES, read_parts, read_target
+from kirigami_studio.outlines.read import PART_READERS, PICTURES, has_parts, is_picture, read_parts, read_target
+from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.starts import StartShape, outline_start
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
@@ -105,7 +106,7 @@ def _read(source: str | os.PathLike[str], choice: PartChoice | None, threshold: 
     if str(source) in silhouettes.names() and choice is None:
         return silhouettes.load(str(source))
     path = Path(source)
-    if path.suffix.lower() in PART_READERS:
+    if has_parts(path):
         return read_drawing(path, choice, threshold)
     if choice is not None:
         raise UsageError("parts.not_a_drawing", source=str(source), kinds=", ".join(PART_READERS))
@@ -118,16 +119,29 @@ class PartChoice:
 
     words: str  #: ``all``, ``largest``, or names, numbers and layers
     merging: Merging
+    strokes: Strokes | None = None  #: places on the object in a picture, which is taken instead of parts
 
     @classmethod
-    def of(cls, parts: str | None, join: str | None, bridge: float | None, stroke: float | None) -> PartChoice | None:
-        """What was said about parts; None where nothing was.
+    def of(
+        cls,
+        parts: str | None,
+        join: str | None,
+        bridge: float | None,
+        stroke: float | None,
+        taken: Sequence[tuple[float, float]] | None = None,
+        left: Sequence[tuple[float, float]] | None = None,
+    ) -> PartChoice | None:
+        """What was said about parts, or of places on and beside an object; None where nothing was.
 
         Raises
         ------
         UsageError
-            A width of bridges with another way to join, or no such way.
+            A width of bridges with another way to join, no such way, or parts and an object.
         """
+        if taken or left:
+            if (parts, join, bridge, stroke) != (None, None, None, None):
+                raise UsageError("option.object_with_parts")
+            return cls(LARGEST, Merging(), Strokes(tuple(taken or ()), tuple(left or ())))
         if parts is None and join is None and bridge is None and stroke is None:
             return None
         way = Join.UNION if bridge is None else Join.BRIDGE
@@ -144,15 +158,33 @@ class PartChoice:
         return cls(words, Merging(way, bridge, stroke is not None, stroke or None))
 
     def outline(self, path: Path, threshold: float | None = None) -> Outline:
-        """The outline of the chosen parts of a file; ``threshold`` is that of a picture."""
+        """The outline of the chosen parts of a file, or of the object; ``threshold`` is that of a picture."""
+        if self.strokes is not None:
+            return _object(path, self.strokes)
         from kirigami_studio.outlines.read_image import image_parts
 
-        is_picture = path.suffix.lower() in PICTURES
-        source = image_parts(path, threshold) if is_picture else read_parts(path)
-        try:
-            return merged(source, source.chosen(self.words), self.merging).outline
-        except TargetError as error:
-            raise TargetError("source.not_usable", name=path.name, reason=error) from error
+        source = image_parts(path, threshold) if is_picture(path) else read_parts(path)
+        if not is_picture(path) and self == PartChoice(LARGEST, Merging()):
+            return usual_target(path, source)
+        chosen = source.chosen(self.words)
+        with decoding(path, "source.image_damaged"):
+            return merged(source, chosen, self.merging).outline
+
+
+def _object(path: Path, strokes: Strokes) -> Outline:
+    """The outline of the object at some places of a picture."""
+    from kirigami_studio.outlines.picked import picked_part
+
+    if not is_picture(path):
+        raise UsageError("object.no_picture", source=str(path), kinds=", ".join(PICTURES))
+    source = SourceParts(path.stem, (replace(picked_part(path, strokes), number=1),), unit="px")
+    return merged(source, source.parts, Merging()).outline
+
+
+def usual_target(path: Path, source: SourceParts) -> Outline:
+    """What is taken of the parts of a drawing without asking, as if the file was read as a target."""
+    with decoding(path, "source.svg_damaged"):
+        return usual_outline(source)
 
 
 def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None = None) -> Outline:
@@ -160,11 +192,11 @@ def read_drawing(path: Path, choice: PartChoice | None, threshold: float | None 
 
     A cut file of this program stands for the target of its design.
     """
-    if threshold is not None and choice is None and path.suffix.lower() in PICTURES:
+    if threshold is not None and choice is None and is_picture(path):
         from kirigami_studio.outlines.read_image import read_image
 
         return read_image(path, threshold)
-    if choice is not None and path.suffix.lower() in PART_READERS:
+    if choice is not None and has_parts(path):
         return choice.outline(path, threshold)
     document = design_of(path)
     if document is not None and (target := document.target) is not None:
@@ -221,7 +253,7 @@ def inside_of(levels: NDArray[Any]) -> BoolArray:
 def reading_target(source: str, cancel: Cancel) -> Iterator[TargetRead]:
     """Read a file or a library silhouette."""
     path = Path(source)
-    if path.suffix.lower() in PICTURES:
+    if is_picture(path):
         from kirigami_studio.outlines.read_image import automatic_threshold, trace_image
 
         level = automatic_threshold(path)
@@ -287,7 +319,6 @@ def reduced_picture(path: Path) -> NDArray[np.uint8] | None:
     from PIL import Image, ImageOps
 
     from kirigami_studio.outlines.read_image import opened_image, stretched
-    from kirigami_studio.outlines.source_file import decoding, read_bytes
 
     try:
         with decoding(path, "source.image_damaged"):

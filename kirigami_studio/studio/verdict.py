@@ -35,7 +35,7 @@ from kirigami_studio.studio.as_cut import (
     jam_json,
     simulate,
 )
-from kirigami_studio.studio.assembling import Assembled, assembled
+from kirigami_studio.studio.assembling import Assembled, assembled, beyond_the_bed
 from kirigami_studio.studio.backing import checked_plan
 from kirigami_studio.studio.cutting import plan_of
 
@@ -444,7 +444,7 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
         made = assembled(candidate, settings, target)
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
-    found = judge_assembled(candidate, made)
+    found = judge_assembled(candidate, made, settings)
     return CloseLook(None if found.ok else found.problems[0], made.as_cut)
 
 
@@ -502,12 +502,18 @@ def judge(
     )
 
 
-def judge_assembled(candidate: Candidate, made: Assembled, verifications: Sequence[Verification] = ()) -> Verdict:
-    """Judge the pieces of a pinned design; its motion is exact."""
+def judge_assembled(
+    candidate: Candidate,
+    made: Assembled,
+    settings: FabricationSettings,
+    verifications: Sequence[Verification] = (),
+) -> Verdict:
+    """Judge the pieces of a pinned design, and whether its machine reaches all of each; its motion is exact."""
     problems = [
         *_of_files(verifications, candidate.final_phi, made.as_cut),
         *_of_design(candidate),
         *made.report.problems,
+        *beyond_the_bed(made, settings),
     ]
     notes = [note for one in verifications for note in one.warnings]
     if made.assembly.left_out:

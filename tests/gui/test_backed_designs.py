@@ -29,7 +29,7 @@ def test_that_a_backed_design_shows_both_layers_and_its_tiles_at_every_angle(
     for degrees in (180.0, 90.0):
         designed.stage.deployment.set_phi(math.radians(degrees))
         pictures.append(view.grab().toImage())
-    view.show_pieces(None)
+    view.show_tiles(None)
     assert pictures[1] != view.grab().toImage() and pictures[0] != pictures[1]
     designed.services.fabrication.change(board_cut=BoardCut.KISS, second_material="felt-co2")
     until(lambda: not designed.services.verdict.busy)

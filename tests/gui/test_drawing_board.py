@@ -162,6 +162,18 @@ def test_that_the_text_tool_lets_type_at_once(board: MainWindow, qtbot: QtBot) -
     assert target is not None and target.name == "AB"
 
 
+def test_that_letters_typed_after_a_click_on_the_board_are_the_text_and_no_commands(
+    board: MainWindow, qtbot: QtBot
+) -> None:
+    use(board, Tool.TEXT)
+    view, field = board.target.view, board.target.tools.options.text
+    qtbot.mouseClick(view, LEFT)
+    view.setFocus()
+    for letter in "vg":  # both are keys of commands
+        qtbot.keyClicks(board.focusWidget(), letter)
+    assert board.target.view.tool is Tool.TEXT and field.text() == "vg" and board.focusWidget() is field
+
+
 def test_that_every_tool_has_a_key_a_tooltip_and_a_name(board: MainWindow) -> None:
     assert set(board.target.tools.buttons) == set(Tool) - {Tool.LOOK}
     for tool, button in board.target.tools.buttons.items():

@@ -316,3 +316,73 @@ def test_that_a_cut_file_is_the_second_target_of_its_design_or_a_start_like_its_
     assert start is not None and designed.dialogs.parts is None
     sheet, outline = np.ptp(stage.design.deployment.compact, axis=0), np.ptp(start.points, axis=0)
     assert outline[1] / outline[0] == pytest.approx(sheet[1] / sheet[0], rel=0.01)
+
+
+# the click on a photo -----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def still_life(window: MainWindow, tmp_path: Path, until: Until) -> PartPicker:
+    """A picture of two large shapes, which asks by itself."""
+    page = Image.new("RGB", (400, 300), (150, 110, 75))
+    draw = ImageDraw.Draw(page)
+    draw.rectangle((40, 80, 159, 219), fill=(235, 235, 230))
+    draw.rectangle((220, 90, 299, 209), fill=(40, 70, 160))
+    draw.rectangle((300, 90, 359, 209), fill=(230, 200, 60))
+    path = tmp_path / "still life.png"
+    page.save(path)
+    window.files.open(str(path))
+    return opened(window, until)
+
+
+def click_photo(picker: PartPicker, until: Until, x: float, y: float, button: Qt.MouseButton) -> None:
+    """Click at a pixel of the photo, y down, where nothing is known as a part."""
+    assert picker._read is not None and picker._read.photo is not None
+    place = picker.view.transform.to_pixels(np.array([x, 300.0 - y])).tolist()
+    QTest.mouseClick(picker.view, button, pos=QPointF(*place).toPoint())
+    until(lambda: not picker._pick.busy and not picker._job.busy)
+
+
+def drag_photo(picker: PartPicker, until: Until, start: tuple[float, float], end: tuple[float, float]) -> None:
+    places = [picker.view.transform.to_pixels(np.array([x, 300.0 - y])).tolist() for x, y in (start, end)]
+    one, other = (QPointF(*place).toPoint() for place in places)
+    QTest.mousePress(picker.view, Qt.MouseButton.LeftButton, pos=one)
+    QTest.mouseMove(picker.view, other)
+    QTest.mouseRelease(picker.view, Qt.MouseButton.LeftButton, pos=other)
+    until(lambda: not picker._pick.busy and not picker._job.busy)
+
+
+def made_size(picker: PartPicker) -> tuple[float, float]:
+    assert picker.result_ is not None and picker.result_.outline.size is not None
+    return picker.result_.outline.size
+
+
+def test_that_a_stroke_on_the_photo_takes_the_object_and_a_right_click_removes(
+    window: MainWindow, still_life: PartPicker, until: Until
+) -> None:
+    picker = still_life
+    assert "Click on the object" in picker.about.text()
+    before = picker.chosen
+    drag_photo(picker, until, (240, 150), (280, 160))
+    assert made_size(picker) == pytest.approx((80, 120), abs=2) and len(picker.chosen) == 1
+    drag_photo(picker, until, (310, 150), (350, 160))
+    assert made_size(picker) == pytest.approx((140, 120), abs=2)
+    click_photo(picker, until, 330, 120, Qt.MouseButton.RightButton)
+    assert made_size(picker) == pytest.approx((80, 120), abs=2)
+    picker.restart.click()
+    until(lambda: not picker._pick.busy and not picker._job.busy)
+    assert picker.chosen == before and picker.restart.isHidden()
+    drag_photo(picker, until, (240, 150), (280, 160))
+    picker.take.click()
+    until(lambda: window.session.document.target is not None)
+    target = window.session.document.target
+    assert target is not None and target.size == pytest.approx((80, 120), abs=2)
+
+
+def test_that_a_click_on_nothing_keeps_what_was_taken_and_says_so(still_life: PartPicker, until: Until) -> None:
+    picker = still_life
+    drag_photo(picker, until, (240, 150), (280, 160))
+    taken = picker.chosen
+    for x, y in ((10, 10), (10, 12)):
+        click_photo(picker, until, x, y, Qt.MouseButton.RightButton)
+    assert picker.chosen == taken and made_size(picker) == pytest.approx((80, 120), abs=2)

@@ -16,7 +16,7 @@ from kirigami_studio.lab.benchmark import run_store
 from kirigami_studio.lab.training import dataset, fitted_fields, learner
 from kirigami_studio.lattice import sheet_files
 from kirigami_studio.mechanics import network_files
-from kirigami_studio.outlines import parts, read_dxf, read_image, source_file, svg_safety
+from kirigami_studio.outlines import parts, read_dxf, read_image, read_pdf, source_file, svg_safety, svg_style
 from kirigami_studio.project import document, picture_record, recovery, store
 
 MIB = 2**20
@@ -27,10 +27,13 @@ def rows() -> list[str]:
     seconds = f"{source_file.MOST_SECONDS:g} s"
     return [
         f"| SVG target | 20 MB | {svg_safety.MOST_ELEMENTS:_} elements after every `use`, {svg_safety.MOST_NUMBERS:_} "
-        f"numbers of {svg_safety.MOST_DIGITS} digits, {parts.MOST_PARTS} parts | {seconds} |",
+        f"numbers of {svg_safety.MOST_DIGITS} digits, {svg_style.MOST_STYLE:_} letters of style sheets, "
+        f"{parts.MOST_PARTS} parts | {seconds} |",
         f"| DXF target | {read_dxf.MOST_MEGABYTES} MB, binary {read_dxf.MOST_BINARY_MEGABYTES} MB | "
         f"{read_dxf.MOST_ENTITIES:_} entities, blocks {read_dxf.DEEPEST_BLOCK} deep, "
         f"{parts.MOST_PARTS} parts | {seconds} |",
+        f"| PDF or AI target | 20 MB, {read_pdf.MOST_UNPACKED} MB unpacked | {read_pdf.MOST_OBJECTS:_} objects, forms "
+        f"{read_pdf.DEEPEST_FORM} deep, {read_pdf.MOST_POINTS:_} points, {parts.MOST_PARTS} parts | {seconds} |",
         f"| picture as target | {read_image.MOST_MEGABYTES} MB | {read_image.MOST_PIXELS // 10**6} million pixels, "
         f"{read_image.MOST_PIXELS_IN_COLOUR // 10**6} million for parts by colour | |",
         f"| mask | {inputs.MOST_MASK_MEGABYTES} MB | {inputs.MOST_MASK_PIXELS // 10**6} million pixels | |",

@@ -3,41 +3,57 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-import numpy as np
+import ezdxf
+import ezdxf.math
 import pytest
+from PIL import Image
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
+from kirigami_studio.assembly.nesting import smallest_rectangle
+from kirigami_studio.assembly.posed_pieces import PieceLook
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
-from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.export import registry
+from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import PANEL
+from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
+from kirigami_studio.lab.demonstrations.assembled_pieces import MARGIN, SIDE, assembled_pieces
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import construction_for, is_pinned, new_settings
+from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
 from kirigami_studio.studio.as_cut import Source, estimate
-from kirigami_studio.studio.making import CutRequest, MadePieces, Output, exporting, pieces_of, planning, timing
+from kirigami_studio.studio.checking import checked, checked_together
+from kirigami_studio.studio.making import (
+    CutRequest,
+    MadePieces,
+    Motion,
+    Output,
+    animating,
+    exporting,
+    pieces_of,
+    planning,
+    printed_job,
+    timing,
+)
 from kirigami_studio.studio.verdict import Level, look_at
+from tests.pinned_assemblies import plain_pinwheel
 
 
 @pytest.fixture(scope="module")
 def pinwheel() -> Document:
-    """A square of 3 x 3 voids whose panels alternate in size, to be cut of plywood 160 mm wide."""
-    ratios = 10 ** (0.2 * (-1.0) ** np.add.outer(range(3), range(3)))
-    sheet = Sheet(RatioField(ratios))
-    target = silhouettes.load("square")
-    candidate = Candidate(sheet, evaluate(deploy(sheet), target), 0, 0)
-    settings = new_settings({"material": "plywood-co2", "width_mm": 160.0})
-    return Document(target, DesignSettings(), (candidate,), 0, fabrication=settings)
+    return plain_pinwheel()
 
 
 @pytest.fixture(scope="module")
@@ -143,3 +159,174 @@ def test_that_the_time_of_a_pinned_design_is_that_of_its_beds(pinwheel: Document
 def test_that_a_sheet_of_an_unknown_material_is_not_pinned_unless_asked_for(pinwheel: Document) -> None:
     gone = replace(pinwheel.fabrication, material="nothing-anybody-has")
     assert not is_pinned(gone) and is_pinned(replace(gone, construction=Construction.PINNED))
+
+
+def test_that_pictures_of_all_faces_show_pieces_of_plywood(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["export", str(project), "--out", str(tmp_path / "line.png")]) == 0
+    capsys.readouterr()
+    list(exporting(CutRequest.of(pinwheel), Output(tmp_path / "window.png"), True, never))
+    ks.load_project(project).best.export(tmp_path / "script.png")
+    pictures = [Image.open(tmp_path / f"{name}.png").convert("RGB") for name in ("line", "window", "script")]
+    assert len({picture.tobytes() for picture in pictures}) == 1
+    colours = {colour: count for count, colour in pictures[0].getcolors(2**20) or ()}
+    assert colours[PieceLook.of(find_material("plywood-co2"), Fastener.BRAD).face] > 10_000
+    assert PANEL not in colours
+
+
+def test_that_an_animation_shows_pieces_and_needs_no_simulation(
+    pinwheel: Document, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs: list[ExportJob] = []
+
+    def noted(job: ExportJob, path: Path) -> Path:
+        jobs.append(job)
+        return path
+
+    monkeypatch.setattr(registry, "export", noted)
+    (exported,) = animating(CutRequest.of(pinwheel), tmp_path / "motion.gif", Motion.AS_CUT, None, never)
+    assert exported is not None and exported.motion is None and exported.not_as_cut == ""
+    (job,) = jobs
+    assert job.pieces is not None and len(job.pieces.assembly.pieces) == 16
+
+
+def test_that_artwork_is_refused_for_pieces_with_a_sentence(pinwheel: Document) -> None:
+    with pytest.raises(ExportError) as refused:
+        printed_job(CutRequest.of(pinwheel))
+    assert refused.value.code == "artwork.pieces"
+
+
+def test_that_the_picture_of_assembled_designs_shows_three_states_of_each(pinwheel: Document, tmp_path: Path) -> None:
+    store.save(pinwheel, tmp_path / "pieces.kiri")
+    one_sheet = replace(pinwheel.fabrication, construction=Construction.ONE_SHEET)
+    store.save(replace(pinwheel, fabrication=one_sheet), tmp_path / "sheet.kiri")
+    image = assembled_pieces([tmp_path / "pieces.kiri"] * 2)
+    assert image.width == 2 * (SIDE + MARGIN) + MARGIN
+    colours = {colour: count for count, colour in image.getcolors(2**20) or ()}
+    assert colours[PieceLook.of(find_material("plywood-co2"), Fastener.BRAD).face] > 0.1 * image.width * image.height
+    with pytest.raises(ValueError, match="not made of pieces"):
+        assembled_pieces([tmp_path / "sheet.kiri"])
+
+
+def on_bed(document: Document, side_mm: float) -> Document:
+    """The project on a machine with a square bed."""
+    machine = replace(machine_for(document.fabrication), key="my-laser", bed_width_mm=side_mm, bed_height_mm=side_mm)
+    return replace(document, fabrication=replace(document.fabrication, machine="my-laser", own_machine=machine))
+
+
+def test_that_a_piece_larger_than_the_bed_is_a_problem_and_the_width_that_is_told_solves_it(
+    pinwheel: Document, made: MadePieces
+) -> None:
+    largest = max(smallest_rectangle(piece.outline)[0] for piece in made.made.assembly.pieces)
+    small = on_bed(pinwheel, 0.9 * largest)
+    (problem,) = pieces_of(CutRequest.of(small)).verdict.problems
+    assert problem.code == "pieces.larger_than_bed"
+    assert problem.fields["long_mm"] == pytest.approx(largest, abs=0.5)
+    look = look_at(small.candidates[0], small.fabrication, small.target)
+    assert look.refusal is not None and look.refusal.code == problem.code
+    narrower = replace(small.fabrication, width_mm=float(problem.fields["largest_mm"]))
+    codes = {one.code for one in pieces_of(CutRequest.of(small, narrower)).verdict.problems}
+    assert "pieces.larger_than_bed" not in codes
+    ears = pieces_of(CutRequest.of(on_bed(pinwheel, 5.0))).verdict.problems
+    assert [one.code for one in ears] == ["pieces.bed_below_ear"]
+
+
+def test_that_several_beds_are_no_problem(pinwheel: Document, tmp_path: Path) -> None:
+    small = on_bed(pinwheel, 100.0)
+    (found,) = exporting(CutRequest.of(small), Output(tmp_path / "out", "cut"), True, never)
+    assert found.verdict is not None and found.verdict.level is Level.READY
+    assert "layer-1-b2.dxf" in {path.name for path in found.files}
+    assert "pieces.several_beds" in {note.code for note in found.verdict.notes}
+
+
+def test_that_command_line_api_and_window_tell_a_bed_that_is_too_small(
+    pinwheel: Document, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    small = on_bed(pinwheel, 40.0)
+    (planned,) = planning(CutRequest.of(small), never)
+    assert isinstance(planned, MadePieces)
+    (problem,) = planned.verdict.problems
+    project = tmp_path / "small.kiri"
+    store.save(small, project)
+    assert main(["export", str(project), "--out", str(tmp_path / "out"), "--json"]) == 0
+    verdict = json.loads(capsys.readouterr().out)["verdict"]
+    assert verdict["level"] == "cut_with_care" and [one["text"] for one in verdict["problems"]] == [problem.text]
+    assert ks.load_project(project).best.make_pieces().verdict.problems == (problem,)
+
+
+@pytest.fixture(scope="module")
+def folder(pinwheel: Document, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The pinwheel's files, of a sheet wider than its project says."""
+    home = tmp_path_factory.mktemp("beds") / "out"
+    wider = replace(pinwheel.fabrication, width_mm=170.0)
+    list(exporting(CutRequest.of(pinwheel, wider), Output(home, "cut"), True, never))
+    return home
+
+
+@pytest.mark.parametrize("kind", [".dxf", ".svg", ".lbrn2"])
+def test_that_a_bed_is_judged_by_the_pieces_of_its_design(pinwheel: Document, folder: Path, kind: str) -> None:
+    found = checked(folder / f"layer-1{kind}", pinwheel)
+    assert found.ok and found.verdict is not None and found.verdict.level is Level.READY
+    assert found.verification is not None and found.verification.pieces == 8
+    assert {one.code for one in found.verification.findings} >= {"verify.pieces_found"}
+    assert "check.beds_missing" in {note.code for note in found.verdict.notes}
+
+
+def test_that_the_files_of_all_beds_are_put_together(
+    pinwheel: Document, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    both = [folder / "layer-1.dxf", folder / "layer-2.svg"]
+    every = checked_together(both, pinwheel)
+    assert all(one.ok for one in every) and every[0].verdict is every[1].verdict
+    assert every[0].verdict is not None and not every[0].verdict.notes
+    codes = {finding.code for one in every if one.verification for finding in one.verification.findings}
+    assert {"verify.pins_meet", "verify.pieces_pass"} <= codes
+    project = tmp_path / "square.kiri"
+    store.save(pinwheel, project)
+    assert main(["check", *map(str, both), "--design", str(project), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["ok"] and [one["verdict"]["level"] for one in said["files"]] == ["ready_to_cut"] * 2
+    api = ks.check(both[0], ks.load_project(project).best)
+    assert api.ok and api.verdict is not None
+
+
+def changed(folder: Path, home: Path, change: Callable[[Any], None]) -> Path:
+    """The first bed with a change to its drawing."""
+    document = ezdxf.readfile(folder / "layer-1.dxf")
+    change(document.modelspace())
+    document.saveas(home / "layer-1.dxf")
+    return home / "layer-1.dxf"
+
+
+def hole_moved(space: Any) -> None:
+    circle = space.query("CIRCLE")[0]
+    circle.dxf.center = circle.dxf.center + ezdxf.math.Vec3(0.05, 0.0, 0.0)
+
+
+def outline_moved(space: Any) -> None:
+    space.query("LWPOLYLINE[layer=='OUTLINE']")[0].translate(0.05, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("change", [hole_moved, outline_moved])
+def test_that_a_bed_that_is_not_as_its_design_is_found(
+    pinwheel: Document, folder: Path, tmp_path: Path, change: Callable[[Any], None]
+) -> None:
+    path = changed(folder, tmp_path, change)
+    found = checked(path, pinwheel)
+    assert checked(path).ok and found.sound, "nothing but the design tells"
+    assert not found.ok and found.verdict is not None and found.verdict.level is Level.FAILS
+    assert "verify.in_file" in {problem.code for problem in found.verdict.problems}
+
+
+def test_that_beds_of_other_designs_and_beds_given_twice_are_refused(pinwheel: Document, folder: Path) -> None:
+    other = Sheet(RatioField(1.0 / pinwheel.candidates[0].sheet.field.ratio))
+    candidate = Candidate(other, evaluate(deploy(other), pinwheel.target), 0, 0)
+    strange = checked(folder / "layer-1.dxf", replace(pinwheel, candidates=(candidate,)))
+    assert not strange.ok and strange.verdict is not None
+    assert "check.other_design" in {problem.code for problem in strange.verdict.problems}
+    twice = checked_together([folder / "layer-1.dxf", folder / "layer-1.svg"], pinwheel)
+    assert not any(one.ok for one in twice) and twice[0].verdict is not None
+    assert [problem.code for problem in twice[0].verdict.problems] == ["check.bed_twice"]

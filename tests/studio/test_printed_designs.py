@@ -135,6 +135,28 @@ def test_that_command_line_api_and_window_write_the_same_plates(
     assert len(contents) == 1
 
 
+def test_that_a_wide_sheet_is_divided_into_plates_whose_seams_have_all_pins_on_one_side(
+    pinwheel: Document, tmp_path: Path
+) -> None:
+    wide = replace(pinwheel.fabrication, width_mm=230.0)
+    request = CutRequest.of(pinwheel, wide)
+    job = pieces_of(request).printing
+    assert job is not None and len(job.plates) == 4 and sum(len(plate.placed) for plate in job.plates) == 16
+    owner = {piece.id: plate.number for plate in job.plates for piece, _ in plate.placed}
+    sides = {(owner[one], owner[two]) for one, two in (hinge.pieces for hinge in job.assembly.hinges)}
+    crossing = {side for side in sides if side[0] != side[1]}
+    assert crossing and not any((two, one) in crossing for one, two in crossing)
+    written_pieces(request, Output(tmp_path / "wide.3mf"))
+    found = {path.stem: read_3mf(path) for path in (tmp_path / "wide").glob("*.3mf")}
+    assert set(found) == {"plate-1", "plate-2", "plate-3", "plate-4", "caps"}
+    assert len(found["caps"]) == len(job.seams) > 4 and all(cap.closed for cap in found["caps"].values())
+    for plate in job.plates:
+        bodies = found[plate.name]
+        assert set(bodies) == {piece.id for piece, _ in plate.placed} and all(body.closed for body in bodies.values())
+        reach = np.max([body.bounds[1] for body in bodies.values()], axis=0)
+        assert reach[:2] == pytest.approx(plate.size_mm, abs=0.01) and np.all(reach[:2] <= 220.0)
+
+
 def test_that_a_cut_file_of_a_print_is_refused(pinwheel: Document, tmp_path: Path) -> None:
     with pytest.raises(ExportError) as refused:
         written_pieces(CutRequest.of(pinwheel), Output(tmp_path / "square.dxf"))
@@ -144,10 +166,12 @@ def test_that_a_cut_file_of_a_print_is_refused(pinwheel: Document, tmp_path: Pat
 
 def test_that_the_verdict_knows_plate_material_and_joints(pinwheel: Document) -> None:
     settings = pinwheel.fabrication
-    assert "printed.assembly_larger_than_bed" not in codes(pinwheel, settings)
+    plates = {"printed.assembly_larger_than_bed", "printed.joined_by_hand"}
+    assert not plates & codes(pinwheel, settings)
     wide = replace(settings, width_mm=230.0)
-    assert "printed.assembly_larger_than_bed" in codes(pinwheel, wide)
-    assert "printed.assembly_larger_than_bed" not in codes(pinwheel, replace(wide, machine="fdm-256"))
+    assert plates & codes(pinwheel, wide) == {"printed.joined_by_hand"}
+    assert not plates & codes(pinwheel, replace(wide, machine="fdm-256"))
+    assert plates & codes(pinwheel, replace(settings, width_mm=900.0)) == {"printed.assembly_larger_than_bed"}
     assert "printed.material_is_cut" in codes(pinwheel, replace(settings, material="acrylic-co2"))
     assert {"pinned.wall_too_thin", "pinned.ears_meet"} & codes(pinwheel, replace(settings, width_mm=60.0))
 

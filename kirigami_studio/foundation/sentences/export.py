@@ -10,6 +10,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "export.with_fixes": mark("{reason} {fixes}"),
     "export.unknown_kind": mark("Cannot write {extension:.20} files ({path}). Use one of {known}."),
     "pieces.no_such_file": mark("Pieces on pins are not written as {extension:.20}. Use a folder, or one of {known}."),
+    "pieces.not_copied": mark("Pieces on pins are cut from several files. Export a folder of them instead."),
     "export.no_extension": mark("Cannot write a file without extension ({path}). Use one of {known}."),
     "profile.unknown": mark("There is no machine profile {name!r:.40}. Choose one of {known}."),
     "profile.only_red_is_cut": mark(
@@ -83,6 +84,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
     "artwork.name_a_picture": mark("The project has no artwork. Name a picture with --picture."),
+    "artwork.pieces": mark(
+        "A picture can be printed on one sheet, not on pieces on pins. Choose another construction, or print none."
+    ),
     "artwork.none": mark("The project has no artwork. Choose a picture first."),
     "artwork.too_many_pixels": mark(
         "At {dpi:g} dpi the printed sheet would have {width} x {height} pixels. Choose {most_dpi} dpi or less."
@@ -325,6 +329,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The project does not have the design {design} that the file was made of. Name the project that it was "
         "exported from."
     ),
+    "check.bed_unknown": mark(
+        "The design has no bed {bed:.40}. Name the project that the file was exported from, or export it again."
+    ),
+    "check.bed_twice": mark("The bed {bed:.40} was given twice. Give one file of each bed."),
+    "check.beds_of_several": mark(
+        "The files were made of several designs, or with other sizes. Give the files of one export."
+    ),
+    "check.beds_missing": mark(
+        "Not looked at: {beds:.200}. Give the files of all beds to have the pieces in them put together."
+    ),
     "cut_file.name_alone": mark("The file holds only an engraved name and no cuts."),
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
@@ -405,6 +419,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "verify.pins_miss": mark(
         "The two holes of a pin lie {miss_um:.2f} µm apart at one of {angles} angles. Export it again."
+    ),
+    "verify.holds_meet": mark_n(
+        "The holes of {count} place that holds the sheet meet in its state, within {miss_um:.2f} µm, and only there.",
+        "The holes of {count} places that hold the sheet meet in their state, within {miss_um:.2f} µm, and only there.",
+    ),
+    "verify.holds_miss": mark_n(
+        "The holes of {count} place that holds the sheet miss each other by {miss_um:.2f} µm, or meet in both states. "
+        "Export it again.",
+        "Of {count} places that hold the sheet, holes miss each other by {miss_um:.2f} µm, or meet in both states. "
+        "Export it again.",
     ),
     "verify.pieces_pass": mark("Pieces of one layer pass each other at all {angles} angles."),
     "verify.pieces_collide": mark(

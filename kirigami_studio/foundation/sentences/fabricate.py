@@ -26,9 +26,22 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Piece {piece:.20} has an opening narrower than the kerf of {kerf_mm:g} mm. Choose a larger sheet or more "
         "clearance."
     ),
-    "pieces.larger_than_bed": mark(
-        "Piece {piece:.20} is larger than the bed of {width_mm:g} x {height_mm:g} mm. Choose a smaller sheet, a finer "
-        "grid or another machine."
+    "pieces.larger_than_bed": mark_n(
+        "Piece {piece:.20} is {long_mm:.0f} x {short_mm:.0f} mm, larger than the bed of {width_mm:g} x {height_mm:g} "
+        "mm. Make the sheet {largest_mm} mm wide at most, or choose a finer grid or a machine with a larger bed.",
+        "{count} pieces are larger than the bed of {width_mm:g} x {height_mm:g} mm, {piece:.20} with {long_mm:.0f} x "
+        "{short_mm:.0f} mm. Make the sheet {largest_mm} mm wide at most, or choose a finer grid or a machine with a "
+        "larger bed.",
+    ),
+    "pieces.bed_below_ear": mark_n(
+        "Piece {piece:.20} is {long_mm:.0f} x {short_mm:.0f} mm: the bed of {width_mm:g} x {height_mm:g} mm has no "
+        "room even for its ears. Choose another machine.",
+        "{count} pieces, {piece:.20} with {long_mm:.0f} x {short_mm:.0f} mm, are larger than the bed: {width_mm:g} x "
+        "{height_mm:g} mm has no room even for their ears. Choose another machine.",
+    ),
+    "pieces.several_beds": mark_n(
+        "The pieces of layer {layer} take {count} bed of {width_mm:g} x {height_mm:g} mm.",
+        "The pieces of layer {layer} take {count} beds of {width_mm:g} x {height_mm:g} mm, one file each.",
     ),
     "overcut.not_positive": mark("The overcut must be a number of millimetres above 0, got {value!r:.40}."),
     "tabs.width_not_positive": mark("The tab width must be a number of millimetres above 0, got {value!r:.40}."),
@@ -465,8 +478,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "printed.material_is_cut": mark("{material} is cut, not printed. Choose a material of a 3D printer, such as PLA."),
     "printed.assembly_larger_than_bed": mark(
-        "Panels that are printed on their pins take {width_mm:.1f} x {depth_mm:.1f} mm in one go, more than the bed of "
-        "{bed_width_mm:g} x {bed_depth_mm:g} mm. Make the sheet smaller."
+        "The print is {width_mm:.1f} x {depth_mm:.1f} mm, and cannot be divided into plates of {bed_width_mm:g} x "
+        "{bed_depth_mm:g} mm. Make the sheet smaller, or choose a larger printer."
+    ),
+    "printed.joined_by_hand": mark(
+        "The print takes {count} plates, which are joined by hand at {caps} pins, with caps glued on. Make the sheet "
+        "narrower, or choose a larger printer, to print it at once."
     ),
     "printed.falls_apart": mark(
         "The sheet is in {pieces} pieces after cutting, and cannot be printed as one. Widen the connectors."
@@ -494,6 +511,29 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
         "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
     ),
+    "hold.only_on_pins": mark(
+        "Magnets, eyelets, stitches and tabs are placed in two layers on pins only: this sheet has none."
+    ),
+    "drive.only_on_pins": mark("A board with arms moves two layers on pins only: this sheet has none."),
+    "drive.needs_screws": mark(
+        "A board needs screws as pins, through spacers: holes of {hole_mm:g} mm have none. Choose M2 or M3 screws."
+    ),
+    "drive.no_room": mark(
+        "There is no place for a board: no piece has two pins beside which an arm of {shortest_mm:g} to "
+        "{longest_mm:g} mm turns freely. Choose another size or another design."
+    ),
+    "hold.no_room_open": mark(
+        "Nothing keeps the sheet open: where parts meet only then, there is no room for holes or tabs beside pins, "
+        "cuts and walls. Take smaller magnets, another kind, or a larger sheet."
+    ),
+    "hold.no_room_flat": mark(
+        "Nothing keeps the sheet flat: where parts meet only then, there is no room for holes or tabs beside pins, "
+        "cuts and walls. Take smaller magnets, another kind, or a larger sheet."
+    ),
+    "hold.nothing_meets_open": mark(
+        "Nothing keeps the sheet open: at the angle of its target no voids are closed, so that no edges meet."
+    ),
+    "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "

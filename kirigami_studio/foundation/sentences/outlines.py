@@ -38,8 +38,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "json_outline.not_a_pair": mark("Vertex {number} must be a pair [x, y] of numbers, got {value!r:.40}."),
     # Pictures and masks
     "source.image_damaged": mark(
-        "{name} is damaged or not a picture (PNG, JPG or BMP): {reason:.100}. Open it in the program that made it and "
-        "save it again."
+        "{name} is damaged or not a picture (PNG, JPG, BMP, WebP, TIFF, GIF or AVIF): {reason:.100}. Open it in the "
+        "program that made it and save it again."
     ),
     "image.too_many_pixels": mark(
         "The picture has {width} x {height} pixels, more than {limit} million. Save it smaller."
@@ -50,6 +50,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "image.one_colour": mark("At threshold {threshold:.2f} the picture is all one colour. Try another threshold."),
     "image.threshold": mark("The threshold must be between 0 (black) and 1 (white), got {value!r:.40}."),
+    "object.no_place": mark("Say where the object is: at least one place on it."),
+    "object.outside": mark("({x:g}, {y:g}) is outside the picture, which has {width} x {height} pixels."),
+    "object.nothing_there": mark("There is only background at that place. Click on the object."),
+    "object.no_picture": mark("'{source:.80}' is no picture. A place on the object is for pictures: {kinds}."),
+    "object.not_a_place": mark("A place is two numbers, X,Y, in pixels from the upper left corner, got {value!r:.40}."),
     "mask.wrong_shape": mark("A mask must have shape (height, width), got {shape!s:.60}."),
     "mask.empty": mark("The mask is empty. It must be true inside the shape."),
     "trace.thinner_than_a_pixel": mark("The shape is thinner than a pixel. Use a larger or bolder picture."),
@@ -66,7 +71,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "again."
     ),
     "svg.compressed": mark("The file is compressed (SVGZ). Save it as plain SVG."),
-    "svg.entities": mark("The file declares XML entities, which are not read for safety. Save it as plain SVG."),
+    "svg.entities": mark(
+        "The file declares XML entities that are no short plain texts, which are not read for safety. Save it as plain "
+        "SVG."
+    ),
+    "svg.style_too_large": mark(
+        "The style sheets of the drawing are too long or too complicated. Save it as plain SVG with attributes."
+    ),
     "svg.linked_picture": mark(
         "The drawing shows a picture from another file ({link:.60}), which is not opened for safety. Embed it."
     ),
@@ -85,6 +96,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "svg.too_many_numbers": mark(
         "The paths of the drawing have more than {limit} numbers. Simplify them, or export only the outline."
     ),
+    # PDF
+    "source.pdf_damaged": mark(
+        "{name} is damaged or not a PDF ({reason:.100}). Open it in the program that made it and save it again."
+    ),
+    "pdf.postscript": mark(
+        "The file is PostScript without a PDF inside. Save it with PDF compatibility, or export it as PDF or SVG."
+    ),
+    "pdf.locked": mark("The PDF is locked by a password. Save it without one."),
+    "pdf.unpacks": mark("The PDF unpacks to more than {limit} MB. Export only the outline."),
+    "pdf.too_deep": mark("The PDF nests forms more than {limit} deep. Export only the outline."),
     # DXF
     "source.dxf_damaged": mark(
         "{name} is damaged or not a DXF drawing ({reason:.100}). Open it in the program that made it and save it again."
@@ -93,6 +114,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The drawing has no lines in model space. Draw the contour with lines, arcs, polylines or splines."
     ),
     "dxf.no_lines_but_text": mark("The drawing has only text in model space. Convert the text to lines."),
+    "dxf.only_regions": mark("The drawing has only regions or solids. Explode them into lines, and save it again."),
     "dxf.too_many_entities": mark("The drawing unfolds to more than {limit} entities. Export only the outline."),
     "dxf.blocks_too_deep": mark("The drawing nests blocks more than {limit} deep. Explode them and save it again."),
     "dxf.block_repeated": mark("A block is repeated {times} times. Export only the outline."),
@@ -107,6 +129,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "parts.no_area": mark(
         "The chosen parts enclose no area. Choose a closed one, or take strokes as they are painted, with a width."
     ),
+    "parts.letters": mark(
+        "The drawing is a text of {letters} letters that do not touch. Join them in the window, or with --parts all "
+        "--join bridge."
+    ),
     "parts.stroke_width": mark("A stroke must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
     "parts.bridge_width": mark("A bridge must be {least:.3g} to {most:.3g} wide in this drawing, got {width:.3g}."),
     "parts.too_many_pieces": mark(
@@ -117,6 +143,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "parts.or_as_painted": mark("{reason} Or take the lines as painted: --stroke-outline."),
     "option.bridge_without_join": mark("--bridge is the width of bridges: use it with --join bridge, or alone."),
+    "option.object_with_parts": mark("Say either where the object is or which parts are meant, not both."),
     "parts.tightness": mark("The tightness of a hull must be between 0 and 1, got {value!r:.40}."),
     # Drawings and loose lines
     "drawing.no_area": mark("The drawing encloses no area. Draw one closed shape."),

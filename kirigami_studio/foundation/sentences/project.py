@@ -17,6 +17,16 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "fix.hinges": mark("Give all connectors the same width."),
     "fix.strain": mark("{change}: strain {strain_percent:.1f} %."),
     "fix.then": mark("{change} Then: {level}."),
+    "fix.ear": mark("Use ears of {ear_mm:g} mm."),
+    "fix.fastener": mark("Use other pins: {fastener}."),
+    "fix.clearance": mark("Use a clearance of {clearance_mm:g} mm."),
+    "fix.pins_combined": mark("Make it {width_mm:.0f} mm wide, with other pins: {fastener}."),
+    "fix.none_of_pieces": mark_n(
+        "Nothing that was tried works: {count} change of pins, ears, clearance, design and grid, on sheets "
+        "{least_mm:.0f} to {largest_mm:.0f} mm wide, with ears of {smallest_ear_mm:.1f} to {largest_ear_mm:.1f} mm.",
+        "Nothing that was tried works: {count} changes of pins, ears, clearance, design and grid, on sheets "
+        "{least_mm:.0f} to {largest_mm:.0f} mm wide, with ears of {smallest_ear_mm:.1f} to {largest_ear_mm:.1f} mm.",
+    ),
     "fix.none": mark_n(
         "Nothing that was tried works: {count} change, with {styles} styles, connectors of {narrowest_mm:g} to "
         "{widest_mm:g} mm, sheets {least_mm:.0f} to {largest_mm:.0f} mm wide and {materials} other materials.",

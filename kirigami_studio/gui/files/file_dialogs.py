@@ -9,24 +9,31 @@ from typing import Protocol
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.outlines.read import READERS
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
 
 
 class FileToOpen(Enum):
-    """A file to open: the title of its dialog, and which files it lists."""
+    """A file to open: the title of its dialog, and the name and extensions of the files that it lists."""
 
-    TARGET = mark("Open target"), mark("Targets (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)")
-    START = (
-        mark("Open start outline"),
-        mark("Shapes (*.png *.jpg *.jpeg *.bmp *.svg *.dxf *.json);;All files (*)"),
-    )
+    TARGET = mark("Open target"), mark("Targets"), tuple(READERS)
+    START = mark("Open start outline"), mark("Shapes"), tuple(READERS)
     ARTWORK = (
         mark("Choose picture"),
-        mark("Pictures (*.png *.jpg *.jpeg *.svg *.bmp *.tif *.tiff *.webp);;All files (*)"),
+        mark("Pictures"),
+        (".png", ".jpg", ".jpeg", ".svg", ".bmp", ".tif", ".tiff", ".webp"),
     )
-    PROJECT = mark("Open project"), PROJECT_FILTER
+    PROJECT = mark("Open project"), mark("Kirigami Studio projects"), (".kiri",)
+
+    @property
+    def filter(self) -> str:
+        """As a file dialog lists it: files of these kinds, or all."""
+        _, kinds, extensions = self.value
+        patterns = " ".join(f"*{extension}" for extension in extensions)
+        every = "" if self is FileToOpen.PROJECT else ";;" + tr("All files (*)")
+        return f"{tr(kinds)} ({patterns}){every}"
 
 
 class FileDialogs(Protocol):
@@ -56,8 +63,7 @@ class SystemFileDialogs:
         self._folder = ""
 
     def open(self, wanted: FileToOpen) -> Path | None:
-        title, shown = wanted.value
-        name, _ = QFileDialog.getOpenFileName(self._window, tr(title), self._folder, tr(shown))
+        name, _ = QFileDialog.getOpenFileName(self._window, tr(wanted.value[0]), self._folder, wanted.filter)
         return self._remembered(name)
 
     def save(self, proposal: str) -> Path | None:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QColor, QImage, QPainter, QPicture
 
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, ExportError
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.studio import importing
@@ -112,7 +112,15 @@ def writing_svg(content: bytes, path: Path, cancel: Cancel) -> Iterator[Path]:
 
 
 def drawing_cuts(request: CutRequest, cancel: Cancel) -> Iterator[bytes]:
-    """Plan the cuts, judge them and yield them as SVG in mm, the very bytes of an exported file."""
+    """Plan the cuts, judge them and yield them as SVG in mm, the very bytes of an exported file.
+
+    Raises
+    ------
+    ExportError
+        Pieces, which are cut from several files.
+    """
+    if request.is_pinned:
+        raise ExportError("pieces.not_copied")
     importing.import_as_cut()
     from kirigami_studio.export.svg import cut_svg_bytes
 

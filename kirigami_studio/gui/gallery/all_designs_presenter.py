@@ -114,6 +114,8 @@ class AllDesignsPresenter(QObject):
         page.nearness.setValue(bar.nearness.value())
         table = page.table
         table.hint = view.empty_text
+        if view.pieces is not None:
+            table.show_pieces(view.pieces)
         table.left.connect(lambda: self.show(False))
         table.taken.connect(self._put_on_stage)
         table.pin_wanted.connect(self._marks.pin)

@@ -32,6 +32,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.studio.verdict import Verdict
 
 SMALLEST_CARD = 132
@@ -68,8 +69,8 @@ class CardDelegate(Cards):
         height = card.height() - HEAD_HEIGHT - TEXT_HEIGHT
         return QRect(card.left() + 4, card.top() + HEAD_HEIGHT, card.width() - 8, height)
 
-    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float) -> QPixmap:
-        return candidate_pixmap(design, self.target, size, ratio, self.palette_)
+    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float, pieces: PosedPieces | None) -> QPixmap:
+        return candidate_pixmap(design, self.target, size, ratio, self.palette_, pieces)
 
     def alike_box(self, cell: QRect, index: Index) -> QRect:
         """At the right of the first line of text."""

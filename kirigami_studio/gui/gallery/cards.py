@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import time
 from abc import abstractmethod
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QModelIndex, QPersistentModelIndex, QPoint, QRect, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
@@ -44,11 +45,15 @@ from kirigami_studio.gui.gallery.gallery_model import (
     GalleryModel,
     alike_tip,
 )
+from kirigami_studio.gui.stage.piece_reader import PieceReader
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
+
+if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
 
 #: Pixels between two cards.
 GAP = 8
@@ -82,10 +87,11 @@ class Cards(QStyledItemDelegate):
         self._view = view
         self.palette_: Palette = LIGHT
         self.target: Outline | None = None
+        self.pieces_of: Callable[[Candidate], PosedPieces | None] = lambda _: None  #: None while panels are drawn
         self.card = self.size_for(width)
         self.under_mouse: Candidate | None = None  #: the design under the mouse
         self.hovered_button: CardButton | None = None  #: the button there
-        self._pictures: dict[tuple[PosedDesign, int, float, str, bool], QPixmap] = {}
+        self._pictures: dict[tuple[PosedDesign, int, float, str, bool, PosedPieces | None], QPixmap] = {}
         self._paint_until = math.inf
         self.waiting: list[QRect] = []  #: cells of the view that still lack their pictures
 
@@ -100,8 +106,8 @@ class Cards(QStyledItemDelegate):
         """The part of a card that shows the design."""
 
     @abstractmethod
-    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float) -> QPixmap:
-        """Draw that part; ``thin`` panels break in the material."""
+    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float, pieces: PosedPieces | None) -> QPixmap:
+        """Draw the picture; ``thin`` panels break in the material, ``pieces`` take their place."""
 
     @abstractmethod
     def write(self, painter: QPainter, card: QRect, index: Index) -> None:
@@ -135,14 +141,15 @@ class Cards(QStyledItemDelegate):
     def _picture(self, index: Index, size: QSize, ratio: float) -> QPixmap | None:
         """The design's picture, None where it has to wait for the next paint event."""
         design, thin = index.data(DESIGN_ROLE), bool(index.data(THIN_ROLE))
-        key = (design, size.width(), ratio, self.palette_.name, thin)
+        pieces = self.pieces_of(index.data(CANDIDATE_ROLE))
+        key = (design, size.width(), ratio, self.palette_.name, thin, pieces)
         found = self._pictures.pop(key, None)
         if found is None:
             now = time.perf_counter()
             if now > self._paint_until:
                 return None
             self._paint_until = min(self._paint_until, now + PAINT_SECONDS)
-            found = self.draw(design, thin, size, ratio)
+            found = self.draw(design, thin, size, ratio, None if pieces is None else pieces.small)
         self._pictures[key] = found  # the last used is the last
         while len(self._pictures) > CAPACITY:
             del self._pictures[next(iter(self._pictures))]
@@ -234,6 +241,7 @@ class CardList(QListView):
 
     def __init__(self, parent: QWidget | None) -> None:
         super().__init__(parent)
+        self.pieces: PieceReader | None = None  #: of designs that are made of pieces
         # A timer of its own: what QTimer.singleShot(0) posts is handled before the loop looks for clicks and keys.
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self._draw_waiting)
@@ -261,6 +269,11 @@ class CardList(QListView):
     @abstractmethod
     def compare(self, candidate: Candidate) -> None:
         """Compare a design: its card was clicked with Ctrl."""
+
+    def show_pieces(self, reader: PieceReader) -> None:
+        """Draw the pieces of designs that are made of them, as soon as they are there."""
+        self.pieces, self._cards.pieces_of = reader, reader.of
+        reader.changed.connect(self.viewport().update)
 
     def set_palette(self, palette: Palette) -> None:
         self._cards.palette_ = palette

@@ -28,6 +28,7 @@ from kirigami_studio.gui.widgets.view_transform import Bounds
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.studio.as_cut import AsCut
 
 #: Designs that are compared at most: one for each of the keys 1 to 9.
@@ -51,6 +52,7 @@ class ComparedDesign:
     as_cut: AsCut | None = None  #: how it does as cut, as far as that is known
     simulated: bool = False  #: whether that was simulated, not estimated
     seconds: float | None = None  #: that cutting it takes, as far as that is known
+    pieces: PosedPieces | None = None  #: that it is made of, as far as they are known
 
 
 #: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.
@@ -228,6 +230,7 @@ class Pane(QWidget):
     def show_design(self, one: ComparedDesign, target: Outline | None) -> None:
         """Show the layout of a design over the target, unless it is there already."""
         if self._shown is not None and self._shown[0] is one.entry and self._shown[1] == target:
+            self.view.show_pieces(one.pieces)
             return
         self._shown = one.entry, target
         candidate = one.entry.candidate
@@ -236,6 +239,7 @@ class Pane(QWidget):
         known = (candidate.score, candidate.second) if scored else (None, None)
         self.view.set_sheet_width(one.width_mm)
         self.view.show_design(one.entry.design, known[0], target, known[1])
+        self.view.show_pieces(one.pieces)
 
     def empty(self) -> None:
         """Show no design."""

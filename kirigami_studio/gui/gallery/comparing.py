@@ -15,6 +15,7 @@ from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.as_cut import AsCutReader, AsCutState
+from kirigami_studio.gui.stage.piece_reader import PieceReader
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.sheet_size import cut_for
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -31,6 +32,8 @@ class Comparison(QObject):
     ----------
     as_cut : AsCutReader
         Simulates the design on the stage.
+    pieces : PieceReader
+        Makes what is shown of designs that are made of pieces.
     choose : callable
         Puts a design on the stage.
     turn : callable
@@ -43,13 +46,14 @@ class Comparison(QObject):
         page: ComparePage,
         session: Session,
         as_cut: AsCutReader,
+        pieces: PieceReader,
         *,
         choose: Callable[[Candidate], None],
         turn: Callable[[bool], None],
     ) -> None:
         super().__init__(page)
         self._view, self._switch, self._page, self._session = panel.view, panel.bar.compare.switch, page, session
-        self._choose, self._turn = choose, turn
+        self._choose, self._turn, self._pieces = choose, turn, pieces
         self._comparing = False
         self._compared: tuple[Candidate, ...] = ()
         self._chosen: Candidate | None = None
@@ -63,6 +67,7 @@ class Comparison(QObject):
         page.left.connect(self.leave)
         page.taken.connect(self._take)
         as_cut.changed.connect(self._take_as_cut)
+        pieces.changed.connect(self.refresh)
         session.fabrication_changed.connect(self._forget)
         self._view.model_.dataChanged.connect(lambda *_: self.refresh())
         self._show_switches(False)
@@ -184,6 +189,7 @@ class Comparison(QObject):
             as_cut=simulated or model.as_cut_of(candidate),
             simulated=simulated is not None,
             seconds=self._times.get(self._key(candidate)),
+            pieces=self._pieces.of(candidate) if self._comparing else None,
         )
 
     def _show_switches(self, on: bool) -> None:

@@ -49,6 +49,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.studio.verdict import Verdict
 
 #: Pixels above the pictures, for the name; below them, for their captions, the figures and the badges.
@@ -74,8 +75,8 @@ class TableCards(Cards):
         width = card.width() - 2 * INSET
         return QRect(card.left() + INSET, card.top() + HEAD, width, width // 3)
 
-    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float) -> QPixmap:
-        return states_pixmap(design, self.target, size, ratio, self.palette_, as_cut=True, ringed=thin)
+    def draw(self, design: PosedDesign, thin: bool, size: QSize, ratio: float, pieces: PosedPieces | None) -> QPixmap:
+        return states_pixmap(design, self.target, size, ratio, self.palette_, as_cut=True, ringed=thin, pieces=pieces)
 
     def alike_box(self, cell: QRect, index: Index) -> QRect:
         """At the right of the figures, as wide as its text."""

@@ -9,9 +9,10 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.assembly.posed_pieces import PieceLook, rings_of
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.stage.piece_items import paint_piece
+from kirigami_studio.gui.stage.piece_items import colour_of, piece_path
 from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -33,13 +34,15 @@ class BedsView(Canvas):
         self.setAccessibleName(tr("Beds of the pieces"))
         self.setToolTip(tr("Wheel: zoom. Drag: pan. Double-click: fit view."))
         self._beds: tuple[LaidBed, ...] = ()
+        self._look = PieceLook()
         self._room = (0.0, 0.0)
         self._places: list[FloatArray] = []
 
-    def show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float]) -> None:
-        """Show other beds, or none, of a machine that reaches so far (width, height; mm)."""
+    def show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
+        """Show other beds, or none, of a machine that reaches so far (width, height; mm), as pieces look."""
         self._beds = beds
         if beds:
+            self._look = look
             self._room = room
             if min(self._room) <= 0.0:  # a hand has no bed
                 self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
@@ -66,13 +69,14 @@ class BedsView(Canvas):
             painter.setPen(QPen(QColor(self.palette_.border), 1.0))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(QRectF(left, top, *size.tolist()))
+            look = self._look
             for piece, at in bed.placed:
-                ring = transform.to_pixels(at.put(piece.outline) + place)
-                holes = np.array([hole.centre for hole in piece.holes]).reshape(-1, 2)
-                centres = transform.to_pixels(at.put(holes) + place)
-                paint_piece(painter, piece, ring, centres, transform.scale, self.palette_)
+                painter.setPen(QPen(colour_of(look.line, self.palette_), 1.0 if transform.scale > 1.0 else 0.5))
+                painter.setBrush(colour_of(look.face, self.palette_))
+                rings = [transform.to_pixels(at.put(ring) + place) for ring in rings_of(piece)]
+                painter.drawPath(piece_path(rings))
                 if transform.scale > NUMBERED:
-                    painter.setPen(QColor(self.palette_.text))
+                    painter.setPen(colour_of(look.number, self.palette_))
                     middle = QPointF(*transform.to_pixels(at.put(np.array([piece.label_at])) + place)[0].tolist())
                     box = QRectF(middle - HALF_LABEL, middle + HALF_LABEL)
                     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, piece.id)

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.assembly.posed_pieces import PieceLook
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.beds_view import BedsView
@@ -123,14 +124,17 @@ class CutsPage(QWidget):
     def show_pieces(self, made: MadePieces | None) -> None:
         """Show the beds of a pinned design in the place of a plan; None shows the plan again."""
         self._pieces = made
-        self._show_beds(() if made is None else made.beds, (0.0, 0.0) if made is None else made.job.machine.reach_mm)
+        if made is None:
+            self._show_beds((), (0.0, 0.0), PieceLook())
+        else:
+            self._show_beds(made.beds, made.job.machine.reach_mm, made.posed.look)
         for part in (self.view, self.hinges, self.bar):
             part.setVisible(made is None)
         if made is not None:
             self.problems.show_problems(made.report.problems)
 
-    def _show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float]) -> None:
-        self.beds.show_beds(beds, room)
+    def _show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
+        self.beds.show_beds(beds, room, look)
         self.beds.setVisible(bool(beds))
 
     def show_plan(self, planned: Planned | None) -> None:
@@ -140,7 +144,9 @@ class CutsPage(QWidget):
         """
         self.show_pieces(None)
         if planned is not None and planned.layers is not None:
-            self._show_beds(laid_beds(planned.layers), planned.layers.machine.reach_mm)
+            job = planned.layers
+            look = PieceLook.of(job.material, job.fastener, in_one_plane=False)
+            self._show_beds(laid_beds(job), job.machine.reach_mm, look)
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm

@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Construction, library
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
@@ -106,9 +107,14 @@ class MoreOptions(QWidget):
         except KirigamiError:  # its material is gone, or its ears are; the plan says so
             return
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
-        self.files.fields["fastener"].setEnabled(construction is Construction.PINNED)
+        pinned = construction is Construction.PINNED
+        for name in ("fastener", "held_by", "moved_by"):
+            self.files.fields[name].setEnabled(pinned)
+        self.files.fields["held_when"].setEnabled(pinned and settings.held_by is not HoldKind.NONE)
+        for name in ("magnet_mm", "magnet_height_mm"):
+            self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
         for name in ("pin_mm", "ear_mm", "clearance_mm"):
-            self.files.fields[name].setEnabled(construction in (Construction.PINNED, Construction.PRINTED))
+            self.files.fields[name].setEnabled(pinned or construction is Construction.PRINTED)
         for name in ("gap_mm", "second_material", "board_cut"):
             self.files.fields[name].setEnabled(construction is Construction.BACKED)
 

@@ -112,8 +112,13 @@ class VerdictKeeper(QObject):
             self._judge()
             return
         self._drop()
-        self.judged.emit(request, made.verdict)
-        self._say(VerdictState(made.verdict))
+        if not made.verdict.ok:
+            self._try_fixes(request, made.verdict)
+        self._take(request, made.verdict)
+
+    def _try_fixes(self, request: CutRequest, verdict: Verdict) -> None:
+        steps = partial(fixing, request, verdict, *self._alternatives(request))
+        self._start(tr("trying fixes"), request, verdict, steps)
 
     def take_export(self, exported: ExportedFiles) -> None:
         """Files were written and read back: the verdict answers for them, too."""
@@ -140,12 +145,7 @@ class VerdictKeeper(QObject):
 
         self._planned = None
         verdict = Verdict((Problem.error("plan.refused", reason=sentence),))
-        if request.is_pinned:  # changes are tried on cuts of one sheet alone
-            self._job.stop()
-            self._say(VerdictState(verdict))
-            return
-        steps = partial(fixing, request, verdict, *self._alternatives(request))
-        self._start(tr("trying fixes"), request, verdict, steps)
+        self._try_fixes(request, verdict)
         self._take(request, verdict)
 
     def _judge(self) -> None:

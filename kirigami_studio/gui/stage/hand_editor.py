@@ -24,11 +24,12 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.pins import kept_apart
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.steps import Cancel, single
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.edge_cuts import MouthDrag, MouthFacts, holds_corner, moved, with_sheet
@@ -39,7 +40,9 @@ from kirigami_studio.lattice.sheet import Rim, Sheet, replace_sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Void
-from kirigami_studio.studio.designing import Decoded, decoded
+from kirigami_studio.project.sheet_size import cut_for
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
+from kirigami_studio.studio.designing import Decoded, decoded, least_gap_of
 
 
 def ratio_label(void: Void, count: int) -> str:
@@ -70,6 +73,8 @@ def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     return " ".join(sentences)
 
 
+#: Why a gesture goes no further.
+PINS_STOP_IT = mark("It stops here, where pins are as near to each other as their ears allow.")
 #: Ratios that can be given by hand, the same as those of the generator and the fits.
 SMALLEST, LARGEST = 10.0**-LOG_RATIO_LIMIT, 10.0**LOG_RATIO_LIMIT
 #: Share of a slit by which the motion of a void's corners is measured.
@@ -192,6 +197,7 @@ class HandEditor(QObject):
         self._outline.ended.connect(self._arrive)
         self._outline.failed.connect(self._fail)
         self._dragged_from: Candidate | None = None  # the document's design since the drag of a vertex began
+        self._apart: tuple[tuple[Candidate, FabricationSettings], float] | None = None  # of the design, cells
         self._decoded: PosedDesign | None = None  # the draft, if the outline's thread has decoded it
         self._later: deque[Callable[[], None]] = deque()
         self._pause = QTimer(self, singleShot=True, interval=PAUSE_MS)
@@ -209,6 +215,18 @@ class HandEditor(QObject):
         """The sheet as it is shown."""
         candidate = self._session.document.candidate
         return self._sheet if self._sheet is not None else None if candidate is None else candidate.final_sheet
+
+    @property
+    def _least_gap(self) -> float:
+        """Distance (unit cells) that pins have to keep, the same as in fits; 0 without pins."""
+        document = self._session.document
+        candidate = document.candidate
+        if candidate is None or not is_pinned(document.fabrication):
+            return 0.0
+        key = candidate, document.fabrication
+        if self._apart is None or self._apart[0] != key:
+            self._apart = key, least_gap_of(cut_for(document, candidate), candidate.final_sheet)
+        return self._apart[1]
 
     def postpones(self, act: Callable[[], object]) -> bool:
         """Whether an act must wait until all gestures are in the document; it is then carried out by itself."""
@@ -300,9 +318,11 @@ class HandEditor(QObject):
         for void, ratio in wanted.items():
             table[void] = min(max(ratio, min(SMALLEST, table[void])), max(LARGEST, table[void]))
         first = min(wanted)
-        label = ratio_label(first, len(wanted))
-        self._draft(sheet.with_field(RatioField(table)), label, merge_key)
-        self._session.set_status(tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(table[first])))
+        label, wished = ratio_label(first, len(wanted)), sheet.with_field(RatioField(table))
+        kept = kept_apart(sheet, wished, self._least_gap)
+        self._draft(kept, label, merge_key)
+        said = tr("{gesture}: x {ratio:.3f}", gesture=label, ratio=float(kept.field.ratio[first]))
+        self._session.set_status(said if kept is wished else f"{said}. {tr(PINS_STOP_IT)}")
 
     # the rim -------------------------------------------------------------------------------------------------------
 
@@ -327,10 +347,11 @@ class HandEditor(QObject):
         if sheet is not None and holds_corner(sheet, mouth):
             self._session.set_status(tr("This edge cut stays where it is: it holds a corner of the flat sheet."))
         elif sheet is not None:
-            placed = moved(sheet, mouth, position)
+            wished = moved(sheet, mouth, position)
+            placed = kept_apart(sheet, wished, self._least_gap)
             self._draft(placed, tr("Move edge cut"), merge_key)
-            facts = MouthFacts.of(placed, mouth, self._session.document.fabrication.width_mm)
-            self._session.set_status(facts.sentence())
+            said = MouthFacts.of(placed, mouth, self._session.document.fabrication.width_mm).sentence()
+            self._session.set_status(said if placed is wished else f"{said} {tr(PINS_STOP_IT)}")
 
     @_after_arrival
     def even_rim(self) -> None:
@@ -339,8 +360,12 @@ class HandEditor(QObject):
         if sheet is None or sheet.has_even_rim:
             self._session.set_status(tr("The edge cuts are evenly spaced already."))
             return
+        even = replace_sheet(sheet, rim=Rim.even(*sheet.grid))
+        if kept_apart(sheet, even, self._least_gap) is not even:
+            self._session.set_status(tr("On an even rim pins would be nearer to each other than their ears allow."))
+            return
         self._prepare_drag()
-        self._draft(replace_sheet(sheet, rim=Rim.even(*sheet.grid)), tr("Even rim"))
+        self._draft(even, tr("Even rim"))
         self.commit()
 
     # locks ---------------------------------------------------------------------------------------------------------
@@ -369,7 +394,7 @@ class HandEditor(QObject):
         for void in document.locked:
             locked[void] = True
         self._dragged_from = document.candidate
-        self._outline.begin(DragStart(design, phi, vertex, locked))
+        self._outline.begin(DragStart(design, phi, vertex, locked, self._least_gap))
         self._session.set_status(tr("Preparing the outline …"))
 
     def _follow(self, found: DragStep) -> None:
@@ -385,6 +410,10 @@ class HandEditor(QObject):
         elif found.stuck:
             self._session.set_status(
                 tr("The outline can't reach that far: ratio limits, locked voids or panel collisions block it.")
+                if not self._least_gap
+                else tr(
+                    "The outline can't reach that far: ratio limits, locked voids, pins or panel collisions block it."
+                )
             )
 
     def _arrive(self) -> None:

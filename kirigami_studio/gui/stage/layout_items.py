@@ -14,6 +14,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.panel_sizes import smallest_edge, smallest_neck
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.gui.stage.piece_items import paint_pieces
 from kirigami_studio.gui.widgets.paths import (
     DOZEN,
     blank,
@@ -30,6 +31,7 @@ from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
     from kirigami_studio.export.cut_motion import CutPose
 
 #: Panels smaller than this (pixels) get no line: it would swallow them.
@@ -158,16 +160,45 @@ def paint_flat(painter: QPainter, rect: QRectF, design: PosedDesign, palette: Pa
 
 
 def candidate_pixmap(
-    design: PosedDesign, target: Outline | None, size: QSize, ratio: float, palette: Palette
+    design: PosedDesign,
+    target: Outline | None,
+    size: QSize,
+    ratio: float,
+    palette: Palette,
+    pieces: PosedPieces | None = None,
 ) -> QPixmap:
-    """Return the picture for a gallery card, ``size`` in logical pixels: the sheet over its target, and flat."""
+    """Return the picture for a gallery card: the sheet over its target, and flat.
+
+    ``size`` is in logical pixels; ``pieces`` are drawn in the place of panels.
+    """
     pixmap = blank(size, ratio)
     painter = painter_on(pixmap)
     width, height = TARGET_SHARE * size.width(), float(size.height())
-    paint_candidate(painter, QRectF(0.0, 0.0, width, height), design, target, palette)
-    paint_flat(painter, QRectF(width, 0.0, size.width() - width, height), design, palette)
+    over, beside = QRectF(0.0, 0.0, width, height), QRectF(width, 0.0, size.width() - width, height)
+    if pieces is None:
+        paint_candidate(painter, over, design, target, palette)
+        paint_flat(painter, beside, design, palette)
+    else:
+        paint_opened_pieces(painter, over, pieces, target, palette)
+        upright = pieces.upright()
+        transform = ViewTransform.fitting(Bounds.of(upright.points(math.pi)), beside, CARD_MARGIN)
+        paint_pieces(painter, upright, math.pi, transform, palette)
     painter.end()
     return pixmap
+
+
+def paint_opened_pieces(
+    painter: QPainter, rect: QRectF, pieces: PosedPieces, target: Outline | None, palette: Palette
+) -> None:
+    """Draw pieces at their target angle, and their target, into ``rect``."""
+    phi = pieces.design.phi_target
+    bounds = Bounds.of(pieces.points(phi))
+    if target is not None:
+        bounds = bounds.united(Bounds.of(target.points))
+    transform = ViewTransform.fitting(bounds, rect, CARD_MARGIN)
+    paint_pieces(painter, pieces, phi, transform, palette)
+    if target is not None:
+        paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
 
 
 def states_pixmap(
@@ -178,10 +209,12 @@ def states_pixmap(
     palette: Palette,
     as_cut: bool = False,
     ringed: bool = False,
+    pieces: PosedPieces | None = None,
 ) -> QPixmap:
     """Return a design flat, half way and over its target side by side, to one scale; ``size`` in logical pixels.
 
-    ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck.
+    ``as_cut`` lays the flat sheet upright, ``ringed`` marks its smallest edge or neck, ``pieces`` are drawn in the
+    place of panels.
     """
     pixmap = blank(size, ratio)
     painter = painter_on(pixmap)
@@ -189,7 +222,10 @@ def states_pixmap(
     upright = PosedDesign(design.deployment, Similarity(design.pose.scale), math.pi, design.trim)
     poses = (upright if as_cut else design, design, design)
     shown = [posed.nodes(phi) for posed, phi in zip(poses, angles, strict=True)]
+    made = () if pieces is None else (pieces.upright() if as_cut else pieces, pieces, pieces)
     boxes = [Bounds.of(nodes) for nodes in shown]
+    if made:
+        boxes = [Bounds.of(one.points(phi)) for one, phi in zip(made, angles, strict=True)]
     if target is not None:
         boxes[-1] = boxes[-1].united(Bounds.of(target.points))
     spans = [max(box.right - box.left, box.top - box.bottom) for box in boxes]
@@ -198,6 +234,9 @@ def states_pixmap(
         edge = (min(side, size.height()) - 2 * CARD_MARGIN) * span / max(spans)
         middle = QPointF((number + 0.5) * side, 0.5 * size.height())
         transform = ViewTransform.fitting(box, QRectF(middle - QPointF(edge, edge) / 2, QSizeF(edge, edge)))
+        if made:
+            paint_pieces(painter, made[number], phi, transform, palette)
+            continue
         trimmed = {row: transform.to_pixels(part) for row, part in posed.kept(nodes, phi).items()}
         panels = transform.to_pixels(posed.panels(nodes))
         paint_panels(painter, panels, turning, palette, trimmed)

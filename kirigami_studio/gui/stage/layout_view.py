@@ -12,6 +12,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.second_target import SecondMatch
@@ -43,7 +44,7 @@ from kirigami_studio.gui.stage.layout_labels import (
     room_in,
     smallest_parts,
 )
-from kirigami_studio.gui.stage.piece_items import ShownPieces
+from kirigami_studio.gui.stage.piece_items import paint_pieces
 from kirigami_studio.gui.stage.void_gestures import VoidGestures
 from kirigami_studio.gui.stage.void_items import VoidShapes, steady
 from kirigami_studio.gui.widgets.canvas import Canvas
@@ -69,9 +70,9 @@ from kirigami_studio.gui.widgets.mismatch_items import (
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.studio.making import MadePieces, Planned
 
 if TYPE_CHECKING:
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
@@ -160,7 +161,8 @@ class LayoutView(Canvas):
         self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self.artwork: ShownArtwork | None = None
-        self._pieces: ShownPieces | None = None
+        self._pieces: PosedPieces | None = None
+        self._tiles: PosedPieces | None = None  #: on the panels of a hinge layer
         self._grips = GRIPS_UNKNOWN
         self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
         self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
@@ -186,7 +188,8 @@ class LayoutView(Canvas):
         ``second`` is how this very sheet shows a second target.
         """
         self.design, self._target, self._cut, self.second = design, target, None, None
-        self.areas, self._ideal_areas, self.faults, self._pieces = None, None, (), None
+        self.areas, self._ideal_areas, self.faults = None, None, ()
+        self._pieces = self._tiles = None
         before, self._bounds = self._bounds, None
         if design is not None:
             self._rigid = RigidFacts.of(design)
@@ -208,7 +211,8 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self.design, self._cut, self.second, self._pieces = design, None, None, None
+        self.design, self._cut, self.second = design, None, None
+        self._pieces = self._tiles = None
         self.areas, self._ideal_areas, self.faults, self._contact = None, None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
@@ -219,15 +223,21 @@ class LayoutView(Canvas):
             self._cut = sheet
             self.update()
 
-    def show_pieces(self, made: MadePieces | Planned | None) -> None:
-        """Draw the pieces of a pinned design in the place of its panels, tiles on them, or panels alone again."""
-        self._pieces = None
-        if isinstance(made, MadePieces) and self.design is not None:
-            self._pieces = ShownPieces.of(made, self.design)
-        elif isinstance(made, Planned) and made.layers is not None and self.design is not None:
-            self._pieces = ShownPieces.of_tiles(made.layers, self.design)
+    def show_pieces(self, pieces: PosedPieces | None) -> None:
+        """Draw pieces of the design in the place of its panels, or panels again."""
+        self._pieces = None if self.design is None else pieces
         if self._pieces is not None and self._bounds is not None:
             self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))
+        self.update()
+
+    def show_tiles(self, layers: AssemblyJob | None) -> None:
+        """Draw the tiles of a backed design on its panels, or panels alone again."""
+        self._tiles = None
+        if layers is not None and self.design is not None:
+            made, design = layers.assembly.deployment, self.design
+            look = PieceLook.of(layers.material, layers.fastener, in_one_plane=False)
+            posed = design if made is design.deployment else design.laid_over(made)
+            self._tiles = PosedPieces(layers.assembly, posed, look, 0.0, ())
         self.update()
 
     def set_as_cut(self, on: bool) -> None:
@@ -286,7 +296,7 @@ class LayoutView(Canvas):
     @property
     def mm_per_unit(self) -> float:
         """Millimetres of one world unit; 0 while there is no design."""
-        if self._pieces is not None and not self._pieces.tiles:
+        if self._pieces is not None:
             return self._pieces.mm_per_world
         return 0.0 if self.design is None else self.design.mm_per_world(self._width_mm)
 
@@ -389,7 +399,7 @@ class LayoutView(Canvas):
             if self._target is not None:
                 paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
             return
-        if self._pieces is not None and not self._pieces.tiles:
+        if self._pieces is not None:
             self._paint_pieces(painter, transform, self._pieces)
             return
         pose = self.shown_as_cut
@@ -408,8 +418,8 @@ class LayoutView(Canvas):
             paint_panels(painter, panels, turning, palette, trimmed)
         else:
             paint_cut_panels(painter, pose, transform, panels, turning, palette)
-        if self._pieces is not None:
-            self._pieces.paint(painter, self.phi if pose is None else pose.phi, transform, self.palette_)
+        if self._tiles is not None:
+            paint_pieces(painter, self._tiles, self.phi if pose is None else pose.phi, transform, self.palette_)
         if artwork is not None:
             paint_artwork(painter, artwork, self.phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
@@ -421,9 +431,9 @@ class LayoutView(Canvas):
         self._paint_faults(painter, transform)
         self.voids.paint(painter, self.palette_)
 
-    def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: ShownPieces) -> None:
+    def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: PosedPieces) -> None:
         self.areas, self.faults = None, ()
-        pieces.paint(painter, self.phi, transform, self.palette_)
+        paint_pieces(painter, pieces, self.phi, transform, self.palette_)
         nearness = self._nearness
         if self._target is not None and Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))

@@ -51,6 +51,7 @@ class DragStart:
     phi: float  #: angle that was shown
     vertex: int  #: number in ``Deployment.outline(phi)``
     locked: BoolArray  #: (m, n); voids that are locked
+    least_gap: float = 0.0  #: unit cells; distance that pins keep, 0 for sheets without pins
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +113,8 @@ class Follower:
         start = self._start
         before = start.design if self.newest is None else self.newest.design
         if self._drag is None:
-            self._drag = VertexDrag(start.design.deployment.sheet, start.phi, start.vertex, start.locked)
+            sheet = start.design.deployment.sheet
+            self._drag = VertexDrag(sheet, start.phi, start.vertex, start.locked, start.least_gap)
         drag = self._drag
         wanted = before.to_layout(place, start.phi)
         gap = drag.gap(wanted)

@@ -1,122 +1,151 @@
-"""Paint the pieces of a pinned design, two layers and pins, or the tiles on a hinge layer."""
+"""Paint pieces in layers: faces in the colours of the material, shadows, heads of pins."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+import math
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QTransform
 
-from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, rings_of, shaded
+from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
-from kirigami_studio.lattice.deployment import rotate
 
 if TYPE_CHECKING:
-    from kirigami_studio.assembly.pieces import Assembly, Piece
-    from kirigami_studio.export.assembly_files import AssemblyJob
-    from kirigami_studio.studio.making import MadePieces
+    from kirigami_studio.assembly.pieces import Assembly
+    from kirigami_studio.assembly.posed_pieces import PosedPieces, Shade
 
-#: Of the upper layer: the lower one shows through.
-UPPER_ALPHA = 205
-#: Pins narrower than this (pixels) are dots.
-DOT = 1.2
-LAYERS = (1, 2)
-
-
-@dataclass(frozen=True, eq=False)
-class ShownPieces:
-    """The pieces of a design, as the stage shows them over its target."""
-
-    assembly: Assembly
-    design: PosedDesign  #: The lattice of the pieces: smaller than that of the design by the margin of pins
-    head_mm: float = 0.0  #: Diameter of the heads of pins
-    tiles: bool = False  #: Whether they lie on the panels of a hinge layer, which is drawn below them
-
-    @classmethod
-    def of(cls, made: MadePieces, design: PosedDesign) -> ShownPieces:
-        """The pieces of the design on the stage."""
-        plan = made.made.plan
-        shown = PosedDesign(plan.assembly.deployment, plan.pose, design.phi_target)
-        return cls(plan.assembly, shown, plan.options.head_mm)
-
-    @classmethod
-    def of_tiles(cls, layers: AssemblyJob, design: PosedDesign) -> ShownPieces:
-        """The tiles of the design on the stage."""
-        made = layers.assembly.deployment
-        return cls(layers.assembly, design if made is design.deployment else design.laid_over(made), tiles=True)
-
-    @property
-    def mm_per_world(self) -> float:
-        """Millimetres of one world unit."""
-        return self.assembly.cell_mm / self.design.pose.scale
-
-    @cached_property
-    def extent(self) -> FloatArray:
-        """Corners of all pieces at both ends of the motion, (P, 2) float, world."""
-        ends = (np.pi, self.design.phi_target)
-        return np.concatenate([ring for phi in ends for ring in self.outlines(phi)])
-
-    def outlines(self, phi: float) -> list[FloatArray]:
-        """Outlines (L, 2) of all pieces at an angle, world."""
-        return self._placed(phi, [piece.outline for piece in self.assembly.pieces])
-
-    def _placed(self, phi: float, points: list[FloatArray]) -> list[FloatArray]:
-        """Points (L, 2) of each piece's frame in the world."""
-        pose, cell_mm = self.design.pose_at(phi), self.assembly.cell_mm
-        poses = self.assembly.poses(phi).tolist()
-        return [
-            pose.apply((rotate(part, turn) + (x, y)) / cell_mm)  # noqa: RUF005 - sums of arrays
-            for part, (x, y, turn) in zip(points, poses, strict=True)
-        ]
-
-    def paint(self, painter: QPainter, phi: float, transform: ViewTransform, palette: Palette) -> None:
-        """Draw both layers and the pins at an angle (radians)."""
-        pieces = self.assembly.pieces
-        rings = [transform.to_pixels(ring) for ring in self.outlines(phi)]
-        holes = [np.array([hole.centre for hole in piece.holes]).reshape(-1, 2) for piece in pieces]
-        centres = [transform.to_pixels(one) for one in self._placed(phi, holes)]
-        per_mm = transform.scale / self.mm_per_world
-        for layer in LAYERS:
-            for piece, ring, places in zip(pieces, rings, centres, strict=True):
-                if piece.layer == layer:
-                    paint_piece(painter, piece, ring, places, per_mm, palette)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(palette.panel_line))
-        head = max(0.5 * per_mm * self.head_mm, DOT)
-        for piece, places in zip(pieces, centres, strict=True):
-            if piece.layer == LAYERS[-1]:
-                for x, y in places.tolist():
-                    painter.drawEllipse(QPointF(x, y), head, head)
+#: Designs whose outlines are kept as paths: those of a gallery and of a comparison.
+KEPT_PATHS = 128
+#: Faces in the dark theme, against the light one.
+DIMMED = 0.86
+#: A shadow is drawn so many times, each farther off, and so dark (of 255) each time.
+STEPS, DARKNESS = 3, 34
+#: Shadows fall so far (pixels) at least and at most.
+SHORTEST, LONGEST = 0.6, 12.0
+#: Heads smaller than this (pixels) are dots; from the second on they have a rim and a spot of light.
+DOT, ROUND = 1.2, 2.4
+#: Within so many radians of an end state, places that hold the sheet there are numbered.
+SAME_ANGLE = 1e-3
 
 
-def paint_piece(
-    painter: QPainter, piece: Piece, ring: FloatArray, centres: FloatArray, per_mm: float, palette: Palette
-) -> None:
-    """Draw a piece with its holes.
+@lru_cache(maxsize=KEPT_PATHS)
+def _paths(assembly: Assembly) -> tuple[QPainterPath, ...]:
+    """Outlines with openings and holes in the frames of the pieces, mm."""
+    return tuple(piece_path(rings_of(piece)) for piece in assembly.pieces)
 
-    Parameters
-    ----------
-    ring : (L, 2) float, pixels
-        Its outline.
-    centres : (H, 2) float, pixels
-        Of its holes.
-    per_mm : float
-        Pixels of a millimetre.
-    """
-    path = QPainterPath(line_path(ring, closed=True))
+
+def piece_path(rings: Sequence[FloatArray]) -> QPainterPath:
+    """An outline with openings and holes, each ring (L, 2)."""
+    path = QPainterPath()
+    for ring in rings:
+        path.addPath(line_path(ring, closed=True))
     path.setFillRule(Qt.FillRule.OddEvenFill)
-    for (x, y), hole in zip(centres.tolist(), piece.holes, strict=True):
-        radius = 0.5 * per_mm * hole.diameter_mm
-        path.addEllipse(QPointF(x, y), radius, radius)
-    colour = QColor(palette.panel_even if piece.layer == LAYERS[0] else palette.panel_odd)
-    if piece.layer == LAYERS[-1]:
-        colour.setAlpha(UPPER_ALPHA)
-    painter.setPen(QPen(QColor(palette.panel_line), 1.0 if per_mm > 1.0 else 0.5))
-    painter.setBrush(colour)
-    painter.drawPath(path)
+    return path
+
+
+def colour_of(shade: Shade, palette: Palette) -> QColor:
+    """A colour of pieces in a theme."""
+    return QColor(*(shaded(shade, DIMMED) if palette.dark else shade))
+
+
+def paint_pieces(
+    painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
+) -> None:
+    """Draw all layers and the heads of pins at an angle (radians)."""
+    shown = _shown(pieces, phi, transform)
+    fall = min(max(pieces.shadow * transform.scale, SHORTEST), LONGEST)
+    per_mm = transform.scale / pieces.mm_per_world
+    pen = QPen(colour_of(pieces.look.line, palette), 1.0 if per_mm > 1.0 else 0.5)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    for place, layer in enumerate(pieces.layers):
+        _paint_shadow(painter, [shown[number] for number in layer], fall)
+        painter.setPen(pen)
+        painter.setBrush(colour_of(pieces.look.layer(place, len(pieces.layers)), palette))
+        for number in layer:
+            painter.drawPath(shown[number])
+    heads = transform.to_pixels(pieces.heads(phi))
+    if len(heads):
+        places = [QPointF(x, y) for x, y in heads.tolist()]
+        _paint_heads(painter, places, 0.5 * pieces.head_mm * per_mm, fall, pieces.look.head, palette)
+    _paint_holds(painter, pieces, phi, transform, palette)
+
+
+def _paint_holds(
+    painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
+) -> None:
+    """Draw places that hold the sheet, those of a state with their numbers there."""
+    place_of = {piece.id: number for number, piece in enumerate(pieces.assembly.pieces)}
+    factors, shifts = pieces.places(phi)
+    for hold in pieces.holds:
+        here = abs(phi - (pieces.design.phi_target if hold.state is HeldState.OPEN else math.pi)) < SAME_ANGLE
+        painter.setPen(QPen(QColor(palette.accent), 1.5 if here else 0.75))
+        painter.setBrush(QColor(palette.accent) if here else Qt.BrushStyle.NoBrush)
+        numbers = [place_of[name] for name in hold.parts]
+        rings = [
+            transform.to_pixels(as_points(factors[number] * as_plane(points) + shifts[number]))
+            for number, points in zip(numbers, hold.at, strict=True)
+        ]
+        radius = max(0.5 * hold.hole_mm * transform.scale / pieces.mm_per_world, DOT)
+        for ring in rings:
+            if hold.hole_mm:
+                for x, y in ring.tolist():
+                    painter.drawEllipse(QPointF(x, y), radius, radius)
+            else:
+                painter.drawPath(line_path(ring, closed=True))
+        if here:
+            x, y = np.concatenate(rings).max(axis=0).tolist()
+            painter.setPen(QColor(palette.text))
+            painter.drawText(QPointF(x + radius, y), f"{hold.number}")
+
+
+def _shown(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QPainterPath]:
+    """The outline of every piece in pixels."""
+    factors, shifts = pieces.places(phi)
+    scale, (left, top) = transform.scale, transform.origin
+    placed = zip(_paths(pieces.assembly), (scale * factors).tolist(), (scale * shifts).tolist(), strict=True)
+    return [
+        QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag).map(path) for path, a, b in placed
+    ]
+
+
+def _paint_shadow(painter: QPainter, paths: list[QPainterPath], fall: float) -> None:
+    """Darken what lies below pieces of one layer, to their lower right."""
+    painter.save()
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(0, 0, 0, DARKNESS))
+    for _ in range(STEPS):
+        painter.translate(0.5 * fall / STEPS, fall / STEPS)
+        for path in paths:  # one by one: Qt takes several times as long for one large path
+            painter.drawPath(path)
+    painter.restore()
+
+
+def _paint_heads(
+    painter: QPainter, places: list[QPointF], radius: float, fall: float, shade: Shade, palette: Palette
+) -> None:
+    """Draw the heads of pins, larger ones with a rim, a spot of light and a shadow."""
+    painter.setPen(Qt.PenStyle.NoPen)
+    large, radius = radius >= ROUND, max(radius, DOT)
+    discs = [(0.0, radius, colour_of(shaded(shade, HEAD_RIM), palette))]
+    if large:
+        shadow = QColor(0, 0, 0, 2 * DARKNESS)
+        light = colour_of(shaded(shade, GLINT), palette)
+        discs = [
+            (min(0.4 * fall, 0.5 * radius), radius, shadow),
+            *discs,
+            (0.0, 0.78 * radius, colour_of(shade, palette)),
+            (-0.22 * radius, 0.26 * radius, light),
+        ]
+    for shift, size, colour in discs:
+        painter.setBrush(colour)
+        for place in places:
+            painter.drawEllipse(place + QPointF(shift, shift), size, size)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from PySide6.QtCore import QItemSelectionModel, QSignalBlocker, QSize, Qt, QTimer, Signal
@@ -28,8 +29,8 @@ from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, Merged, Merging
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import DrawnPartKind, Part
-from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts
+from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, Strokes
+from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts, picking_object, places_in
 
 SIZE, LIST_WIDTH, PICTURE = QSize(980, 620), 310, QSize(40, 40)
 NUMBER = Qt.ItemDataRole.UserRole
@@ -53,6 +54,9 @@ TAKE = {
     Purpose.START: (mark("&Use as start"), mark("The outline is {size}; only its shape counts.")),
     Purpose.SECOND: (mark("&Use as second target"), mark("The outline is {size}; only its shape counts.")),
 }
+ON_PHOTO = mark(
+    "Click on the object, or draw over it, to take it; what does not belong to it is left out by a right click."
+)
 HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
     DrawnPartKind.FILLED: mark("filled"),
@@ -102,11 +106,13 @@ class PartPicker(QDialog):
         self.result_: Merged | None = None
         self._read: PartsRead | None = None
         self._purpose = Purpose.TARGET
+        self._strokes = Strokes()
         self._palette: Palette = LIGHT
         self._job = LatestJob[Merged](queue)
         self._items: dict[int, QTreeWidgetItem] = {}
         self._undrawn: list[int] = []
         self._drawing = QTimer(self, singleShot=True, interval=0)
+        self._pick = LatestJob[PartsRead](queue)
         self._accepts = False  # Enter was pressed before the outline was there
         self.about = label(name="", wraps=True)
         self.list = QTreeWidget()
@@ -121,6 +127,7 @@ class PartPicker(QDialog):
         self.all = self._button("allParts", tr("&All"), tr("Choose every part."))
         self.largest = self._button("largestPart", tr("&Largest"), tr("Choose the largest part alone."))
         self.view = PartView()
+        self.restart = self._button("", tr("Clear &clicks"), tr("Forget the clicks on the picture."))
         self.join = ChoiceBox("joinParts", tr("How parts are joined"), JOINS)
         self.join.setMinimumWidth(150)
         self.join.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
@@ -155,7 +162,7 @@ class PartPicker(QDialog):
     def _lay_out(self) -> None:
         left = column((self.list, 1), row(self.all, self.largest, ...))
         join = label(tr("&Join by"), self.join, name="")
-        controls = row(join, self.join, self.bridge, 12, self.painted, self.stroke, ..., spacing=8)
+        controls = row(join, self.join, self.bridge, 12, self.painted, self.stroke, ..., self.restart, spacing=8)
         right = column((self.view, 1), controls, self.size_, self.notes)
         middle = row(left, (right, 1), spacing=12)
         below = row(..., self.cancel, self.take)
@@ -167,6 +174,8 @@ class PartPicker(QDialog):
         self.list.currentItemChanged.connect(lambda item, _: self.view.mark(self._number(item)))
         self.view.clicked.connect(self._toggle)
         self.view.pointed.connect(self._point)
+        self.view.stroked.connect(self._take_object)
+        self.restart.clicked.connect(lambda: self._pick_object(Strokes()))
         self.all.clicked.connect(lambda: self._choose(frozenset(self._items)))
         self.largest.clicked.connect(self._choose_largest)
         self.join.currentIndexChanged.connect(self._remake)
@@ -178,18 +187,20 @@ class PartPicker(QDialog):
         self.finished.connect(lambda _: self._stop())
 
     def begin(self, read: PartsRead, purpose: Purpose = Purpose.TARGET) -> None:
-        """Show a drawing with what would be taken by itself: the largest closed part, else all lines as painted."""
+        """Show a drawing with what would be taken by itself, all lines as painted where nothing is closed."""
         self._stop()
         self._read, self._purpose, source = read, purpose, read.source
         closed = any(part.is_closed for part in source.parts)
         self.setWindowTitle(tr("Parts of {name}", name=source.name))
-        self.about.setText(about_parts(purpose, len(source.parts)))
+        about = about_parts(purpose, len(source.parts))
+        self.about.setText(about if read.photo is None else f"{about} {tr(ON_PHOTO)}")
+        self.restart.setVisible(False)
         self.take.setText(tr(TAKE[purpose][0]))
         for field, share in ((self.bridge, USUAL_BRIDGE), (self.stroke, USUAL_STROKE)):
             self._set_range(field, share)
         with QSignalBlocker(self.join), QSignalBlocker(self.painted):
             self.join.choose(Join.BRIDGE)
-            self.painted.setChecked(not closed)
+            self.painted.setChecked(_as_painted(source))
         self.painted.setVisible(any(part.lines for part in source.parts))
         self._fill(frozenset(source.usual) if closed else frozenset(part.number for part in source.parts))
         self.view.show_drawing(read)
@@ -279,6 +290,8 @@ class PartPicker(QDialog):
 
     def _choose_largest(self) -> None:
         if self._read is not None:
+            with QSignalBlocker(self.painted):
+                self.painted.setChecked(_as_painted(self._read.source))
             self._choose(frozenset(self._read.source.usual))
 
     def _toggle(self, number: int) -> None:
@@ -286,6 +299,39 @@ class PartPicker(QDialog):
         item = self._items[number]
         self.list.setCurrentItem(item)
         item.setCheckState(0, _state(item.checkState(0) != Qt.CheckState.Checked))
+
+    def _take_object(self, places: tuple[tuple[float, float], ...], takes: bool) -> None:
+        """The picture was clicked on, or stroked, where the object is or beside it."""
+        if self._read is None or self._read.photo is None:
+            return
+        strokes = self._strokes
+        if takes:
+            strokes = replace(strokes, taken=(*strokes.taken, *places))
+        else:  # without a click on the object, it is what was chosen
+            taken = strokes.taken or places_in(self._read, self.chosen)
+            strokes = Strokes(taken, (*strokes.left, *places))
+        self._pick_object(strokes)
+
+    def _pick_object(self, strokes: Strokes) -> None:
+        assert self._read is not None
+        self._strokes = strokes
+        callbacks = JobCallbacks(self._on_object, on_failed=self._on_no_object)
+        self._pick.start(tr("taking the object"), partial(picking_object, self._read, strokes), callbacks)
+
+    def _on_object(self, found: PartsRead) -> None:
+        """Show the object as a part and choose it alone, or what is taken by itself where it was forgotten."""
+        self._read = found
+        is_there = found.photo is not None and bool(found.photo.strokes.taken)
+        self.restart.setVisible(is_there)
+        self._fill(frozenset({found.source.parts[-1].number} if is_there else found.source.usual))
+        self.view.show_drawing(found)
+        self._remake()
+
+    def _on_no_object(self, sentence: str, trace: str) -> None:
+        """There is nothing at the last place: the clicks before it count."""
+        if self._read is not None and self._read.photo is not None:
+            self._strokes = self._read.photo.strokes
+        self._say((sentence,), wrong=True)
 
     def _point(self, number: int) -> None:
         """The pointer is over a part in the picture, or over none."""
@@ -295,7 +341,7 @@ class PartPicker(QDialog):
     @property
     def complete(self) -> bool:
         """Whether the outline is made and all pictures are drawn."""
-        return not self._job.busy and not self._undrawn
+        return not self._job.busy and not self._pick.busy and not self._undrawn
 
     # the outline -----------------------------------------------------------------------------------------------------
 
@@ -350,12 +396,15 @@ class PartPicker(QDialog):
             self._accepts = True  # as soon as the outline is there
         elif self.result_ is not None:
             source = self._read.source if self._read is not None else None
-            usual = source is not None and self.chosen == frozenset(source.usual) and not self._as_painted
+            usual = source is not None and self.chosen == frozenset(source.usual) and not self._strokes.taken
+            usual = usual and self._as_painted == (source is not None and source.choice.as_painted)
             self.accept()
             self.taken.emit(self.result_.outline, usual and self.merging.join not in HULLS)
 
     def _stop(self) -> None:
         self._job.stop()
+        self._pick.stop()
+        self._strokes = Strokes()
         self._drawing.stop()
         self._accepts = False
 
@@ -383,6 +432,11 @@ class PartPicker(QDialog):
         self.list.blockSignals(False)
         if self._undrawn:
             self._drawing.start()
+
+
+def _as_painted(source: SourceParts) -> bool:
+    """Whether lines count as they are painted, unless somebody wants it otherwise."""
+    return source.choice.as_painted or not any(part.is_closed for part in source.parts)
 
 
 def _state(checked: bool) -> Qt.CheckState:

@@ -4,27 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPainterPath, QPaintEvent, QPen, QPixmap
+from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPainterPath, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.target.target_view import picture_image
 from kirigami_studio.gui.widgets.paths import area_path, blank, ink, line_path, painter_on, round_pen
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.merging import Merged
-from kirigami_studio.studio.parts import PartsRead, bounds_of, part_at
+from kirigami_studio.studio.parts import PartsRead, Photo, bounds_of, part_at
 
 MARGIN = 16.0
-#: Pixels around a line within which a click means it.
-REACH = 8.0
+#: Pixels around a line within which a click means it; from which on a drag is a stroke; radius of a place.
+REACH, LEAST_STROKE, DOT = 8.0, 5.0, 3.5
 
 
 class PartView(QWidget):
     """Draws chosen parts filled, the others pale, the result in the target's colour."""
 
     clicked = Signal(int)  #: number of a part
+    #: places of a click or a stroke on a picture, pixels from its upper left corner, and whether the object is there
+    stroked = Signal(tuple, bool)
     pointed = Signal(int)  #: number of the part under the pointer, 0 for none
 
     def __init__(self) -> None:
@@ -40,6 +44,9 @@ class PartView(QWidget):
         self._stroke = 0.0
         self._result: Merged | None = None
         self._stale = False
+        self._photo: QImage | None = None
+        self._stroke_places: list[QPointF] = []
+        self._takes = True  # whether the stroke that is being drawn is on the object
 
     def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(520, 380)
@@ -53,6 +60,11 @@ class PartView(QWidget):
 
     def show_drawing(self, read: PartsRead) -> None:
         """Show another drawing."""
+        photo, before = read.photo, self._read.photo if self._read is not None else None
+        if photo is None:
+            self._photo = None
+        elif before is None or before.seen is not photo.seen:
+            self._photo = picture_image(photo.seen)
         self._read, self._result, self._current = read, None, 0
         self.update()
 
@@ -88,18 +100,44 @@ class PartView(QWidget):
         if self._read is None:
             return
         transform = self.transform
+        if self._photo is not None and self._read.photo is not None:
+            corners = transform.to_pixels(np.array([[0.0, self._read.photo.size[1]], [self._read.photo.size[0], 0.0]]))
+            painter.drawImage(QRectF(QPointF(*corners[0].tolist()), QPointF(*corners[1].tolist())), self._photo)
         for chosen in (False, True):
             for part, sketch in zip(self._read.source.parts, self._read.sketches, strict=True):
-                if (part.number in self._chosen) is chosen:
+                # On a picture the colours that nobody wants would hide it.
+                is_shown = self._photo is None or chosen or not part.is_aside or part.number == self._current
+                if is_shown and (part.number in self._chosen) is chosen:
                     path = part_path(sketch, transform, part.is_closed)
                     width = (part.pen.width or self._stroke) * transform.scale if self._stroke else 0.0
                     current = part.number == self._current
                     paint_part(
-                        painter, path, self.palette_, closed=part.is_closed, chosen=chosen, current=current, pen=width
+                        painter,
+                        path,
+                        self.palette_,
+                        closed=part.is_closed and (self._photo is None or chosen),
+                        chosen=chosen,
+                        current=current,
+                        pen=width,
                     )
         if self._result is not None and self._chosen:
             bridges = [area_path(bridge, transform) for bridge in self._result.bridges]
             paint_result(painter, area_path(self._result.shape, transform), bridges, self.palette_, stale=self._stale)
+        if self._read.photo is not None:
+            self._paint_strokes(painter, self._read.photo)
+
+    def _paint_strokes(self, painter: QPainter, photo: Photo) -> None:
+        """The places where the object was taken, those beside it, and the stroke that is being drawn."""
+        for places, colour in ((photo.strokes.taken, self.palette_.accent), (photo.strokes.left, self.palette_.bad)):
+            for x, y in places:
+                centre = self.transform.to_pixels(np.array([x, photo.size[1] - y])).tolist()
+                painter.setPen(QPen(QColor(self.palette_.canvas), 1.5))
+                painter.setBrush(QColor(colour))
+                painter.drawEllipse(QPointF(*centre), DOT, DOT)
+        if len(self._stroke_places) > 1:
+            colour = self.palette_.accent if self._takes else self.palette_.bad
+            painter.setPen(QPen(QColor(colour), 2.0 * DOT, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
+            painter.drawPolyline(self._stroke_places)
 
     def _part_below(self, place: QPointF) -> int:
         if self._read is None:
@@ -108,8 +146,13 @@ class PartView(QWidget):
         return part_at(self._read, transform.to_world(place), REACH / transform.scale)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        if self._stroke_places:
+            self._stroke_places.append(event.position())
+            self.update()
+            return
         number = self._part_below(event.position())
-        self.setCursor(Qt.CursorShape.PointingHandCursor if number else Qt.CursorShape.ArrowCursor)
+        other = Qt.CursorShape.ArrowCursor if self._photo is None else Qt.CursorShape.CrossCursor
+        self.setCursor(Qt.CursorShape.PointingHandCursor if number else other)
         self.pointed.emit(number)
 
     def leaveEvent(self, event: QEvent) -> None:  # noqa: N802 - Qt's name
@@ -117,8 +160,30 @@ class PartView(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         number = self._part_below(event.position())
-        if event.button() == Qt.MouseButton.LeftButton and number:
+        if self._photo is not None and event.button() in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
+            self._takes = event.button() == Qt.MouseButton.LeftButton
+            self._stroke_places = [event.position()]
+        elif event.button() == Qt.MouseButton.LeftButton and number:
             self.clicked.emit(number)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
+        """Choose or leave out the part that was clicked on; elsewhere on a picture take the object."""
+        places, self._stroke_places = self._stroke_places, []
+        if not places or self._read is None or self._read.photo is None:
+            return
+        number = self._part_below(places[0])
+        is_click = all((place - places[0]).manhattanLength() < LEAST_STROKE for place in places)
+        if is_click and number and self._takes:
+            self.clicked.emit(number)
+        else:
+            self.stroked.emit(self._on_photo(places[:1] if is_click else places, self._read.photo), self._takes)
+        self.update()
+
+    def _on_photo(self, places: Sequence[QPointF], photo: Photo) -> tuple[tuple[float, float], ...]:
+        """Places of the window as pixels of a picture, inside it."""
+        width, height = photo.size
+        world = [self.transform.to_world(place) for place in places]
+        return tuple((min(max(x, 0.0), width), min(max(height - y, 0.0), height)) for x, y in world)
 
 
 def part_path(sketch: Sequence[FloatArray], transform: ViewTransform, closed: bool) -> QPainterPath:

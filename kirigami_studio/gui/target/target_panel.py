@@ -161,6 +161,7 @@ class TargetPanel(Card):
         self.tools.done.connect(lambda: self.set_editing(False))
         self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(lambda: self.set_editing(False))
+        self.view.typed.connect(self._begin_text)
         self.set_editing(False)
         self.show_target(None)
 
@@ -172,9 +173,16 @@ class TargetPanel(Card):
             tool = Tool.POSE
         self.tools.show_tool(tool)
         self.view.set_tool(tool)
-        if tool is Tool.TEXT:  # so that typing comes first, then the box
-            self.tools.options.text.setFocus()
-            self.tools.options.text.selectAll()
+        if tool is Tool.TEXT:
+            self._begin_text()
+
+    def _begin_text(self, letter: str = "") -> None:
+        """Have the text typed before its box is dragged, from a first letter on that was typed on the board."""
+        field = self.tools.options.text
+        field.setFocus()
+        field.selectAll()
+        if letter:
+            field.insert(letter)
 
     def set_editing(self, on: bool) -> None:
         """Show the tools and the board, or the target alone."""

@@ -80,6 +80,7 @@ class TargetView(Canvas):
     """Shows one outline on a board in mm and lets the user change it."""
 
     tool_left = Signal()
+    typed = Signal(str)  #: a letter for the text tool
     editing_left = Signal()
     hint = Signal(str)
 
@@ -311,6 +312,19 @@ class TargetView(Canvas):
         return super().event(event)
 
     def _wants(self, event: QKeyEvent) -> bool:
+        return self._types(event) or self._zooms_or_pans(event)
+
+    def _types(self, event: QKeyEvent) -> bool:
+        """Whether a key is a letter for the text tool, not a command."""
+        others = (
+            Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+        )
+        letter = event.text()
+        return (
+            self.tool is Tool.TEXT and not event.modifiers() & others and letter.isprintable() and bool(letter.strip())
+        )
+
+    def _zooms_or_pans(self, event: QKeyEvent) -> bool:
         plain = not event.modifiers() & ~(Qt.KeyboardModifier.ShiftModifier | Qt.KeyboardModifier.KeypadModifier)
         return self._editing and plain and (event.key() == Qt.Key.Key_Space or event.key() in self._zooms())
 
@@ -373,6 +387,8 @@ class TargetView(Canvas):
             if not event.isAutoRepeat():
                 self._panning = True
                 self.setCursor(Qt.CursorShape.OpenHandCursor)
+        elif self._types(event):
+            self.typed.emit(event.text())
         elif self._wants(event):
             self._zooms()[event.key()]()
         elif not self.active.key(event):

@@ -23,7 +23,7 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import PART_READERS, PICTURES
+from kirigami_studio.outlines.read import has_parts, is_picture
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
@@ -166,7 +166,7 @@ class SourceReader(QObject):
     def take_chosen(self, outline: Outline, usual: bool) -> None:
         """Take the outline that was made of chosen parts; of a picture the usual one has its threshold again."""
         source, reason = self._asked
-        if usual and Path(source).suffix.lower() in PICTURES:
+        if usual and is_picture(Path(source)):
             self._start(source, reason, partial(reading_target, source))
             return
         self._finish(*self._asked, TargetRead(outline))
@@ -189,7 +189,7 @@ class SourceReader(QObject):
             self._finish(source, reason, found)
 
     def _finish(self, source: str, reason: ReadReason, found: TargetRead) -> None:
-        if Path(source).suffix.lower() in PART_READERS:
+        if has_parts(Path(source)):
             self.drawings[found.outline] = source
             while len(self.drawings) > CAPACITY:
                 self.drawings.popitem(last=False)

@@ -72,8 +72,15 @@ class Presenters(QObject):
             choose=chosen.choose,
             change=services.settings.change,
         )
+        gallery.view.show_pieces(services.pieces)
         self.comparison = Comparison(
-            gallery, stage.compare, session, services.as_cut, choose=chosen.choose, turn=stage.set_comparing
+            gallery,
+            stage.compare,
+            session,
+            services.as_cut,
+            services.pieces,
+            choose=chosen.choose,
+            turn=stage.set_comparing,
         )
         self.all_designs = AllDesignsPresenter(
             columns.pages,

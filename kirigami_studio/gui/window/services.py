@@ -21,6 +21,7 @@ from kirigami_studio.gui.stage.as_cut import AsCutEstimates, AsCutReader
 from kirigami_studio.gui.stage.curves import CurveReader
 from kirigami_studio.gui.stage.gripping import GripFinder
 from kirigami_studio.gui.stage.hand_editor import HandEditor
+from kirigami_studio.gui.stage.piece_reader import PieceReader
 from kirigami_studio.gui.target.targeting import SecondReader, StartReader, Targeting
 
 
@@ -34,7 +35,7 @@ class Services(QObject):
     preferences : UserPreferences
     settings, reader, generation, run, regularity, alikes
         How the next run searches, what the target's shape says before it; runs, and the designs that they bring.
-    hand, curves, as_cut, grips, estimates, artwork
+    hand, curves, as_cut, grips, estimates, pieces, artwork
         What is done to the design on the stage, or found out about it.
     marks, labels, chosen
         The designs of the gallery, and work on the chosen one.
@@ -65,6 +66,7 @@ class Services(QObject):
         self.as_cut = AsCutReader(session, self)
         self.grips = GripFinder(session, self.as_cut, self)
         self.estimates = AsCutEstimates(session, self)
+        self.pieces = PieceReader(session, lambda: self.run.running, self)
         self.verdict = VerdictKeeper(session, self.as_cut, self)
         self.exporter = DesignExporter(session, self.cutting, self.as_cut, self.hand, self.preferences, self)
         self.chosen = ChosenDesign(session, self.hand, self.generation, self.regularity, self)
@@ -80,6 +82,7 @@ class Services(QObject):
         self.generation.begun.connect(self.stop_on_design)
         self.cutting.answered.connect(self.as_cut.read)
         self.cutting.answered.connect(self.verdict.take_plan)
+        self.cutting.answered.connect(self.pieces.take)
         self.cutting.refused.connect(self.as_cut.forget)
         self.cutting.not_planned.connect(self.verdict.take_refusal)
         self.verdict.judged.connect(self.estimates.take_verdict)
@@ -98,6 +101,7 @@ class Services(QObject):
         self.start.stop()
         self.second.stop()
         self.artwork.stop()
+        self.pieces.stop()
         self.hand.stop()
         self.stop_on_design()
         self.run.abandon()
@@ -107,6 +111,7 @@ class Services(QObject):
         self.reader.close()
         self.cutting.close()
         self.estimates.close()
+        self.pieces.stop()
         self.hand.close()
         self.session.queue.close()
         self.project.close()

@@ -164,7 +164,7 @@ def judged_preset(material: Material, shape: str, k: int, seed: int = 0) -> Pres
 
 def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> Verdict:
     if is_pinned(settings):
-        return judge_assembled(best, assembled(best, settings, target))
+        return judge_assembled(best, assembled(best, settings, target), settings)
     return assess(best, settings, target).verdict
 
 

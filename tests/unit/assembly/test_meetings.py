@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.assembly.checks import check_pinned
-from kirigami_studio.assembly.meetings import HeldState, locks, meetings, with_locks
+from kirigami_studio.assembly.meetings import locks, meetings
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.fabricate.hold import HeldState
 from tests.unit.assembly.pinned_designs import pinwheel
 
 PHI = {HeldState.OPEN: 0.0, HeldState.FLAT: math.pi}
@@ -70,11 +70,3 @@ def test_that_locks_pass_through_both_layers_in_their_state_only(plan: PinnedPla
             disc = shapely.Point(place).buffer(lock.room_mm - 0.01)
             assert shapely.Polygon(piece.outline, piece.openings).covers(disc)
             assert lock.room_mm >= 0.5 * (plan.options.pin_mm + plan.options.neck_mm)
-
-
-def test_that_locks_are_drilled_into_both_pieces(plan: PinnedPlan) -> None:
-    lock = locks(plan, HeldState.OPEN)[0]
-    drilled = with_locks(plan.assembly, [lock], 3.2)
-    more = {piece.id: len(piece.holes) - len(plan.assembly.by_id[piece.id].holes) for piece in drilled.pieces}
-    assert {name for name, count in more.items() if count} == set(lock.pieces) and sum(more.values()) == 2
-    assert check_pinned(plan, 2).figures.overlap_mm2 < 0.01

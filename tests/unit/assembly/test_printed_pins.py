@@ -13,7 +13,7 @@ from refusals import refused
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import assembled
-from kirigami_studio.assembly.printed import PinJoint, pinned_solids
+from kirigami_studio.assembly.printed import PinJoint, cap_solids, pinned_solids
 from kirigami_studio.assembly.shaping import Shaping
 from kirigami_studio.assembly.solids import LAYER_MM, Solid
 from kirigami_studio.fabricate.fastener import PrintedPins
@@ -108,6 +108,17 @@ def test_that_sizes_that_do_not_fit_are_refused_with_the_least_that_do() -> None
         PrintedPins(cone_deg=30.0)
     with refused(FabricationError, "printed.pins_not_positive"):
         PrintedPins(ear_mm=2.0, pin_mm=2.4)
+
+
+def test_that_a_pin_at_a_seam_and_its_cap_take_the_room_of_a_whole_pin() -> None:
+    joint = PinJoint.of(PINS, THICKNESS)
+    both = joint.seam_pin.union(joint.cap)
+    assert joint.seam_pin.intersection(joint.cap).area == 0.0 and joint.pin.buffer(1e-9).covers(both)
+    assert joint.pin.difference(both).area < 0.15  # the room for glue, and the tip of the cap
+    assert joint.cap.bounds[0] < PINS.pin_mm / 2 + PINS.clearance_mm < joint.cap.bounds[2]  # the ring does not come off
+    caps = cap_solids(5, THICKNESS, PINS)
+    assert len(caps) == 5 and min(solid.low[2] for solid in caps) == 0.0
+    assert len({tuple(np.round(solid.low, 3)) for solid in caps}) == 5
 
 
 @pytest.mark.parametrize("clearance", [0.2, 0.3, 0.4, 0.6])

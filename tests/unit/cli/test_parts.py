@@ -39,14 +39,15 @@ def test_that_parts_lists_what_a_drawing_holds(capsys, logo) -> None:
     told = json.loads(capsys.readouterr().out)
     assert [part["name"] for part in told["parts"]] == ["disc", "plate"]
     assert told["parts"][1]["size"] == pytest.approx([30, 30]) and told["unit"] == "mm"
-    assert told["largest"] == [1]
+    assert told["largest"] == [1] and told["ambiguous"] is True and told["as_painted"] is False
 
 
 def test_that_what_was_left_out_is_told_on_standard_error_and_in_json(capsys, logo, sheet) -> None:
     told, said = scored(capsys, sheet, logo)
-    (note,) = told["warnings"]
+    asked, note = told["warnings"]
+    assert "Taken: disc." in asked and "--parts" in asked
     assert "1 smaller piece was left out" in note
-    assert said == f"kirigami-studio: warning: {logo}: {note}\n"
+    assert said == "".join(f"kirigami-studio: warning: {logo}: {one}\n" for one in (asked, note))
 
 
 def test_that_a_chosen_part_is_the_target(capsys, logo, sheet) -> None:

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import shutil
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,11 @@ from pinned_assemblies import CLEARANCE_MM, EAR_MM, HOLE_MM, small_assembly
 from pypdf import PdfReader
 from shapely.geometry import Polygon
 
-from kirigami_studio.assembly.pieces import Assembly
+from kirigami_studio.assembly.driving import driven
+from kirigami_studio.assembly.holding import held, with_places
+from kirigami_studio.assembly.pieces import Assembly, RoundHole
+from kirigami_studio.assembly.pinned import pinned
+from kirigami_studio.export import assembly_files, pieces_read
 from kirigami_studio.export.assembly_files import (
     ANGLES,
     KINDS,
@@ -29,12 +34,18 @@ from kirigami_studio.export.assembly_files import (
     write_assembly,
 )
 from kirigami_studio.export.dxf_check import check_file
+from kirigami_studio.export.hold_files import hold_findings
 from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.pieces_read import FoundPiece
 from kirigami_studio.export.profile import DxfVersion
+from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
+from kirigami_studio.fabricate.hold import HoldKind, HoldOptions, HoldWhen
 from kirigami_studio.fabricate.machine import machine_of
 from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ExportError
+from tests.unit.assembly.pinned_designs import pinwheel
 
 PLYWOOD = find_material("plywood-co2")
 SMALL_BED = replace(machine_of(PLYWOOD), bed_width_mm=120.0, bed_height_mm=70.0)
@@ -263,10 +274,12 @@ def test_that_an_earlier_assembly_is_replaced_and_other_files_stay(
     assert (home / "notes.txt").read_text() == "mine" and not [p for p in tmp_path.iterdir() if p != home]
 
 
-def test_that_a_piece_beyond_the_bed_is_told(assembly: Assembly) -> None:
-    tiny = replace(SMALL_BED, bed_width_mm=10.0, bed_height_mm=10.0)
-    assert "pieces.larger_than_bed" in {note.code for note in job_of(assembly, machine=tiny).notes}
-    assert "pieces.larger_than_bed" not in {note.code for note in job_of(assembly).notes}
+def test_that_layers_on_several_beds_are_told(assembly: Assembly) -> None:
+    small = replace(SMALL_BED, bed_width_mm=60.0, bed_height_mm=60.0)
+    job = job_of(assembly, machine=small)
+    told = {note.fields["layer"]: note.fields["count"] for note in job.notes if note.code == "pieces.several_beds"}
+    assert told == {layer: sum(bed.layer == layer for bed in job.beds) for layer in (1, 2)} and max(told.values()) > 1
+    assert not job_of(assembly, machine=replace(SMALL_BED, bed_width_mm=0.0, bed_height_mm=0.0)).notes
 
 
 def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folder: Path, tmp_path: Path) -> None:
@@ -280,6 +293,7 @@ def test_that_a_bed_is_checked_by_what_it_says_of_itself(job: AssemblyJob, folde
                 "machine": SMALL_BED.key, "profile": "any", "kerf_mm": 0.2, "layer": bed.layer,
                 "bed": f"{bed.number} of {sum(other.layer == bed.layer for other in job.beds)}",
                 "pieces": len(bed.pieces), "pin_mm": HOLE_MM, "ear_mm": EAR_MM, "clearance_mm": CLEARANCE_MM,
+                "width_mm": 0.0, "fastener": "m3", "order": "shortest",
             }  # fmt: skip
             assert report.min_ligament_mm is not None and report.min_ligament_mm >= 1.0 - 1e-3
 
@@ -297,3 +311,129 @@ def test_that_a_bed_with_a_fault_is_not_sound(folder: Path, tmp_path: Path, code
     path.write_text("\n".join(lines))
     report = check_file(path)
     assert not report.ok and code in {problem.code for problem in report.problems}
+
+
+@pytest.mark.parametrize("kind", [HoldKind.MAGNETS, HoldKind.STITCHES, HoldKind.TABS])
+def test_that_places_that_hold_the_sheet_are_cut_listed_shown_and_read_back(kind: HoldKind, tmp_path: Path) -> None:
+    plan = pinned(*pinwheel(3, 3), 160.0)
+    wanted = HoldOptions(kind, HoldWhen.BOTH)
+    places = held(plan, wanted).places
+    job = job_of(with_places(plan.assembly, places), hold=wanted, holds=places, paper=Paper.A4)
+    files = write_assembly(job, tmp_path / "held", (".dxf", ".svg"))
+    assert all(one.ok for one in files.verifications)
+    assert ("verify.holds_meet" in codes(files)) == (kind is not HoldKind.TABS)
+    record = json.loads((tmp_path / "held/pieces.json").read_bytes())
+    assert [hold["number"] for hold in record["holds"]] == [place.number for place in places]
+    rings = {piece["id"]: [np.mean(ring, axis=0) for ring in piece["holes"]] for piece in record["pieces"]}
+    for hold in record["holds"]:
+        assert hold["kind"] == kind.value
+        for name, at in zip(hold["pieces"], hold["at"], strict=True):
+            missed = [min(math.dist(point, ring) for ring in rings[name]) for point in at] if wanted.hole_mm else []
+            assert max(missed, default=0.0) < 1e-5
+    with (tmp_path / "held/parts.csv").open(newline="", encoding="utf-8") as table:
+        rows = [row for row in csv.DictReader(table) if row["item"] == kind.value]
+    of_each = 2 if kind is HoldKind.MAGNETS else 1
+    assert sum(int(row["count"]) for row in rows) == of_each * len(places)
+    page = PdfReader(tmp_path / "held/assembly.pdf").pages[0].extract_text()
+    assert "keeps it so" in page and f"keep it {places[0].state.value}" in page
+    marks = ezdxf.readfile(tmp_path / "held/layer-2.dxf").modelspace().query('LWPOLYLINE[layer=="NAME"]')
+    numbers = ezdxf_numbers(tmp_path, plan.assembly)
+    assert (len(marks) > numbers) == (kind is HoldKind.TABS)
+
+
+def ezdxf_numbers(folder: Path, assembly: Assembly) -> int:
+    """How many lines the numbers of layer 2 are engraved with where nothing holds the sheet."""
+    write_assembly(job_of(assembly), folder / "loose", (".dxf",))
+    return len(ezdxf.readfile(folder / "loose/layer-2.dxf").modelspace().query('LWPOLYLINE[layer=="NAME"]'))
+
+
+@pytest.mark.parametrize("kind", [DriveKind.CRANK, DriveKind.SERVO])
+def test_that_board_and_arms_are_files_pieces_and_parts_of_the_folder(kind: DriveKind, tmp_path: Path) -> None:
+    plan = pinned(*pinwheel(3, 3), 160.0)
+    drive, _ = driven(plan, kind)
+    assert drive is not None
+    job = job_of(plan.assembly, drive=drive, paper=Paper.A4)
+    files = write_assembly(job, tmp_path / "moved")
+    assert all(one.ok for one in files.verifications) and "verify.pins_meet" in codes(files)
+    names = {entry.name for entry in (tmp_path / "moved").iterdir()}
+    assert {f"board{extension}" for extension in KINDS} < names
+    record = json.loads((tmp_path / "moved/pieces.json").read_bytes())
+    of_drive = {"BOARD", "ARM1", "ARM2"} | ({"HANDLE"} if kind is DriveKind.CRANK else set())
+    assert {piece["id"] for piece in record["pieces"]} - set(plan.assembly.by_id) == of_drive
+    assert all(set(step["poses"]) == set(job.whole.by_id) for step in record["motion"])
+    for step in record["motion"]:
+        for hinge in record["hinges"]:
+            x, y, turn = np.array([step["poses"][name] for name in hinge["pieces"]]).T
+            one, other = np.array(hinge["at"]) @ (1.0, 1j) * np.exp(1j * turn) + x + 1j * y
+            assert abs(one - other) < 1e-3
+    cut = [entity for entity in ezdxf.readfile(tmp_path / "moved/board.dxf").modelspace() if entity.dxf.layer != "NAME"]
+    parts_of_drive = [job.whole.by_id[name] for name in of_drive]
+    circles = sum(entity.dxftype() == "CIRCLE" for entity in cut)
+    assert circles == sum(len(piece.holes) for piece in parts_of_drive)
+    assert len(cut) - circles == len(of_drive) + sum(len(piece.openings) for piece in parts_of_drive)
+    with (tmp_path / "moved/parts.csv").open(newline="", encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
+    assert {row["item"] for row in rows} >= {"spacers", "screws", "servo" if kind is DriveKind.SERVO else "square bar"}
+    # Screws go through two layers, their spacer and an arm or the board, and have their nut.
+    thick, nut = PLYWOOD.thickness_mm, SIZES[Fastener.M3].beyond_mm
+    spacers = [float(row["length_mm"]) for row in rows if row["item"] == "spacers"]
+    screws = [float(row["length_mm"]) for row in rows if row["item"] == "screws"]
+    assert screws[:2] == pytest.approx([3.0 * thick + spacer + nut for spacer in spacers[:2]])
+    assert screws[2] == pytest.approx(2.0 * thick + spacers[2] + nut)
+    assert next(int(row["count"]) for row in rows if row["item"] == "pins") == len(plan.assembly.hinges)
+    pages = [page.extract_text() for page in PdfReader(tmp_path / "moved/assembly.pdf").pages]
+    assert any("Board and arms" in page and "ARM1" in page for page in pages)
+
+
+def test_that_a_hole_that_holds_nothing_is_found_on_reading_back() -> None:
+    plan = pinned(*pinwheel(3, 3), 160.0)
+    places = held(plan, HoldOptions(HoldKind.EYELETS)).places
+    assembly = with_places(plan.assembly, places)
+    record = pieces_json(assembly, 2, places)
+    found = {
+        piece.id: FoundPiece(piece.id, piece.layer, Polygon(piece.outline), piece.holes, 0.0, 0.0)
+        for piece in assembly.pieces
+    }
+    assert [finding.code for finding in hold_findings(found, record)] == ["verify.holds_meet"]
+    name = places[0].parts[0]
+    moved = [RoundHole(np.add(hole.centre, 0.01), hole.diameter_mm) for hole in found[name].holes]
+    wrong = {**found, name: replace(found[name], holes=tuple(moved))}
+    assert [finding.code for finding in hold_findings(wrong, record)] == ["verify.holds_miss"]
+
+
+def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_out_once(
+    assembly: Assembly, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work: Counter[str] = Counter()
+    for module, name in (
+        (pieces_read, "_finished"),
+        (pieces_read, "passing"),
+        (pieces_read, "_pin_finding"),
+        (assembly_files, "_bed_written"),
+    ):
+        original = getattr(module, name)
+
+        def counted(*given: Any, _name: str = name, _original: Any = original, **named: Any) -> Any:
+            work[_name] += 1
+            return _original(*given, **named)
+
+        monkeypatch.setattr(module, name, counted)
+    job = job_of(assembly, verdict="ready_to_cut")
+    write_assembly(job, tmp_path / "out", judged=lambda _: "ready_to_cut")
+    assert work["_bed_written"] == len(KINDS) * len(job.beds), "the verdict was known before: nothing is written twice"
+    assert work["_finished"] == len(assembly.pieces), "every outline once, whatever the kind and the reader"
+    assert work["passing"] == 2, "both layers are moved once"
+    assert work["_pin_finding"] == len(KINDS), "holes are compared in files of every kind"
+
+
+def test_that_sheet_and_parts_list_are_german_in_german(job: AssemblyJob, tmp_path: Path) -> None:
+    words.choose("de")
+    write_assembly(replace(job), tmp_path / "out", kinds=())
+    rows = list(csv.DictReader((tmp_path / "out" / "parts.csv").read_text(encoding="utf-8").splitlines()))
+    assert {row["Posten"] for row in rows} == {"Teile", "Stifte", "Material", "alle Schnitte"}
+    assert all("," not in row["Schnitt_mm"] for row in rows)
+    text = "".join(page.extract_text() for page in PdfReader(tmp_path / "out" / "assembly.pdf").pages)
+    for said in ("Zusammenbau", "Stifte der Reihe nach", "Teile auf ihren Betten", "Mit 100 % drucken", "Lage 1, vorn"):
+        assert said in text
+    for english in ("Pins in order", "Parts", "layer 1, in front", "Print at"):
+        assert english not in text

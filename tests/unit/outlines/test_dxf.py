@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from ezdxf.render import MeshBuilder
+from ezdxf.xclip import XClip
 from shapely.geometry import LineString, Point
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read_dxf import read_dxf
+from kirigami_studio.outlines.read_dxf import dxf_parts, read_dxf
 from tests.refusals import refused
 
 DISC = Outline.from_points(np.asarray(Point(0, 0).buffer(1, quad_segs=256).exterior.coords))
@@ -183,7 +185,7 @@ def wide_array(space, drawing) -> None:
     ("draw", "word"),
     [
         (lambda space, _: None, "no lines in model space"),
-        (lambda space, _: space.add_text("hello"), "Convert the text to lines"),
+        (lambda space, _: space.add_text("hello"), "letters that do not touch"),
         (lambda space, _: space.add_line((0, 0), (5, 5)), "open"),
         (lambda space, _: space.add_line((3, 3), (3, 3)), "one point"),
         (lambda space, _: space.add_circle((0, 0), 0), "no length"),
@@ -196,3 +198,171 @@ def test_that_what_has_no_outline_is_refused_with_advice(draw, word, dxf) -> Non
     with refused(TargetError, "source.not_usable", name="drawing.dxf") as caught:
         read_dxf(dxf(draw))
     assert word in str(caught.value)
+
+
+STAR = Outline.from_points(
+    [(30 * r * np.cos(a), 30 * r * np.sin(a)) for a, r in zip(np.arange(10) * np.pi / 5, [1, 0.4] * 5, strict=True)]
+)
+STAR_POINTS = [(float(x), float(y)) for x, y in 20 * STAR.points]
+FRAME = [(-90, -90), (90, -90), (90, 90), (-90, 90)]
+HIDING = {
+    "off": lambda layer: layer.off(),
+    "frozen": lambda layer: layer.freeze(),
+    "not plotted": lambda layer: setattr(layer.dxf, "plot", 0),
+}
+
+
+def inside_a_block(space, drawing, layer: str) -> None:
+    drawing.blocks.new("B").add_lwpolyline(FRAME, close=True, dxfattribs={"layer": layer})
+    space.add_blockref("B", (0, 0))
+
+
+def as_a_block(space, drawing, layer: str) -> None:
+    """Lines on layer 0 show as the layer of the insertion, also through another block."""
+    drawing.blocks.new("B").add_lwpolyline(FRAME, close=True)
+    drawing.blocks.new("C").add_blockref("B", (0, 0))
+    space.add_blockref("C", (0, 0), dxfattribs={"layer": layer})
+
+
+@pytest.mark.parametrize("way", [inside_a_block, as_a_block])
+@pytest.mark.parametrize("hidden", HIDING)
+def test_that_what_is_hidden_in_a_block_is_not_seen(way, hidden, dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        HIDING[hidden](drawing.layers.add("Box"))
+        way(space, drawing, "Box")
+        space.add_lwpolyline(STAR_POINTS, close=True)
+
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, STAR) > 0.999
+    assert any("Box" in note for note in outline.notes)
+
+
+def test_that_a_block_on_a_layer_that_is_off_shows_its_other_layers(dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        drawing.layers.add("Box").off()
+        block = drawing.blocks.new("B")
+        block.add_lwpolyline(FRAME, close=True)
+        block.add_lwpolyline(STAR_POINTS, close=True, dxfattribs={"layer": "Shape"})
+        space.add_blockref("B", (0, 0), dxfattribs={"layer": "Box"})
+
+    assert iou(read_dxf(dxf(draw)), STAR) > 0.999
+
+
+def hatch(space, _drawing) -> None:
+    filled = space.add_hatch(color=2)
+    filled.paths.add_polyline_path(STAR_POINTS, is_closed=True)
+
+
+def pattern(space, _drawing) -> None:
+    filled = space.add_hatch(color=2)
+    filled.set_pattern_fill("ANSI31", scale=0.5)
+    filled.paths.add_polyline_path(STAR_POINTS, is_closed=True)
+
+
+def fan(space, _drawing) -> None:
+    for one, other in zip(STAR_POINTS, STAR_POINTS[1:] + STAR_POINTS[:1], strict=True):
+        space.add_3dface([(0, 0, 5), (*one, 0), (*other, 0), (*other, 0)])
+
+
+def solids(space, _drawing) -> None:
+    for one, other in zip(STAR_POINTS, STAR_POINTS[1:] + STAR_POINTS[:1], strict=True):
+        space.add_solid([(0, 0), one, other, other])
+
+
+def mesh(space, _drawing) -> None:
+    builder = MeshBuilder()
+    for one, other in zip(STAR_POINTS, STAR_POINTS[1:] + STAR_POINTS[:1], strict=True):
+        builder.add_face([(0, 0, 0), (*one, 0), (*other, 0)])
+    builder.render_polyface(space)
+
+
+@pytest.mark.parametrize("draw", [hatch, pattern, fan, solids, mesh])
+def test_that_fills_are_shapes(draw, dxf, iou) -> None:
+    assert iou(read_dxf(dxf(draw)), STAR) > 0.999
+
+
+def test_that_holes_of_a_hatch_stay_open_in_its_part(dxf) -> None:
+    def draw(space, _drawing) -> None:
+        filled = space.add_hatch(color=2)
+        filled.paths.add_polyline_path(FRAME, is_closed=True, flags=1)
+        filled.paths.add_polyline_path(STAR_POINTS, is_closed=True, flags=16)
+
+    (part,) = dxf_parts(dxf(draw)).parts
+    assert part.region.area == pytest.approx(180 * 180 - 400, rel=1e-6)
+
+
+PLATE = [(0, 0), (100, 0), (100, 50), (0, 50)]
+
+
+def measured(space, **attributes) -> None:
+    for start, end in (((0, 50), (0, 68)), ((100, 50), (100, 68)), ((0, 65), (100, 65)), ((0, 65), (4, 66))):
+        space.add_line(start, end, dxfattribs=attributes)
+    space.add_text("100", height=4, dxfattribs=attributes).set_placement((45, 67))
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    [{"layer": "DIM"}, {"layer": "Bemaßung"}, {"layer": "COTES"}, {"layer": "标注"}, {"layer": "x7"}, {"color": 1}],
+)
+def test_that_a_measure_in_pieces_does_not_belong_to_the_plate(attributes, dxf, iou) -> None:
+    def draw(space, _drawing) -> None:
+        space.add_lwpolyline(PLATE, close=True)
+        measured(space, **attributes)
+
+    assert iou(read_dxf(dxf(draw)), box_outline(2, 1)) > 0.999
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    [{"layer": "Hilfslinien"}, {"layer": "construction"}, {"layer": "TITLEBLOCK"}, {"layer": "ENGRAVE"},
+     {"layer": "Defpoints"}, {"linetype": "CENTER"}],
+)  # fmt: skip
+def test_that_a_larger_frame_of_construction_is_left_out_and_said(attributes, dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        drawing.linetypes.add("CENTER", [2.0, 1.25, -0.25, 0.25, -0.25])
+        space.add_lwpolyline(FRAME, close=True, dxfattribs=attributes)
+        space.add_lwpolyline(STAR_POINTS, close=True, dxfattribs={"layer": "Outline cut"})
+
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, STAR) > 0.999
+    assert any("left out" in note for note in outline.notes)
+
+
+@pytest.mark.parametrize("attributes", [{"layer": "DIM"}, {"linetype": "CENTER"}])
+def test_that_construction_alone_is_the_shape(attributes, dxf, iou) -> None:
+    def draw(space, drawing) -> None:
+        drawing.linetypes.add("CENTER", [2.0, 1.25, -0.25, 0.25, -0.25])
+        space.add_lwpolyline(STAR_POINTS, close=True, dxfattribs=attributes)
+
+    assert iou(read_dxf(dxf(draw)), STAR) > 0.999
+
+
+@pytest.mark.parametrize("key", ["layer", "color"])
+def test_that_an_outline_over_several_layers_or_colours_is_joined(key, dxf, iou) -> None:
+    def draw(space, _drawing) -> None:
+        for index in range(4):
+            value = f"L{index % 3}" if key == "layer" else 1 + index % 3
+            space.add_line(PLATE[index], PLATE[(index + 1) % 4], dxfattribs={key: value})
+
+    assert iou(read_dxf(dxf(draw)), box_outline(2, 1)) > 0.999
+
+
+def test_that_a_clipped_block_is_named(dxf) -> None:
+    def draw(space, drawing) -> None:
+        drawing.blocks.new("Plate").add_lwpolyline(PLATE, close=True)
+        clip = XClip(space.add_blockref("Plate", (0, 0)))
+        clip.set_block_clipping_path([(0, 0), (50, 50)])
+
+    notes = " ".join(read_dxf(dxf(draw)).notes)
+    assert "XCLIP" in notes and "Plate" in notes
+
+
+def test_that_an_outline_open_at_several_places_is_not_what_it_holds(dxf) -> None:
+    def draw(space, _drawing) -> None:
+        for start in np.arange(4) * np.pi / 2:
+            angle = np.linspace(start + 0.1, start + np.pi / 2, 40)
+            space.add_lwpolyline(np.column_stack([50 * np.cos(angle), 80 * np.sin(angle)]).tolist())
+        space.add_circle((0, -50), 12)
+
+    with pytest.raises(TargetError, match="The contour is open"):
+        read_dxf(dxf(draw))

@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
+from reportlab.pdfgen.canvas import Canvas
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
@@ -33,6 +34,10 @@ def samples(folder) -> dict[str, bytes]:
             drawing = ezdxf.new("R2000")
             drawing.modelspace().add_lwpolyline(SQUARE, close=True)
             drawing.saveas(path)
+        elif suffix in (".pdf", ".ai"):
+            page = Canvas(str(path), pagesize=(300, 200), pageCompression=0)
+            page.rect(40, 30, 200, 120, fill=1)
+            page.save()
         elif suffix == ".json":
             path.write_text(json.dumps(SQUARE))
         else:

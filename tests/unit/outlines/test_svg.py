@@ -119,11 +119,11 @@ def test_that_the_size_follows_the_stated_units(attributes, size, unit, svg) -> 
         ('<circle r="30"/><circle cx="90" r="10"/>', "1 smaller piece was left out (10 % of the area)"),
         ('<path fill="none" stroke="red" d="M0 0h50v50h-50v-49.5"/>', "A gap was closed: 0.5 px near (0, 0.25)"),
         ('<path d="M0 0h50v50h-50v-40"/>', "closed by a straight line"),
-        ('<text x="5" y="5">Hi</text><circle r="30"/>', "Text was left out. Convert it to paths"),
+        ('<text x="50" y="5">Hi</text><circle r="30"/>', "Text was left out. Convert it to paths"),
         ('<image href="a.png" width="5" height="5"/><circle r="30"/>', "embedded picture"),
         ('<path d="M0 0L100 0L100 100L50 100L51 101L50 102L51 99L0 100z"/>', "at 2 places, the first near (50.6"),
         ('<circle r="30"/><rect width="90" height="5" fill="none" stroke="red"/>', "without filling"),
-        ('<circle r="30" clip-path="url(#c)"/>', "Clip paths"),
+        ('<circle r="30" clip-path="circle(9px)"/>', "Clip paths"),
     ],
 )  # fmt: skip
 def test_that_what_was_changed_is_said(body, word, svg) -> None:
@@ -134,7 +134,7 @@ def test_that_what_was_changed_is_said(body, word, svg) -> None:
     ("body", "word"),
     [
         ("", "has no visible shape"),
-        ('<text x="5" y="5">Hi</text>', "Convert it to paths"),
+        ('<text x="5" y="5">Hi</text>', "a text of 3 letters that do not touch"),
         ('<path fill="none" stroke="red" d="M0 0h50v50h-50v-40"/>', "gap of 10 px near (0, 5)"),
         ('<line x2="50" y2="50" stroke="red"/>', "open"),
         ('<path d="M0 0L50 50L50 0L0 50z"/>', "near (25, 25)"),

@@ -22,12 +22,14 @@ from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import best_of, fits_from_uniform
 from kirigami_studio.pipeline.tasks import scored
 from kirigami_studio.polish import continuation
+from kirigami_studio.polish import pin_room as pin_room_module
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.continuation import FitOptions, Way, first_angles, fit_from_uniform, fit_shape
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import FitPhase
+from kirigami_studio.polish.pin_room import pin_room
 from kirigami_studio.polish.pinwheel import check_gap, gap_in_cells, pinwheel
 from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
@@ -57,6 +59,34 @@ def test_that_slopes_of_distances_between_pins_are_exact() -> None:
         step[number] = 1e-6
         after, before = (pin_distances(model.nodes(shape + way * step), 4, 5).size for way in (1.0, -1.0))
         assert slopes[:, number] == pytest.approx((after - before) / 2e-6, abs=1e-7)
+
+
+def test_that_slopes_of_the_room_of_pins_are_exact() -> None:
+    draw = np.random.default_rng(2)
+    model = OutlineModel(3, 4, 0.0, free_rim=True)
+    shape = np.concatenate([draw.uniform(-0.5, 0.5, 12), draw.uniform(-0.2, 0.2, model.size - 12)])
+    decoded, basis = model.decoded(shape), Basis.of(model.size, None)
+    found = pin_room(decoded.nodes, 3, 4, GAP)
+    slopes = model.node_motion(decoded).slopes(*found.reach(model.node_count), basis)
+    assert len(slopes) > len(pin_room(decoded.nodes, 3, 4, GAP, pins_alone=True).spare) + 50
+    for number in range(model.size):
+        step = np.zeros(model.size)
+        step[number] = 1e-6
+        after, before = (pin_room(model.nodes(shape + way * step), 3, 4, GAP).spare for way in (1.0, -1.0))
+        assert slopes[:, number] == pytest.approx((after - before) / 2e-6, abs=1e-6)
+
+
+def test_that_a_fit_keeps_necks_beside_notches_and_corners_at_pins() -> None:
+    options = FitOptions(free_rim=True, even=3e-4, least_panel=0.15, least_gap=GAP)
+    fit = fit_from_uniform(load("star"), (6, 6), 0.0, 0.4, Way.COOLED, options, hand=1)
+    assert pin_room(deploy(fit.sheet).compact, 6, 6, GAP).spare.min() >= -GAP_ROUNDING
+
+
+def test_that_pins_keep_apart_where_no_sheet_near_by_keeps_all_corners(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pin_room_module, "SHARPEST", 0.999)
+    start = pinwheel(Sheet.uniform(4, 4), GAP, 1)
+    fit = polish(start, load("star"), steps=6, least_gap=GAP, free_rim=True)
+    assert pin_room(deploy(fit.sheet).compact, 4, 4, GAP).spare.min() < -0.01 and keeps(fit.sheet)
 
 
 @pytest.mark.parametrize(("name", "hand"), [("star", 1), ("heart", -1), ("circle", 1)])

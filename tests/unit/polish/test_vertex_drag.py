@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from uneven_sheets import uneven_sheet
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
+from kirigami_studio.evaluate.pins import GAP_ROUNDING, checkerboard, least_pin_distance
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import deploy
@@ -185,3 +186,19 @@ def test_that_senseless_drags_are_refused() -> None:
         VertexDrag(field, 0.0, 16)
     with refused(UsageError, "fit.locks_wrong_table"):
         VertexDrag(field, 0.0, 0, np.zeros((2, 2), dtype=bool))
+
+
+def test_that_pins_keep_their_distance_while_a_vertex_is_dragged() -> None:
+    sheet, least = Sheet(RatioField.from_log10(0.15 * checkerboard(4, 4))), 0.2
+    assert least_pin_distance(deploy(sheet)) > least
+    found = []
+    for gap in (0.0, least):
+        drag = VertexDrag(sheet, 0.6, 5, least_gap=gap)
+        start = drag.place
+        goal = start + 1.2 * outward(drag.deployment.outline(0.6), 5)
+        for _ in range(6):
+            drag.move(goal)
+        found.append((least_pin_distance(drag.deployment), drag.gap(goal), float(np.hypot(*(start - goal)))))
+    (free, near, _), (held, left, way) = found
+    assert free < 0.9 * least <= held / 0.9 and held >= least - 2 * GAP_ROUNDING
+    assert near < left < way

@@ -1,0 +1,141 @@
+"""Cards, table, comparison and stage draw pinned designs as pieces, which a worker makes while panels are drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtGui import QColor
+
+from kirigami_studio.assembly.posed_pieces import PosedPieces
+from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.gui.gallery import card_delegate, design_table
+from kirigami_studio.gui.stage.piece_items import colour_of
+from kirigami_studio.gui.widgets.theme import DARK, LIGHT
+from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.project import store
+from kirigami_studio.project.document import Document
+from tests.pinned_assemblies import plain_pinwheel
+
+Until = Callable[[Callable[[], bool]], None]
+
+
+@pytest.fixture(scope="module")
+def pinwheels() -> Document:
+    return plain_pinwheel(1.3)
+
+
+@pytest.fixture
+def pinned(window: MainWindow, pinwheels: Document, tmp_path: Path) -> MainWindow:
+    """A window with two pinned designs, none of whose pieces are made yet."""
+    store.save(pinwheels, tmp_path / "square.kiri")
+    window.gallery.bar.filters.grouped.setChecked(False)
+    window.services.project.open(tmp_path / "square.kiri")
+    return window
+
+
+def all_made(window: MainWindow) -> bool:
+    """Whether the pieces of all designs are there."""
+    pieces, candidates = window.services.pieces, window.session.document.candidates
+    return bool(candidates) and all(pieces.of(candidate) is not None for candidate in candidates)
+
+
+def test_that_cards_show_panels_until_pieces_are_there_and_then_pieces(
+    pinned: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[PosedPieces | None] = []
+    draw = card_delegate.candidate_pixmap
+
+    def noted(*arguments: object) -> object:
+        drawn.append(arguments[-1])  # type: ignore[arg-type]
+        return draw(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(card_delegate, "candidate_pixmap", noted)
+    until(lambda: len({id(pieces) for pieces in drawn if pieces is not None}) == 2)
+    assert drawn[:2] == [None, None]
+    pieces = pinned.services.pieces
+    small = [found.small for one in pinned.session.document.candidates if (found := pieces.of(one)) is not None]
+    assert {id(one) for one in small} <= {id(one) for one in drawn}
+
+
+def test_that_one_sheet_is_drawn_as_panels_at_once_and_pieces_come_back(pinned: MainWindow, until: Until) -> None:
+    until(lambda: all_made(pinned))
+    services, candidate = pinned.services, pinned.session.document.candidates[1]
+    services.fabrication.change(construction=Construction.ONE_SHEET)
+    assert services.pieces.of(candidate) is None
+    services.fabrication.change(construction=None)
+    assert services.pieces.of(candidate) is not None
+
+
+def test_that_earlier_pieces_are_shown_until_those_of_another_size_are_there(pinned: MainWindow, until: Until) -> None:
+    until(lambda: all_made(pinned))
+    pieces, candidate = pinned.services.pieces, pinned.session.document.candidates[1]
+    before = pieces.of(candidate)
+    pinned.services.fabrication.change(width_mm=170.0)
+    assert pieces.of(candidate) is before
+    until(lambda: pieces.of(candidate) is not before)
+    after = pieces.of(candidate)
+    assert before is not None and after is not None and after.assembly.cell_mm > 1.03 * before.assembly.cell_mm
+
+
+def test_that_table_and_comparison_show_the_same_pieces(
+    pinned: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    until(lambda: all_made(pinned))
+    drawn: list[object] = []
+    draw = design_table.states_pixmap
+
+    def noted(*arguments: object, **options: object) -> object:
+        drawn.append(options["pieces"])
+        return draw(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(design_table, "states_pixmap", noted)
+    presenters, pieces = pinned.presenters, pinned.services.pieces
+    presenters.all_designs.show(True)
+    until(lambda: len(drawn) == 2)
+    found = [pieces.of(candidate) for candidate in pinned.session.document.candidates]
+    assert {id(one.small) for one in found if one is not None} == {id(one) for one in drawn}
+    presenters.all_designs.show(False)
+    presenters.comparison.show(True)
+    assert [pane.view._pieces for pane in pinned.stage.compare.shown] == found
+
+
+@pytest.mark.parametrize("degrees", [180.0, 95.0, 0.0])
+def test_that_the_stage_shows_both_layers_in_the_colours_of_the_theme(
+    pinned: MainWindow, until: Until, degrees: float
+) -> None:
+    until(lambda: pinned.stage.view._pieces is not None)
+    pieces = pinned.stage.view._pieces
+    assert pieces is not None
+    pinned.stage.deployment.set_phi(math.radians(degrees))
+    for palette in (LIGHT, DARK):
+        pinned.stage.view.set_palette(palette)
+        image = pinned.stage.view.grab().toImage()
+        pixels = [image.pixelColor(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)]
+        for place in range(2):
+            face = colour_of(pieces.look.layer(place, 2), palette)
+            assert sum(same(face, pixel) for pixel in pixels) > 0.02 * len(pixels)
+    assert colour_of(pieces.look.face, DARK).lightness() < colour_of(pieces.look.face, LIGHT).lightness()
+
+
+def test_that_fixes_of_pieces_are_tried_in_the_worker_and_told_with_their_verdict(
+    pinned: MainWindow, until: Until
+) -> None:
+    keeper = pinned.services.verdict
+    until(lambda: keeper.state.verdict is not None and keeper.state.verdict.ok)
+    pinned.services.fabrication.change(ear_mm=15.0)
+    until(lambda: keeper.state.advice is not None)
+    advice, verdict = keeper.state.advice, keeper.state.verdict
+    assert advice is not None and verdict is not None and not verdict.ok
+    fix = advice.fixes[0]
+    assert fix.verdict.ok and fix.line in keeper.state.lines
+    pinned.session.apply(fix.edit(pinned.session.document))
+    until(lambda: keeper.state.verdict is not None and not keeper.state.pending)
+    assert keeper.state.verdict == fix.verdict and not keeper.state.searching
+
+
+def same(one: QColor, other: QColor) -> bool:
+    parts = zip(one.getRgb(), other.getRgb(), strict=True)
+    return max(abs(a - b) for a, b in parts) <= 2  # type: ignore[operator]

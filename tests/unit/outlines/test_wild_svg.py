@@ -1,0 +1,216 @@
+"""Drawings as people have them show the silhouette that is seen: inputs that failed once, and those that must not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from kirigami_studio.foundation.errors import TargetError
+from kirigami_studio.outlines.merging import usual_outline
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.read import read_parts, read_target
+
+WILD = Path(__file__).resolve().parents[2] / "data" / "wild" / "svg"
+EXPECTED = json.loads((WILD / "expected.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_that_the_silhouette_is_the_one_that_is_seen(name, iou) -> None:
+    expected = EXPECTED[name]
+    try:
+        outline = read_target(WILD / name)
+    except TargetError:
+        assert expected["kind"] == "shape_or_refusal"
+        return
+    assert iou(outline, Outline.from_points(expected["ring"])) >= expected["min_iou"]
+    if "size_mm" in expected:
+        assert outline.unit == "mm" and outline.size == pytest.approx(expected["size_mm"], rel=0.02)
+
+
+def shown(svg, body: str, attributes: str = 'viewBox="0 0 100 100"') -> tuple[float, ...]:
+    """Left, top, right and bottom of everything filled, as the drawing counts."""
+    boxes = [part.bounds for part in read_parts(svg(body, attributes)).parts]
+    left, top = min(box[0] for box in boxes), -max(box[3] for box in boxes)
+    right, bottom = max(box[2] for box in boxes), -min(box[1] for box in boxes)
+    return tuple(round(float(value), 6) for value in (left, top, right, bottom))
+
+
+@pytest.mark.parametrize(
+    ("body", "box"),
+    [
+        # use, symbol, nested drawings
+        ('<symbol id="s" viewBox="0 0 2 1"><rect width="2" height="1"/></symbol>'
+         '<use href="#s" x="10" y="20" width="40" height="40"/>', (10, 30, 50, 50)),
+        ('<symbol id="s" viewBox="0 0 2 1" preserveAspectRatio="none"><rect width="2" height="1"/></symbol>'
+         '<use href="#s" width="40" height="40"/>', (0, 0, 40, 40)),
+        ('<svg x="10" y="10" width="20" height="20" viewBox="0 0 10 10"><rect width="90" height="5"/></svg>',
+         (10, 10, 30, 20)),
+        ('<svg x="10" y="10" width="20" height="20" overflow="visible"><rect width="90" height="5"/></svg>',
+         (10, 10, 100, 15)),
+        ('<svg x="25%" y="50%" width="50%" height="20"><rect width="100%" height="100%"/></svg>', (25, 50, 75, 70)),
+        # switch
+        ('<switch><rect systemLanguage="xx" width="90" height="90"/><rect width="9" height="9"/></switch>',
+         (0, 0, 9, 9)),
+        ('<switch><g requiredExtensions="http://x.org"><rect width="90" height="90"/></g>'
+         '<rect systemLanguage="de, en" width="9" height="9"/><rect width="50" height="9"/></switch>', (0, 0, 9, 9)),
+        # transforms
+        ('<rect width="20" height="10" style="transform:rotate(90deg);transform-origin:20px 10px"/>',
+         (20, -10, 30, 10)),
+        ('<rect width="20" height="10" transform="scale(2)" transform-origin="right bottom"/>',
+         (-100, -100, -60, -80)),
+        ('<rect x="10" y="10" width="20" height="10" style="transform:scaleX(2);transform-box:fill-box;'
+         'transform-origin:center"/>', (0, 10, 40, 20)),
+        ('<rect width="20" height="10" transform="translate(10-5)rotate(0 5 5)"/>', (10, -5, 30, 5)),
+        # what is not seen
+        ('<g opacity="0%"><rect width="90" height="90"/></g><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<g opacity=".1"><rect opacity=".05" width="90" height="90"/></g><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<rect fill="#12345600" width="90" height="90"/><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<rect fill="hsla(9,9%,9%,0)" width="90" height="90"/><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<g color="transparent"><rect fill="currentColor" width="90" height="90"/></g><rect width="9" height="9"/>',
+         (0, 0, 9, 9)),
+        ('<linearGradient id="g"><stop stop-opacity="0"/></linearGradient><linearGradient id="h" href="#g"/>'
+         '<rect fill="url(#h)" width="90" height="90"/><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<g visibility="hidden"><rect width="90" height="90"/><rect visibility="visible" width="9" height="9"/></g>',
+         (0, 0, 9, 9)),
+        # the cascade
+        ('<style>g > rect:not(.k){display:none}</style><g><rect width="90" height="90"/>'
+         '<rect class="k" width="9" height="9"/></g>', (0, 0, 9, 9)),
+        ('<style>#a{fill:none} rect{fill:red} .b{fill:none!important}</style><rect id="a" width="90" height="90"/>'
+         '<rect class="b" style="fill:red" width="90" height="90"/><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<style>:root{--ink:none} .a{fill:var(--ink)} .b{fill:var(--no, none)}</style>'
+         '<rect class="a" width="90" height="90"/><rect class="b" width="90" height="90"/>'
+         '<rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<style>@media print{rect{fill:red}} @media screen{.a{fill:none}}</style><rect class="a" width="90" '
+         'height="90"/><rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<style>[data-x^="gu"]{fill:none}</style><rect data-x="guide" width="90" height="90"/>'
+         '<rect width="9" height="9"/>', (0, 0, 9, 9)),
+        ('<g fill="none"><rect style="fill:inherit" width="90" height="90"/></g><rect width="9" height="9"/>',
+         (0, 0, 9, 9)),
+        # clip paths and masks
+        ('<clipPath id="c"><rect x="5" y="5" width="20" height="10"/></clipPath>'
+         '<g clip-path="url(#c)" transform="translate(1 2)"><rect width="90" height="90"/></g>', (6, 7, 26, 17)),
+        ('<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width=".5" height=".5"/></clipPath>'
+         '<rect x="10" y="10" width="20" height="40" clip-path="url(#c)"/>', (10, 10, 20, 30)),
+        ('<clipPath id="c"><rect width="20" height="90"/></clipPath><clipPath id="d" clip-path="url(#c)">'
+         '<rect width="90" height="20"/></clipPath><rect width="90" height="90" style="clip-path:url(#d)"/>',
+         (0, 0, 20, 20)),
+        ('<mask id="m"><rect width="90" height="90" fill="#fff"/><rect x="30" width="60" height="90"/></mask>'
+         '<rect width="90" height="90" mask="url(#m)"/>', (0, 0, 30, 90)),
+        ('<mask id="m" style="mask-type:alpha"><rect width="30" height="90"/></mask>'
+         '<rect width="90" height="90" mask="url(#m)"/>', (0, 0, 30, 90)),
+    ],
+)  # fmt: skip
+def test_that_rules_of_svg_are_followed(body, box, svg) -> None:
+    assert shown(svg, body) == pytest.approx(box, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("body", "size"),
+    [
+        # broad lines alone: an anchor, a circle, and a cross that encloses nothing
+        ('<g fill="none" stroke="#000" stroke-width="2"><circle cx="12" cy="5" r="3"/><path d="M12 8v14M5 12h14"/></g>',
+         (14, 21)),
+        ('<circle cx="12" cy="12" r="10" fill="none" stroke="#000" stroke-width="2"/>', (22, 22)),
+        ('<path d="M4 12h16M12 4v16" fill="none" stroke="#000" stroke-width="2"/>', (16, 16)),
+        # the stroke of a filled shape, and lines of a middling width round one or with much beside what they enclose
+        ('<rect width="20" height="10" stroke="#000" stroke-width="2"/>', (22, 12)),
+        ('<rect width="60" height="30"/><rect width="60" height="30" fill="none" stroke="#000" stroke-width="2"/>',
+         (62, 32)),
+        ('<g fill="none" stroke="#000" stroke-width="2"><rect width="30" height="30"/><path d="M30 15h40"/></g>',
+         (71, 32)),
+        # thin lines count by what they enclose
+        ('<rect width="60" height="30" fill="none" stroke="#000" stroke-width="2"/>', (60, 30)),
+        ('<rect width="60" height="30" fill="none" stroke="#000" stroke-width=".1"/><rect x="5" y="5" width="50" '
+         'height="20"/>', (60, 30)),
+        # lines of two colours that make one contour
+        ('<path d="M0 0h60v30" fill="none" stroke="red" stroke-width=".2"/>'
+         '<path d="M60 30h-60v-30" fill="none" stroke="blue" stroke-width=".2"/>', (60, 30)),
+    ],
+)  # fmt: skip
+def test_that_strokes_count_as_painted_where_they_carry_the_shape(body, size, svg) -> None:
+    assert read_target(svg(body)).size == pytest.approx(size, rel=2e-3)
+
+
+def test_that_corners_of_strokes_are_cut_off_beyond_the_limit_of_their_mitre(svg) -> None:
+    """A corner of 11 degrees: its tip would be ten widths long."""
+    body = '<path fill="none" stroke="#000" stroke-width="2" d="M0 0L10 1L0 2" stroke-miterlimit="{}"/>'
+    short, long = (read_target(svg(body.format(limit))).size[0] for limit in (4, 20))
+    assert short == pytest.approx(10.2, abs=0.05) and long == pytest.approx(20.15, abs=0.05)
+
+
+def test_that_what_is_read_and_what_the_parts_say_is_one(svg) -> None:
+    """The window asks by the parts and takes their outline; before, it read the file again by another rule."""
+    for name in ("s01_cut_frame_and_engraving.svg", "s31_stroke_only_shape_with_one_dot.svg"):
+        taken = usual_outline(read_parts(WILD / name))
+        assert (taken.points == read_target(WILD / name).points).all()
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        # open at two corners, around a window; and one open line
+        '<path d="M20 91V40L50 16L77 38M80 41V88M77 91H23" fill="none" stroke="#000" stroke-width=".5"/>'
+        '<rect x="40" y="60" width="10" height="10" fill="none" stroke="#000" stroke-width=".5"/>',
+        '<path d="M0 0h90v90h-90v-80" fill="none" stroke="#000" stroke-width=".5"/><circle cx="45" cy="45" r="9"/>',
+    ],
+)
+def test_that_what_an_open_contour_holds_is_not_taken_in_its_place(body, svg) -> None:
+    path = svg(body)
+    with pytest.raises(TargetError, match="gap of"):
+        read_target(path)
+    assert read_parts(path).is_ambiguous
+
+
+def test_that_another_reading_is_told_with_the_way_to_choose_it(svg) -> None:
+    (said, _) = read_target(svg('<circle id="sun" r="30"/><circle cx="90" r="20"/>')).notes
+    assert "sun" in said and "--parts" in said
+
+
+def test_that_shapes_that_share_an_edge_but_for_rounding_are_one_and_a_gap_stays_a_gap(svg) -> None:
+    near, apart = (f'<rect width="40" height="40"/><rect x="{x}" width="40" height="40"/>' for x in (40.01, 40.2))
+    assert read_target(svg(near)).size == pytest.approx((80.01, 40.0))
+    assert read_target(svg(apart)).size == pytest.approx((40.0, 40.0))
+
+
+def test_that_a_subpath_that_paints_two_pieces_is_no_contour_that_crosses_itself(svg) -> None:
+    """A calendar: its head and its body hang together by a line of no width."""
+    outline = read_target(svg('<path d="M0 0h16v14h-16v-9h16v-1h-16z"/>'))
+    assert outline.size == pytest.approx((16, 9)) and "smaller piece" in " ".join(outline.notes)
+
+
+def test_that_a_white_flag_on_a_larger_page_is_no_paper(svg) -> None:
+    body = '<path fill="#fff" d="M5 17h62v38h-62z"/><circle cx="36" cy="36" r="9"/>'
+    assert read_target(svg(body, 'viewBox="0 0 72 72"')).size == pytest.approx((62, 38))
+
+
+def test_that_a_path_is_read_up_to_its_damage_and_that_is_said(svg) -> None:
+    outline = read_target(svg('<path d="M0 0h60v30h-60z M5 5 L 9"/>'))
+    assert outline.size == pytest.approx((60, 30)) and any("damaged" in note for note in outline.notes)
+
+
+def test_that_one_letter_is_a_target_and_a_word_is_refused_with_the_way_to_join_it(svg) -> None:
+    assert read_target(svg('<text x="5" y="50" font-size="40">T</text>')).size[1] == pytest.approx(29, abs=3)
+    with pytest.raises(TargetError, match="--join bridge"):
+        read_target(svg('<text x="5" y="50" font-size="40">TO</text>'))
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        '<!ENTITY a SYSTEM "file:///etc/hostname">',
+        '<!ENTITY % a "b">',
+        '<!ENTITY a "&#60;rect/>">',
+        '<!ENTITY a "x"><!ENTITY b "&a;&a;">',
+        f'<!ENTITY a "{"x" * 2000}">',
+    ],
+    ids=["external", "parameter", "markup", "nested", "long"],
+)
+def test_that_entities_but_short_plain_texts_are_refused(declared, tmp_path) -> None:
+    path = tmp_path / "drawing.svg"
+    path.write_text(
+        f'<!DOCTYPE svg [{declared}]><svg xmlns="http://www.w3.org/2000/svg"><rect width="9" height="9"/></svg>'
+    )
+    with pytest.raises(TargetError, match="entities"):
+        read_target(path)
